@@ -1,0 +1,72 @@
+/* Rotations: quaternions scalar first, [w,x,y,z]; 3-vectors; all arrays contiguous, outputs may not alias inputs unless said. */
+#ifndef SPARI_ROTATION_H
+#define SPARI_ROTATION_H
+
+#include <math.h>
+
+static inline void spari_cross(const double a[3], const double b[3], double c[3]) {
+    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    c[0] = x, c[1] = y, c[2] = z; /* c may be a or b */
+}
+
+static inline double spari_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double spari_norm(const double a[3]) {
+    return sqrt(spari_dot(a, a));
+}
+
+/* c = a b; c may be a or b */
+static inline void spari_quat_mul(const double a[4], const double b[4], double c[4]) {
+    double w = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+    double x = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+    double y = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+    double z = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+    c[0] = w, c[1] = x, c[2] = y, c[3] = z;
+}
+
+static inline void spari_quat_conj(const double q[4], double c[4]) {
+    c[0] = q[0], c[1] = -q[1], c[2] = -q[2], c[3] = -q[3];
+}
+
+static inline double spari_quat_dot(const double a[4], const double b[4]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
+static inline void spari_quat_normalise(double q[4]) {
+    double s = 1.0 / sqrt(spari_quat_dot(q, q));
+    q[0] *= s, q[1] *= s, q[2] *= s, q[3] *= s;
+}
+
+/* y = R(q) x for unit q; y may be x */
+static inline void spari_rotate(const double q[4], const double x[3], double y[3]) {
+    double t[3], s[3];
+    spari_cross(q + 1, x, t);
+    t[0] *= 2, t[1] *= 2, t[2] *= 2;
+    spari_cross(q + 1, t, s);
+    for (int i = 0; i < 3; i++) {
+        y[i] = x[i] + q[0] * t[i] + s[i];
+    }
+}
+
+/* y = R(q)^T x for unit q; y may be x */
+static inline void spari_rotate_back(const double q[4], const double x[3], double y[3]) {
+    double c[4];
+    spari_quat_conj(q, c);
+    spari_rotate(c, x, y);
+}
+
+/* row-major R(q), unit q */
+void spari_quat_matrix(const double q[4], double r[9]);
+/* unit quaternion of a proper rotation matrix, scalar part >= 0 */
+void spari_matrix_quat(const double r[9], double q[4]);
+/* exp of the rotation vector; accurate for small and for large angles */
+void spari_quat_exp(const double psi[3], double q[4]);
+/* rotation vector of the shorter turn, |psi| <= pi */
+void spari_quat_log(const double q[4], double psi[3]);
+/* tangent operator of the exponential map, row-major: exp(psi + d psi) = exp(T d psi) exp(psi) to first order; and its inverse */
+void spari_tangent(const double psi[3], double t[9]);
+void spari_tangent_inverse(const double psi[3], double t[9]);
+
+#endif

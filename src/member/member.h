@@ -1,0 +1,58 @@
+/* A structural member: what point, rigid body, beam and external member share. Nodes are numbered element by element
+   (elements * per_element of them, a joint stands twice), as in spar_beam_set_nodes. */
+#ifndef SPARI_MEMBER_H
+#define SPARI_MEMBER_H
+
+#include "../session/status.h"
+
+enum { SPARI_POINT, SPARI_RIGID, SPARI_BEAM };
+
+/* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega), a [n][6]. */
+typedef struct spari_motion {
+    double *q, *v, *a;
+} spari_motion;
+
+typedef struct spari_solver spari_solver; /* src/solve: the owner's integrator */
+typedef struct spari_beam spari_beam;     /* src/member/beam.h */
+
+struct spar_member {
+    spar_session *session;
+    spar_member *next; /* in order of creation, the same on every rank */
+    char *name;
+    int kind, external, root, owner, committed;
+    int effects;       /* SPAR_EFFECT_*: asked for; after commit what is in force */
+    int effects_given; /* 0: what the description implies */
+    int motion_given;  /* set_motion or drive_root was called for the step under way */
+
+    int elements, per_element;
+    int64_t nodes;
+    double *xr, *qr; /* reference places [n][3] and orientations [n][4], placed; after commit */
+    double place_x[3], place_q[4];
+    double mass[36];           /* rigid */
+    double velocity[3][3];     /* x0, v0, omega of the initial rigid-body field */
+    int velocity_given;
+    spari_beam *beam;
+
+    spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
+    double drive[2][19];     /* root q, v, a at t^n and t^{n+1} */
+
+    /* nodal loads [n][6], global axes */
+    double *dead;             /* spar_member_add_load */
+    double *load_used;        /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
+    double *load_pushed;      /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
+    double *load_history[3];  /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
+    double reaction[6];
+    double dissipated;
+    spari_solver *solver; /* on the owner, of members that are solved for */
+};
+
+int spari_member_commit(spar_member *member);
+void spari_member_free(spar_member *member);
+/* Whether spar advances the member (not a point, not external). */
+int spari_member_is_solved(const spar_member *member);
+/* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */
+static inline double spari_member_xi(const spar_member *member, int element, double local) {
+    return 2.0 * ((double)element + 0.5 * (1.0 + local)) / (double)member->elements - 1.0;
+}
+
+#endif

@@ -1,0 +1,45 @@
+/* The session: one clock, its members, its fluids on this rank, one communicator. */
+#ifndef SPARI_SESSION_H
+#define SPARI_SESSION_H
+
+#include "../comm/comm.h"
+#include "../fluid/fluid.h"
+#include "../member/member.h"
+
+/* Where a step stands. */
+typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
+
+struct spar_session {
+    spari_comm *comm;
+    char message[SPARI_MESSAGE_SIZE];
+    spar_log log;
+    void *log_context;
+    spar_member *members; /* list, in order of creation */
+    spar_fluid *fluids;   /* list, this rank's */
+    int member_count;
+
+    double gravity[3];
+    double rho_inf;
+    int substeps;
+    double newton_atol, newton_rtol;
+    int newton_max;
+    int predictor;
+    int scheme;
+    double coupling_atol, coupling_rtol;
+    int coupling_max;
+    double relaxation;
+    int accept_unconverged; /* option coupling.unconverged = accept */
+    int theta_on_group;     /* option fluid.theta = average (default) | group */
+
+    double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
+    int64_t step;
+    int iteration;
+    spari_phase phase;
+    int started;  /* the clock has run */
+    int refused;  /* status of a push refused since the last check */
+    double *pack; /* loads of all members, stacked, for the ranks' sum */
+    int64_t *first; /* motion blocks by rank */
+    double *motion; /* motion of all solved members, by owner */
+};
+
+#endif
