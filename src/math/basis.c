@@ -1,0 +1,104 @@
+#include "basis.h"
+
+#include <gsl/gsl_integration.h>
+#include <math.h>
+
+/* Legendre P_n(x) and P_{n-1}(x) by the three-term recurrence, n >= 1. */
+static double legendre(int n, double x, double *before) {
+    double p0 = 1, p1 = x;
+    for (int k = 1; k < n; k++) {
+        double p2 = ((2 * k + 1) * x * p1 - k * p0) / (k + 1);
+        p0 = p1, p1 = p2;
+    }
+    *before = p0;
+    return p1;
+}
+
+/* The inner nodes are the zeros of P'_m, m = n - 1: Newton on (1 - x^2) P'_m = m (P_{m-1} - x P_m), whose derivative is
+   -m (m + 1) P_m. Barycentric weights 1 / P_m(x_j), weights 2 / (m (m + 1) P_m^2). */
+void spari_gll(int n, double *x, double *w, double *bary) {
+    if (n == 1) {
+        if (x) {
+            x[0] = 0;
+        }
+        if (w) {
+            w[0] = 2;
+        }
+        if (bary) {
+            bary[0] = 1;
+        }
+        return;
+    }
+    int m = n - 1;
+    for (int i = 0; i < n; i++) {
+        int mirror = i > m - i; /* nodes in exactly symmetric pairs */
+        int j = mirror ? m - i : i;
+        double t = -cos(3.14159265358979323846 * j / m), before;
+        if (2 * j == m) {
+            t = 0;
+        } else if (j > 0) {
+            for (int k = 0; k < 50; k++) {
+                double p = legendre(m, t, &before), step = (before - t * p) / ((m + 1) * p);
+                t += step;
+                if (fabs(step) < 1e-16) {
+                    break;
+                }
+            }
+        } else {
+            t = -1;
+        }
+        t = mirror ? -t : t;
+        double p = legendre(m, t, &before);
+        if (x) {
+            x[i] = t;
+        }
+        if (w) {
+            w[i] = 2.0 / ((double)m * (m + 1) * p * p);
+        }
+        if (bary) {
+            bary[i] = 1.0 / p;
+        }
+    }
+}
+
+int spari_gauss(int n, double *x, double *w) {
+    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)n);
+    if (!table) {
+        return 1;
+    }
+    for (int i = 0; i < n; i++) {
+        gsl_integration_glfixed_point(-1, 1, (size_t)i, &x[i], &w[i], table);
+    }
+    gsl_integration_glfixed_table_free(table);
+    return 0;
+}
+
+void spari_lagrange(int n, const double *x, const double *bary, double xi, double *phi, double *dphi) {
+    int at = -1;
+    double sum = 0;
+    for (int j = 0; j < n; j++) {
+        if (xi == x[j]) {
+            at = j;
+            break;
+        }
+        phi[j] = bary[j] / (xi - x[j]);
+        sum += phi[j];
+    }
+    for (int j = 0; j < n; j++) {
+        phi[j] = at >= 0 ? (j == at) : phi[j] / sum;
+    }
+    if (!dphi) {
+        return;
+    }
+    /* phi_j' is a polynomial: its nodal values D_mj, weighted with phi_m, are exact everywhere */
+    for (int j = 0; j < n; j++) {
+        double d = 0, diagonal = 0;
+        for (int m = 0; m < n; m++) {
+            if (m != j) {
+                d += phi[m] * (bary[j] / bary[m]) / (x[m] - x[j]);
+                diagonal -= (bary[m] / bary[j]) / (x[j] - x[m]);
+            }
+        }
+        dphi[j] = d + phi[j] * diagonal;
+    }
+}
