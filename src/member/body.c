@@ -1,0 +1,930 @@
+#include "body.h"
+
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "../session/status.h"
+
+#include <cblas.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- small algebra of this file ---- */
+
+/* The 3x4 matrix of x -> Im(q* x). */
+static void body_spin(const double q[4], double l[3][4]) {
+    double w = q[0], x = q[1], y = q[2], z = q[3];
+    double m[3][4] = {{-x, w, z, -y}, {-y, -z, w, x}, {-z, y, -x, w}};
+    memcpy(l, m, sizeof m);
+}
+
+static void skew(const double a[3], double s[3][3]) {
+    double m[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};
+    memcpy(s, m, sizeof m);
+}
+
+/* Im(a* b) */
+static void imag_conj_mul(const double a[4], const double b[4], double c[3]) {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        c[i] = a[0] * b[1 + i] - b[0] * a[1 + i] - (a[1 + j] * b[1 + k] - a[1 + k] * b[1 + j]);
+    }
+}
+
+/* quaternion product of q and the pure quaternion s */
+static void quat_vec(const double q[4], const double s[3], double c[4]) {
+    double pure[4] = {0, s[0], s[1], s[2]};
+    spari_quat_mul(q, pure, c);
+}
+
+static void symmetric_times(const double j[6], const double x[3], double y[3]) {
+    y[0] = j[0] * x[0] + j[1] * x[1] + j[2] * x[2];
+    y[1] = j[1] * x[0] + j[3] * x[1] + j[4] * x[2];
+    y[2] = j[2] * x[0] + j[4] * x[1] + j[5] * x[2];
+}
+
+static void matrix6_times(const double *c, const double e[6], double s[6]) {
+    for (int i = 0; i < 6; i++) {
+        double sum = 0;
+        for (int j = 0; j < 6; j++) {
+            sum += c[6 * i + j] * e[j];
+        }
+        s[i] = sum;
+    }
+}
+
+/* ---- life ---- */
+
+/* Fields of a node as the elements sum them: u and its two rates, q and its two rates. */
+enum { U = 0, Q = 3, UD = 7, QD = 10, UDD = 14, QDD = 17, FIELDS = 21 };
+/* The same at a quadrature point: values, then derivatives along the line of u, q and their rates. */
+enum { DU = 21, DQ = 24, DUD = 28, DQD = 31, POINT = 35 };
+
+static int64_t scratch_size(int P, int points) {
+    int64_t p = P, n = points;
+    return p * FIELDS + 4 * p * p * 49 + 2 * n * p * 2 * 49 + n * 2 * p;
+}
+
+spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive) {
+    spari_body *body = spari_zalloc(1, sizeof *body);
+    if (!body) {
+        return NULL;
+    }
+    int64_t P = per_element, n = points;
+    body->elements = elements;
+    body->per_element = per_element;
+    body->unique = elements * (per_element - 1) + 1;
+    body->gyroscopic = 1;
+    int ok = (body->first = spari_zalloc(elements + 1, sizeof *body->first)) != NULL;
+    ok = ok && (body->phi = spari_zalloc(n * P, sizeof *body->phi));
+    ok = ok && (body->dphi = spari_zalloc(n * P, sizeof *body->dphi));
+    ok = ok && (body->weight = spari_zalloc(n, sizeof *body->weight));
+    ok = ok && (body->tangent = spari_zalloc(n * 3, sizeof *body->tangent));
+    ok = ok && (body->place = spari_zalloc(n * 3, sizeof *body->place));
+    ok = ok && (!elastic || (body->C = spari_zalloc(n * 36, sizeof *body->C)));
+    ok = ok && (!damped || (body->D = spari_zalloc(n * 36, sizeof *body->D)));
+    ok = ok && (!massive || (body->mass = spari_zalloc(n * 10, sizeof *body->mass)));
+    ok = ok && (body->scratch = spari_zalloc(scratch_size(per_element, points), sizeof *body->scratch));
+    if (!ok) {
+        spari_body_free(body);
+        return NULL;
+    }
+    return body;
+}
+
+void spari_body_free(spari_body *body) {
+    if (!body) {
+        return;
+    }
+    free(body->first);
+    free(body->phi);
+    free(body->dphi);
+    free(body->weight);
+    free(body->tangent);
+    free(body->place);
+    free(body->C);
+    free(body->D);
+    free(body->mass);
+    for (int k = 0; k < 3; k++) {
+        free(body->linear[k]);
+    }
+    free(body->weights);
+    free(body->scratch);
+    free(body);
+}
+
+/* ---- nodal fields ---- */
+
+/* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. Neighbours are brought into one hemisphere, so that
+   an element may turn by more than half a revolution from end to end. */
+static void gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
+    int P = body->per_element;
+    for (int l = 0; l < P; l++) {
+        int64_t node = (int64_t)e * (P - 1) + l;
+        const double *qn = q + 7 * node;
+        double *zn = z + FIELDS * l, *ql = zn + Q;
+        memset(zn, 0, FIELDS * sizeof *zn);
+        memcpy(zn + U, qn, 3 * sizeof *zn);
+        double sign = l > 0 && spari_quat_dot(qn + 3, ql - FIELDS) < 0 ? -1.0 : 1.0;
+        for (int i = 0; i < 4; i++) {
+            ql[i] = sign * qn[3 + i];
+        }
+        if (v) {
+            const double *vn = v + 6 * node;
+            double half[4] = {0, 0.5 * vn[3], 0.5 * vn[4], 0.5 * vn[5]};
+            memcpy(zn + UD, vn, 3 * sizeof *zn);
+            spari_quat_mul(half, ql, zn + QD);
+            if (a) {
+                const double *an = a + 6 * node;
+                double half_rate[4] = {0, 0.5 * an[3], 0.5 * an[4], 0.5 * an[5]}, spin[4];
+                memcpy(zn + UDD, an, 3 * sizeof *zn);
+                spari_quat_mul(half_rate, ql, zn + QDD);
+                spari_quat_mul(half, zn + QD, spin);
+                for (int i = 0; i < 4; i++) {
+                    zn[QDD + i] += spin[i];
+                }
+            }
+        }
+    }
+}
+
+/* What the fields are at one point, quaternion parts divided by |Q|. */
+typedef struct point_state {
+    double f[POINT];
+    double N;          /* |Q| */
+    double r[4];       /* Q / N, unit */
+    double p[4];       /* dQ/ds / N */
+    double omega[3];   /* body rate 2 Im(r* d) */
+    double d[4];       /* Qd / N */
+    double T[3];       /* R^T (x0' + u') */
+    double e[6];       /* strains */
+    double ed[6];      /* strain rates */
+    double s[6];       /* section force and moment, reference axes turned back */
+    double b;          /* r . d */
+    double z[4];       /* dQd/ds / N */
+    double t_rate[3];  /* R^T u'-dot */
+    double kd0[3];     /* 2 Im(d* p + r* z) */
+} point_state;
+
+static void point_fields(const spari_body *body, int k, const double *z, int moving, point_state *s) {
+    int P = body->per_element, fields = moving ? FIELDS : UD;
+    const double *phi = body->phi + (int64_t)k * P, *dphi = body->dphi + (int64_t)k * P;
+    double f[FIELDS] = {0}, df[UDD] = {0};
+    int slopes = !body->C ? 0 : body->D && moving ? UDD : UD;
+    for (int l = 0; l < P; l++) {
+        const double *zn = z + FIELDS * l;
+        for (int i = 0; i < fields; i++) {
+            f[i] += phi[l] * zn[i];
+        }
+        for (int i = 0; i < slopes; i++) {
+            df[i] += dphi[l] * zn[i];
+        }
+    }
+    memcpy(s->f, f, sizeof f);
+    memcpy(s->f + DU, df, sizeof df);
+    s->N = sqrt(spari_quat_dot(f + Q, f + Q));
+    double inv = 1 / s->N;
+    for (int i = 0; i < 4; i++) {
+        s->r[i] = f[Q + i] * inv;
+        s->p[i] = df[Q + i] * inv;
+        s->d[i] = f[QD + i] * inv;
+        s->z[i] = df[QD + i] * inv;
+    }
+    s->b = spari_quat_dot(s->r, s->d);
+    imag_conj_mul(s->r, s->d, s->omega);
+    for (int i = 0; i < 3; i++) {
+        s->omega[i] *= 2;
+    }
+}
+
+/* Strains, their rates and the section forces: e = (R^T (x0' + u') - x0', 2 Im(Q* Q')/|Q|^2) */
+static void point_strain(const spari_body *body, int k, int moving, point_state *s) {
+    double t[3], kappa[3];
+    const double *t0 = body->tangent + 3 * (int64_t)k;
+    for (int i = 0; i < 3; i++) {
+        t[i] = t0[i] + s->f[DU + i];
+    }
+    spari_rotate_back(s->r, t, s->T);
+    imag_conj_mul(s->r, s->p, kappa);
+    for (int i = 0; i < 3; i++) {
+        s->e[i] = s->T[i] - t0[i];
+        s->e[3 + i] = 2 * kappa[i];
+    }
+    matrix6_times(body->C + 36 * (int64_t)k, s->e, s->s);
+    if (body->D && moving) {
+        double turn[3], a[3], b[3], sd[6];
+        spari_rotate_back(s->r, s->f + DUD, s->t_rate);
+        spari_cross(s->T, s->omega, turn);
+        imag_conj_mul(s->d, s->p, a);
+        imag_conj_mul(s->r, s->z, b);
+        for (int i = 0; i < 3; i++) {
+            s->kd0[i] = 2 * (a[i] + b[i]);
+            s->ed[i] = s->t_rate[i] + turn[i];
+            s->ed[3 + i] = s->kd0[i] - 2 * s->e[3 + i] * s->b;
+        }
+        matrix6_times(body->D + 36 * (int64_t)k, s->ed, sd);
+        for (int i = 0; i < 6; i++) {
+            s->s[i] += sd[i];
+        }
+    }
+}
+
+/* Inertia and gravity of a section: forces and what is needed for their tangent. Body axes: A = angular acceleration,
+   h = R^T (udd - g), y = A x mc + W x (W x mc), mb = J A + W x J W + mc x h. */
+typedef struct point_inertia {
+    double A[3], A0[3], JW[3], h[3], y[3], mb[3], Wc[3];
+} point_inertia;
+
+static void point_inertia_forces(const spari_body *body, int k, double factor, const point_state *s, point_inertia *n) {
+    const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *J = mass + 4;
+    double net[3], rdd[4], JA[3], x[3];
+    for (int i = 0; i < 3; i++) {
+        net[i] = s->f[UDD + i] - factor * body->gravity[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        rdd[i] = s->f[QDD + i] / s->N;
+    }
+    imag_conj_mul(s->r, rdd, n->A0);
+    for (int i = 0; i < 3; i++) {
+        n->A0[i] *= 2;
+        n->A[i] = n->A0[i] - 2 * s->b * s->omega[i];
+    }
+    spari_rotate_back(s->r, net, n->h);
+    symmetric_times(J, n->A, JA);
+    symmetric_times(J, s->omega, n->JW);
+    spari_cross(n->A, mc, n->y);
+    spari_cross(mc, n->h, n->mb);
+    spari_cross(s->omega, mc, n->Wc);
+    for (int i = 0; i < 3; i++) {
+        n->mb[i] += JA[i];
+    }
+    if (body->gyroscopic) {
+        spari_cross(s->omega, n->Wc, x);
+        for (int i = 0; i < 3; i++) {
+            n->y[i] += x[i];
+        }
+        spari_cross(s->omega, n->JW, x);
+        for (int i = 0; i < 3; i++) {
+            n->mb[i] += x[i];
+        }
+    }
+}
+
+/* ---- residual ---- */
+
+static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r);
+
+/* Nodal force of the 4-vector g: delta q . g = delta theta . 1/2 Im(g q*) */
+static void add_moment(const double g[4], const double q[4], double m[3]) {
+    double c[4], p[4];
+    spari_quat_conj(q, c);
+    spari_quat_mul(g, c, p);
+    for (int i = 0; i < 3; i++) {
+        m[i] += 0.5 * p[1 + i];
+    }
+}
+
+double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r) {
+    if (body->linear[0]) {
+        return linear_residual(body, q, v, a, factor, r);
+    }
+    int P = body->per_element, moving = v != NULL;
+    double *z = body->scratch, *g = z + (int64_t)P * FIELDS, scale = 0;
+    memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
+    for (int e = 0; e < body->elements; e++) {
+        gather(body, e, q, v, a, z);
+        memset(g, 0, (size_t)P * 7 * sizeof *g);
+        for (int k = body->first[e]; k < body->first[e + 1]; k++) {
+            point_state s;
+            double value[7] = {0}, slope[7] = {0}, w = body->weight[k];
+            point_fields(body, k, z, moving, &s);
+            if (body->C) {
+                double x[3], n4[4], k4[4], pk[4], dots = 0;
+                point_strain(body, k, moving, &s);
+                spari_rotate(s.r, s.s, slope);
+                spari_cross(s.s, s.T, x); /* moment of the section force about the section */
+                quat_vec(s.r, x, n4);
+                quat_vec(s.r, s.s + 3, k4);
+                quat_vec(s.p, s.s + 3, pk);
+                dots = spari_dot(s.e + 3, s.s + 3);
+                for (int i = 0; i < 4; i++) {
+                    slope[3 + i] = 2 * k4[i] / s.N;
+                    value[3 + i] = (2 * n4[i] - 2 * pk[i] - 2 * dots * s.r[i]) / s.N;
+                }
+                double size = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
+                scale = size > scale ? size : scale;
+            }
+            if (body->mass) {
+                point_inertia n;
+                double f[3], m4[4];
+                point_inertia_forces(body, k, factor, &s, &n);
+                for (int i = 0; i < 3; i++) {
+                    f[i] = n.y[i] + body->mass[10 * (int64_t)k] * n.h[i];
+                }
+                spari_rotate(s.r, f, f);
+                quat_vec(s.r, n.mb, m4);
+                for (int i = 0; i < 3; i++) {
+                    value[i] += f[i];
+                }
+                for (int i = 0; i < 4; i++) {
+                    value[3 + i] += 2 * m4[i] / s.N;
+                }
+                double size = w * (spari_norm(f) + spari_norm(n.mb) / body->length);
+                scale = size > scale ? size : scale;
+            }
+            const double *phi = body->phi + (int64_t)k * P, *dphi = body->dphi + (int64_t)k * P;
+            for (int l = 0; l < P; l++) {
+                double wl = w * phi[l], dwl = w * dphi[l];
+                for (int i = 0; i < 7; i++) {
+                    g[7 * l + i] += wl * value[i] + dwl * slope[i];
+                }
+            }
+        }
+        for (int l = 0; l < P; l++) {
+            double *rl = r + 6 * ((int64_t)e * (P - 1) + l);
+            for (int i = 0; i < 3; i++) {
+                rl[i] += g[7 * l + i];
+            }
+            add_moment(g + 7 * l + 3, z + FIELDS * l + Q, rl + 3);
+        }
+    }
+    return scale;
+}
+
+/* ---- tangent ---- */
+
+/* c (rows x 4) += f * a (rows x 3) * l (3 x 4) */
+static void add_product(double *c, int stride, double f, const double a[3][3], const double l[3][4]) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            c[stride * i + j] += f * (a[i][0] * l[0][j] + a[i][1] * l[1][j] + a[i][2] * l[2][j]);
+        }
+    }
+}
+
+/* c (4 x 4) += f * l^T (4 x 3) * m (3 x 4) */
+static void add_transposed_product(double *c, int stride, double f, const double l[3][4], const double m[3][4]) {
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            c[stride * i + j] += f * (l[0][i] * m[0][j] + l[1][i] * m[1][j] + l[2][i] * m[2][j]);
+        }
+    }
+}
+
+/* matrix of x -> x s (right product with a pure quaternion) */
+static void right_matrix(const double s[3], double m[4][4]) {
+    double r[4][4] = {{0, -s[0], -s[1], -s[2]}, {s[0], 0, s[2], -s[1]}, {s[1], -s[2], 0, s[0]}, {s[2], s[1], -s[0], 0}};
+    memcpy(m, r, sizeof r);
+}
+
+/* matrix of x -> t x */
+static void left_matrix(const double t[3], double m[4][4]) {
+    double l[4][4] = {{0, -t[0], -t[1], -t[2]}, {t[0], 0, -t[2], t[1]}, {t[1], t[2], 0, -t[0]}, {t[2], -t[1], t[0], 0}};
+    memcpy(m, l, sizeof l);
+}
+
+/* Point matrices over the fields y = (u, Q | u', Q'), 14 x 14: K for displacements, B for rates; M over (u, Q), 7 x 7. */
+typedef struct point_matrices {
+    double K[14 * 14], B[14 * 14], M[7 * 7];
+} point_matrices;
+
+enum { AT_Q = 3, AT_DU = 7, AT_DQ = 10 };
+
+/* J = d e / d y (6 x 14) */
+static void strain_gradient(const point_state *s, double J[6][14]) {
+    double L[3][4], Lp[3][4], Tx[3][3], R[9];
+    memset(J, 0, sizeof(double) * 6 * 14);
+    body_spin(s->r, L);
+    body_spin(s->p, Lp);
+    skew(s->T, Tx);
+    spari_quat_matrix(s->r, R);
+    add_product(&J[0][AT_Q], 14, 2 / s->N, (const double(*)[3])Tx, (const double(*)[4])L);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            J[i][AT_DU + j] = R[3 * j + i];
+        }
+        for (int j = 0; j < 4; j++) {
+            J[3 + i][AT_Q + j] = (-2 * Lp[i][j] - 2 * s->e[3 + i] * s->r[j]) / s->N;
+            J[3 + i][AT_DQ + j] = 2 * L[i][j] / s->N;
+        }
+    }
+}
+
+/* G = d (e-dot) / d y at fixed rates (6 x 14) */
+static void strain_rate_gradient(const point_state *s, const double J[6][14], double G[6][14]) {
+    double L[3][4], Ld[3][4], Lz[3][4], Tx[3][3], Wx[3][3], tx[3][3];
+    memset(G, 0, sizeof(double) * 6 * 14);
+    body_spin(s->r, L);
+    body_spin(s->d, Ld);
+    body_spin(s->z, Lz);
+    skew(s->T, Tx);
+    skew(s->omega, Wx);
+    skew(s->t_rate, tx);
+    /* d(R^T u'-dot) = t_rate x dtheta; dT x W = -W x dT; T x dW with dW = (-2 Ld - 2 W r^T)/N dQ */
+    add_product(&G[0][AT_Q], 14, 2 / s->N, (const double(*)[3])tx, (const double(*)[4])L);
+    double dW[3][4];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            dW[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) / s->N;
+        }
+    }
+    add_product(&G[0][AT_Q], 14, 1, (const double(*)[3])Tx, (const double(*)[4])dW);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 14; j++) {
+            G[i][j] -= Wx[i][0] * J[0][j] + Wx[i][1] * J[1][j] + Wx[i][2] * J[2][j];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        double kappa = s->e[3 + i];
+        for (int j = 0; j < 4; j++) {
+            G[3 + i][AT_Q + j] = (-2 * Lz[i][j] - 2 * s->kd0[i] * s->r[j]) / s->N - 2 * s->b * J[3 + i][AT_Q + j] -
+                                 2 * kappa * (s->d[j] - 2 * s->b * s->r[j]) / s->N;
+            G[3 + i][AT_DQ + j] = 2 * Ld[i][j] / s->N - 2 * s->b * J[3 + i][AT_DQ + j];
+        }
+    }
+}
+
+/* Second derivative of s . e(y) at fixed s, added to K. */
+static void add_geometric(const point_state *s, double w, double *K) {
+    double L[3][4], Sx[3][3], R[9], RS[3][3], mixed[3][4] = {{0}};
+    double in = 1 / s->N, in2 = in * in;
+    body_spin(s->r, L);
+    skew(s->s, Sx);
+    spari_quat_matrix(s->r, R);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            RS[i][j] = R[3 * i] * Sx[0][j] + R[3 * i + 1] * Sx[1][j] + R[3 * i + 2] * Sx[2][j];
+        }
+    }
+    add_product(&mixed[0][0], 4, -2 * in, (const double(*)[3])RS, (const double(*)[4])L);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            K[14 * (AT_DU + i) + AT_Q + j] += w * mixed[i][j];
+            K[14 * (AT_Q + j) + AT_DU + i] += w * mixed[i][j];
+        }
+    }
+    double Rk[4][4], Rn[4][4], Lt[4][4], t[3], rk[4], pk[4], trs[4], tr[4], grad[4];
+    spari_rotate(s->r, s->T, t);
+    right_matrix(s->s + 3, Rk);
+    right_matrix(s->s, Rn);
+    left_matrix(t, Lt);
+    quat_vec(s->r, s->s + 3, rk);
+    quat_vec(s->p, s->s + 3, pk);
+    double pure[4] = {0, t[0], t[1], t[2]};
+    spari_quat_mul(pure, s->r, tr);
+    quat_vec(tr, s->s, trs);
+    double F = spari_dot(s->s, s->T) + spari_dot(s->s + 3, s->e + 3);
+    for (int i = 0; i < 4; i++) {
+        grad[i] = -2 * trs[i] - 2 * pk[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            double slope = in2 * (2 * Rk[i][j] - 4 * rk[i] * s->r[j]); /* d2/dQ'_i dQ_j */
+            double twice = 0;                                          /* B = -Rn Lt */
+            for (int k = 0; k < 4; k++) {
+                twice -= 2 * Rn[i][k] * Lt[k][j];
+            }
+            twice += -2 * (grad[i] * s->r[j] + s->r[i] * grad[j]) + 8 * F * s->r[i] * s->r[j] - (i == j ? 2 * F : 0);
+            K[14 * (AT_DQ + i) + AT_Q + j] += w * slope;
+            K[14 * (AT_Q + j) + AT_DQ + i] += w * slope;
+            K[14 * (AT_Q + i) + AT_Q + j] += w * in2 * twice;
+        }
+    }
+}
+
+/* out (14 x 14) += w J^T C G */
+static void add_congruence(double w, const double J[6][14], const double *C, const double G[6][14], double *out) {
+    double CG[6][14];
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 14; j++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) {
+                sum += C[6 * i + k] * G[k][j];
+            }
+            CG[i][j] = w * sum;
+        }
+    }
+    for (int i = 0; i < 14; i++) {
+        for (int k = 0; k < 6; k++) {
+            double x = J[k][i];
+            if (x != 0) {
+                for (int j = 0; j < 14; j++) {
+                    out[14 * i + j] += x * CG[k][j];
+                }
+            }
+        }
+    }
+}
+
+static void add_elastic(const spari_body *body, int k, int moving, double w, const point_state *s, point_matrices *m) {
+    double J[6][14];
+    strain_gradient(s, J);
+    add_congruence(w, (const double(*)[14])J, body->C + 36 * (int64_t)k, (const double(*)[14])J, m->K);
+    add_geometric(s, w, m->K);
+    if (body->D) {
+        add_congruence(w, (const double(*)[14])J, body->D + 36 * (int64_t)k, (const double(*)[14])J, m->B);
+        if (moving) {
+            double G[6][14];
+            strain_rate_gradient(s, (const double(*)[14])J, G);
+            add_congruence(w, (const double(*)[14])J, body->D + 36 * (int64_t)k, (const double(*)[14])G, m->K);
+        }
+    }
+}
+
+/* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
+static void add_inertia(const spari_body *body, int k, double factor, double w, const point_state *s, point_matrices *m) {
+    const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *Js = mass + 4;
+    point_inertia n;
+    double L[3][4], Ld[3][4], Ldd[3][4], rdd[4], in = 1 / s->N;
+    point_inertia_forces(body, k, factor, s, &n);
+    for (int i = 0; i < 4; i++) {
+        rdd[i] = s->f[QDD + i] * in;
+    }
+    body_spin(s->r, L);
+    body_spin(s->d, Ld);
+    body_spin(rdd, Ldd);
+    /* W = 2 Im(Q* Qd)/N^2, A = 2 Im(Q* Qdd)/N^2 - 2 (Q.Qd) W/N^2 and their derivatives */
+    double WQ[3][4], AQ[3][4], AQd[3][4];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            WQ[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) * in;
+            AQd[i][j] = -2 * s->omega[i] * s->r[j] * in - 4 * s->b * L[i][j] * in;
+            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n.A0[i] * s->r[j]) * in - 2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in -
+                       2 * s->b * WQ[i][j];
+        }
+    }
+    double J[3][3] = {{Js[0], Js[1], Js[2]}, {Js[1], Js[3], Js[4]}, {Js[2], Js[4], Js[5]}};
+    double cx[3][3], hx[3][3], yx[3][3], mW[3][3] = {{0}}, fW[3][3] = {{0}};
+    skew(mc, cx);
+    skew(n.h, hx);
+    double ym[3] = {n.y[0], n.y[1], n.y[2]};
+    skew(ym, yx);
+    if (body->gyroscopic) {
+        double Wx[3][3], JWx[3][3], Wcx[3][3];
+        skew(s->omega, Wx);
+        skew(n.JW, JWx);
+        skew(n.Wc, Wcx);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                double wj = 0, wc = 0;
+                for (int l = 0; l < 3; l++) {
+                    wj += Wx[i][l] * J[l][j];
+                    wc += Wx[i][l] * cx[l][j];
+                }
+                mW[i][j] = wj - JWx[i][j]; /* d(W x JW)/dW */
+                fW[i][j] = -Wcx[i][j] - wc; /* d(W x (W x c))/dW */
+            }
+        }
+    }
+    double R[9], Rc[3][3], Ry[3][3], RfW[3][3], cRt[3][3], ch[3][3];
+    spari_quat_matrix(s->r, R);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            Rc[i][j] = Ry[i][j] = RfW[i][j] = cRt[i][j] = ch[i][j] = 0;
+            for (int l = 0; l < 3; l++) {
+                Rc[i][j] -= R[3 * i + l] * cx[l][j]; /* R d(A x c)/dA */
+                Ry[i][j] -= R[3 * i + l] * yx[l][j]; /* dR y = R (dtheta x y) */
+                RfW[i][j] += R[3 * i + l] * fW[l][j];
+                cRt[i][j] += cx[i][l] * R[3 * j + l]; /* c x R^T d udd */
+                ch[i][j] += cx[i][l] * hx[l][j];      /* c x (h x dtheta) */
+            }
+        }
+    }
+    /* force rows */
+    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}}, mQdd[3][4] = {{0}};
+    const double(*Lc)[4] = (const double(*)[4])L;
+    add_product(&fQdd[0][0], 4, 2 * in, (const double(*)[3])Rc, Lc);
+    add_product(&fQd[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQd);
+    add_product(&fQ[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQ);
+    add_product(&fQd[0][0], 4, 2 * in, (const double(*)[3])RfW, Lc);
+    add_product(&fQ[0][0], 4, 1, (const double(*)[3])RfW, (const double(*)[4])WQ);
+    add_product(&fQ[0][0], 4, 2 * in, (const double(*)[3])Ry, Lc);
+    /* moment, body axes */
+    add_product(&mQdd[0][0], 4, 2 * in, (const double(*)[3])J, Lc);
+    add_product(&mQd[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQd);
+    add_product(&mQ[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQ);
+    add_product(&mQd[0][0], 4, 2 * in, (const double(*)[3])mW, Lc);
+    add_product(&mQ[0][0], 4, 1, (const double(*)[3])mW, (const double(*)[4])WQ);
+    add_product(&mQ[0][0], 4, 2 * in, (const double(*)[3])ch, Lc);
+    for (int i = 0; i < 3; i++) {
+        m->M[7 * i + i] += w * mass[0];
+        for (int j = 0; j < 4; j++) {
+            m->M[7 * i + 3 + j] += w * fQdd[i][j];
+            m->B[14 * i + AT_Q + j] += w * fQd[i][j];
+            m->K[14 * i + AT_Q + j] += w * fQ[i][j];
+        }
+    }
+    /* g_Q = 2 Q mb / N^2: rows through 2 L^T mb / N, and the change of Q itself */
+    double mU[4][3], Rm[4][4], rm[4];
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 3; j++) {
+            mU[i][j] = 2 * in * (L[0][i] * cRt[0][j] + L[1][i] * cRt[1][j] + L[2][i] * cRt[2][j]);
+            m->M[7 * (3 + i) + j] += w * mU[i][j];
+        }
+    }
+    add_transposed_product(&m->M[7 * 3 + 3], 7, 2 * w * in, Lc, (const double(*)[4])mQdd);
+    add_transposed_product(&m->B[14 * AT_Q + AT_Q], 14, 2 * w * in, Lc, (const double(*)[4])mQd);
+    add_transposed_product(&m->K[14 * AT_Q + AT_Q], 14, 2 * w * in, Lc, (const double(*)[4])mQ);
+    right_matrix(n.mb, Rm);
+    quat_vec(s->r, n.mb, rm);
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            m->K[14 * (AT_Q + i) + AT_Q + j] += w * in * in * (2 * Rm[i][j] - 4 * rm[i] * s->r[j]);
+        }
+    }
+}
+
+/* Nodal maps: dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm Tinv dtheta. */
+static void node_maps(const double *zn, const double *v, const double *a, double cm, double cv, const double *tinv, double E[4][3],
+                      double F[4][3], double H[4][3]) {
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const double *t = tinv ? tinv : identity;
+    double w[4] = {0}, al[4] = {0};
+    for (int i = 0; i < 3; i++) {
+        w[1 + i] = v ? 0.5 * v[3 + i] : 0;
+        al[1 + i] = a ? 0.5 * a[3 + i] : 0;
+    }
+    for (int j = 0; j < 3; j++) {
+        double th[4] = {0, 0, 0, 0}, dw[4] = {0}, da[4] = {0}, q1[4], q2[4], q3[4], q4[4], q5[4], q6[4];
+        th[1 + j] = 0.5;
+        for (int i = 0; i < 3; i++) {
+            dw[1 + i] = 0.5 * cv * t[3 * i + j];
+            da[1 + i] = 0.5 * cm * t[3 * i + j];
+        }
+        spari_quat_mul(th, zn + Q, q1);
+        spari_quat_mul(dw, zn + Q, q2);
+        spari_quat_mul(w, q1, q3);
+        spari_quat_mul(da, zn + Q, q4);
+        spari_quat_mul(al, q1, q5);
+        spari_quat_mul(dw, zn + QD, q6);
+        double qd[4], w_qd[4];
+        for (int i = 0; i < 4; i++) {
+            qd[i] = q2[i] + q3[i];
+        }
+        spari_quat_mul(w, qd, w_qd);
+        for (int i = 0; i < 4; i++) {
+            E[i][j] = q1[i];
+            F[i][j] = qd[i];
+            H[i][j] = q4[i] + q5[i] + q6[i] + w_qd[i];
+        }
+    }
+}
+
+/* S_ij (6 x 6 at row stride `stride`) += E_i^T X E_j for one of K, B, M; X is 7 x 7; the translational factor of column j is `cu`. */
+static void project(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S, int64_t stride) {
+    double XE[7][6];
+    for (int i = 0; i < 7; i++) {
+        for (int j = 0; j < 3; j++) {
+            XE[i][j] = cu * X[7 * i + j];
+            XE[i][3 + j] = X[7 * i + 3] * Ej[0][j] + X[7 * i + 4] * Ej[1][j] + X[7 * i + 5] * Ej[2][j] + X[7 * i + 6] * Ej[3][j];
+        }
+    }
+    for (int j = 0; j < 6; j++) {
+        for (int i = 0; i < 3; i++) {
+            S[stride * i + j] += XE[i][j];
+            S[stride * (3 + i) + j] += Ei[0][i] * XE[3][j] + Ei[1][i] * XE[4][j] + Ei[2][i] * XE[5][j] + Ei[3][i] * XE[6][j];
+        }
+    }
+}
+
+/* The element's nodal 7 x 7 blocks [i][j] of a sum over points: phi_i phi_j A00 + phi_i phi'_j A01 + phi'_i phi_j A10 + phi'_i phi'_j A11,
+   in two stages: over j at each point, then over points by one matrix product. */
+static void first_stage(int P, const double *phi, const double *dphi, const double *A, int slopes, double *x0, double *x1) {
+    for (int j = 0; j < P; j++) {
+        double f = phi[j], d = slopes ? dphi[j] : 0;
+        for (int i = 0; i < 7; i++) {
+            for (int c = 0; c < 7; c++) {
+                x0[49 * j + 7 * i + c] = f * A[14 * i + c] + d * A[14 * i + 7 + c];
+                if (slopes) {
+                    x1[49 * j + 7 * i + c] = f * A[14 * (7 + i) + c] + d * A[14 * (7 + i) + 7 + c];
+                }
+            }
+        }
+    }
+}
+
+static void linear_tangent(const spari_body *body, int e, double cm, double cv, double *S);
+
+void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor, double cm,
+                        double cv, const double *tinv, double *S) {
+    if (body->linear[0]) {
+        linear_tangent(body, e, cm, cv, S);
+        return;
+    }
+    int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first, moving = v != NULL;
+    int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
+    int rates = (cv != 0 || v) && (body->D || body->mass), masses = (cm != 0 || a) && body->mass;
+    double *z = body->scratch, *K7 = z + (int64_t)P * FIELDS, *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
+    double *XK = g + pp, *XB = XK + 2 * n * row, *table = XB + 2 * n * row;
+    gather(body, e, q, v, a, z);
+    memset(g, 0, (size_t)P * 4 * sizeof *g);
+    double *XM = XB + n * row; /* B has no slopes unless damped: its second half is then free for M */
+    memset(M7, 0, (size_t)pp * sizeof *M7);
+    int damped = body->D != NULL;
+    for (int k = 0; k < n; k++) {
+        int at = first + k;
+        point_state s;
+        point_matrices m;
+        memset(&m, 0, sizeof m);
+        double w = body->weight[at];
+        const double *phi = body->phi + (int64_t)at * P, *dphi = body->dphi + (int64_t)at * P;
+        point_fields(body, at, z, moving, &s);
+        double value[4] = {0}, slope[4] = {0};
+        if (body->C) {
+            double x[3], n4[4], k4[4], pk[4];
+            point_strain(body, at, moving, &s);
+            add_elastic(body, at, moving, w, &s, &m);
+            spari_cross(s.s, s.T, x);
+            quat_vec(s.r, x, n4);
+            quat_vec(s.r, s.s + 3, k4);
+            quat_vec(s.p, s.s + 3, pk);
+            double dots = spari_dot(s.e + 3, s.s + 3);
+            for (int i = 0; i < 4; i++) {
+                slope[i] = 2 * k4[i] / s.N;
+                value[i] = (2 * n4[i] - 2 * pk[i] - 2 * dots * s.r[i]) / s.N;
+            }
+        }
+        if (body->mass) {
+            point_inertia in;
+            double m4[4];
+            add_inertia(body, at, factor, w, &s, &m);
+            point_inertia_forces(body, at, factor, &s, &in);
+            quat_vec(s.r, in.mb, m4);
+            for (int i = 0; i < 4; i++) {
+                value[i] += 2 * m4[i] / s.N;
+            }
+        }
+        for (int l = 0; l < P; l++) {
+            for (int i = 0; i < 4; i++) {
+                g[4 * l + i] += w * (phi[l] * value[i] + dphi[l] * slope[i]);
+            }
+            table[2 * n * l + k] = phi[l];
+            table[2 * n * l + n + k] = dphi[l];
+        }
+        first_stage(P, phi, dphi, m.K, 1, XK + k * row, XK + (n + k) * row);
+        if (rates) {
+            first_stage(P, phi, dphi, m.B, damped, XB + k * row, XB + (n + k) * row);
+        }
+        if (masses && !damped) {
+            double M14[14 * 7];
+            for (int i = 0; i < 7; i++) {
+                memcpy(M14 + 14 * i, m.M + 7 * i, 7 * sizeof *M14);
+            }
+            first_stage(P, phi, dphi, M14, 0, XM + k * row, NULL);
+        } else if (masses) {
+            for (int i = 0; i < P; i++) {
+                for (int j = 0; j < P; j++) {
+                    double f = phi[i] * phi[j], *to = M7 + ((int64_t)i * P + j) * 49;
+                    for (int c = 0; c < 49; c++) {
+                        to[c] += f * m.M[c];
+                    }
+                }
+            }
+        }
+    }
+    int cols = (int)row;
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, 2 * n, 1, table, 2 * n, XK, cols, 0, K7, cols);
+    if (rates) {
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n, XB, cols, 0, B7, cols);
+    }
+    if (masses && !damped) {
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, n, 1, table, 2 * n, XM, cols, 0, M7, cols);
+    }
+    int64_t stride = 6 * P;
+    memset(S, 0, (size_t)(stride * stride) * sizeof *S);
+    double E[SPARI_MAX_NODES][4][3], F[SPARI_MAX_NODES][4][3], H[SPARI_MAX_NODES][4][3];
+    for (int l = 0; l < P; l++) {
+        int64_t node = (int64_t)e * (P - 1) + l;
+        node_maps(z + FIELDS * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv, tinv ? tinv + 9 * node : NULL, E[l], F[l],
+                  H[l]);
+    }
+    for (int i = 0; i < P; i++) {
+        for (int j = 0; j < P; j++) {
+            double *Sij = S + stride * 6 * i + 6 * j;
+            int64_t at = ((int64_t)i * P + j) * 49;
+            project(K7 + at, (const double(*)[3])E[i], (const double(*)[3])E[j], 1, Sij, stride);
+            if (rates) {
+                project(B7 + at, (const double(*)[3])E[i], (const double(*)[3])F[j], cv, Sij, stride);
+            }
+            if (masses) {
+                project(M7 + at, (const double(*)[3])E[i], (const double(*)[3])H[j], cm, Sij, stride);
+            }
+        }
+        /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
+        double c[4], p[4], wx[3][3];
+        spari_quat_conj(z + FIELDS * i + Q, c);
+        spari_quat_mul(g + 4 * i, c, p);
+        skew(p + 1, wx);
+        for (int r = 0; r < 3; r++) {
+            for (int col = 0; col < 3; col++) {
+                S[stride * (6 * i + 3 + r) + 6 * i + 3 + col] -= 0.25 * ((r == col ? p[0] : 0) + wx[r][col]);
+            }
+        }
+    }
+}
+
+/* ---- energy ---- */
+
+void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
+    int moving = v != NULL;
+    double *z = body->scratch;
+    memset(energy, 0, 4 * sizeof *energy);
+    for (int e = 0; e < body->elements; e++) {
+        gather(body, e, q, v, NULL, z);
+        for (int k = body->first[e]; k < body->first[e + 1]; k++) {
+            point_state s;
+            double w = body->weight[k];
+            point_fields(body, k, z, moving, &s);
+            if (body->C) {
+                double n[6];
+                point_strain(body, k, moving, &s);
+                matrix6_times(body->C + 36 * (int64_t)k, s.e, n);
+                for (int i = 0; i < 6; i++) {
+                    energy[1] += 0.5 * w * n[i] * s.e[i];
+                    energy[3] += body->D && moving ? w * s.ed[i] * (s.s[i] - n[i]) : 0;
+                }
+            }
+            if (body->mass) {
+                const double *mass = body->mass + 10 * (int64_t)k;
+                double vb[3], JW[3], x[3], offset[3];
+                spari_rotate_back(s.r, s.f + UD, vb);
+                symmetric_times(mass + 4, s.omega, JW);
+                spari_cross(s.omega, mass + 1, x);
+                spari_rotate(s.r, mass + 1, offset);
+                energy[0] += w * (0.5 * mass[0] * spari_dot(vb, vb) + spari_dot(vb, x) + 0.5 * spari_dot(JW, s.omega));
+                for (int i = 0; i < 3; i++) {
+                    energy[2] -= w * body->gravity[i] * (mass[0] * s.f[U + i] + offset[i] - mass[1 + i]);
+                }
+            }
+        }
+    }
+}
+
+/* ---- linear members ---- */
+
+int spari_body_linearise(spari_body *body) {
+    int P = body->per_element;
+    int64_t size = (int64_t)36 * P * P;
+    double *q = spari_zalloc((int64_t)body->unique * 7, sizeof *q), *mk = spari_zalloc(size, sizeof *mk);
+    double *matrices[3] = {0}, *weights = spari_zalloc((int64_t)body->unique * 6, sizeof *weights);
+    int ok = q && mk && weights;
+    for (int k = 0; k < 3 && ok; k++) {
+        ok = (matrices[k] = spari_zalloc(size * body->elements, sizeof *matrices[k])) != NULL;
+    }
+    if (!ok) {
+        free(q), free(mk), free(weights);
+        free(matrices[0]), free(matrices[1]), free(matrices[2]);
+        return 1;
+    }
+    for (int i = 0; i < body->unique; i++) {
+        q[7 * i + 3] = 1;
+    }
+    spari_body_residual(body, q, NULL, NULL, 1, weights);
+    for (int e = 0; e < body->elements; e++) {
+        double *K = matrices[0] + size * e, *B = matrices[1] + size * e, *M = matrices[2] + size * e;
+        /* at rest and unloaded the tangent is K + cv B + cm M: three calls tell them apart; gravity stays out of K (first order) */
+        spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 0, NULL, K);
+        spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 1, NULL, B);
+        spari_body_tangent(body, e, q, NULL, NULL, 0, 1, 0, NULL, M);
+        for (int64_t i = 0; i < size; i++) {
+            B[i] -= K[i];
+            M[i] -= K[i];
+        }
+    }
+    free(q), free(mk);
+    memcpy(body->linear, matrices, sizeof matrices);
+    body->weights = weights;
+    return 0;
+}
+
+static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r) {
+    int P = body->per_element, n = 6 * P;
+    double *x = body->scratch, scale = 0;
+    for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
+        r[i] = factor * body->weights[i];
+    }
+    for (int e = 0; e < body->elements; e++) {
+        int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
+        for (int l = 0; l < P; l++) {
+            const double *qn = q + 7 * (first + l);
+            memcpy(x + 6 * l, qn, 3 * sizeof *x);
+            spari_quat_log(qn + 3, x + 6 * l + 3);
+        }
+        const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
+        for (int k = 0; k < 3; k++) {
+            if (in[k] && (k == 0 || (k == 1 ? body->D != NULL : body->mass != NULL))) {
+                cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first, 1);
+            }
+        }
+    }
+    for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
+        scale = fabs(r[i]) > scale ? fabs(r[i]) : scale;
+    }
+    return scale;
+}
+
+static void linear_tangent(const spari_body *body, int e, double cm, double cv, double *S) {
+    int64_t size = (int64_t)36 * body->per_element * body->per_element, at = size * e;
+    for (int64_t i = 0; i < size; i++) {
+        S[i] = body->linear[0][at + i] + cv * body->linear[1][at + i] + cm * body->linear[2][at + i];
+    }
+}
