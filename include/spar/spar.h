@@ -98,6 +98,7 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance); /* SPAR_PROJECT_BOUNDED (default), SPAR_PROJECT_RPOLY; <= 0: no limit */
 SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind); /* SPAR_INTERPOLATE_NODAL (spec), SPAR_INTERPOLATE_CONSISTENT */
 SPAR_API int spar_fluid_map(spar_fluid *fluid); /* local */
+SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n); /* local; how many nodes of SPAR_NODES_MOTION / _FORCE this fluid has on this rank */
 SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags); /* SPAR_NODES_MOTION / _FORCE; SPAR_MAP_END, _AMBIGUOUS, _FAR */
 SPAR_API int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con); /* reference foot [n][3], its orientation [n][4], foot-to-node vector [n][3] (the
      spec's motion-con; force-con is its negative); any NULL */

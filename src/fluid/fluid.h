@@ -16,5 +16,7 @@ void spari_fluid_reject(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
 spar_fluid *spari_fluid_next(const spar_fluid *fluid);   /* the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);
+spar_session *spari_fluid_session(const spar_fluid *fluid); /* for the messages of what is built on a fluid */
+const char *spari_fluid_name(const spar_fluid *fluid);
 
 #endif
