@@ -8,13 +8,14 @@
 
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
-/* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids that keep
-   node forces (SPAR_EFFECT_FLUID_HISTORY) have work to do. ratio = dt^{n+1}/dt^n; order 0, 1 or 2 as in force at this step. */
+/* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids
+   that keep node forces (SPAR_EFFECT_FLUID_HISTORY) have work to do. ratio = dt^{n+1}/dt^n; order 0, 1 or 2 as in force
+   at this step. */
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]);
 void spari_fluid_accept(spar_fluid *fluid);
 void spari_fluid_reject(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
-spar_fluid *spari_fluid_next(const spar_fluid *fluid);   /* the session's list */
+spar_fluid *spari_fluid_next(const spar_fluid *fluid); /* the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);
 spar_session *spari_fluid_session(const spar_fluid *fluid); /* for the messages of what is built on a fluid */
 const char *spari_fluid_name(const spar_fluid *fluid);

@@ -30,6 +30,8 @@ struct spar_session {
     double relaxation;
     int accept_unconverged; /* option coupling.unconverged = accept */
     int theta_on_group;     /* option fluid.theta = average (default) | group */
+    int far_refuse;         /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
+    int audit_off;          /* option fluid.audit = on (default) | off */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
     int64_t step;

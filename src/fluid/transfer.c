@@ -1,0 +1,308 @@
+#include "transfer.h"
+
+#include "../math/rotation.h"
+#include "../session/status.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(__GNUC__)
+#define SPARI_ALWAYS_INLINE __attribute__((always_inline))
+#define SPARI_UNROLL _Pragma("GCC unroll 8")
+#else
+#define SPARI_ALWAYS_INLINE
+#define SPARI_UNROLL
+#endif
+
+static const double spari_huge[SPARI_LANES_MAX] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL,
+                                                   HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const double spari_zeros[SPARI_LANES_MAX] = {0};
+
+/* s[0] + s[1] += x, the rounding error kept (Knuth's two-sum): the sum over tiles loses nothing that matters. */
+static inline void spari_add(double *s, double x) {
+    double a = s[0], t = a + x, b = t - a;
+    s[0] = t;
+    s[1] += (a - (t - b)) + (x - b);
+}
+
+#define W 1
+#define NAME(x) x##_1
+#define TARGET
+#include "kernel.h"
+#undef W
+#undef NAME
+#undef TARGET
+
+/* ---- node sets ---- */
+
+spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element) {
+    spari_nodes *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    s->n = n, s->elements = elements, s->per_element = per_element;
+    s->xi = spari_zalloc(n, sizeof *s->xi);
+    s->flags = spari_zalloc(n, sizeof *s->flags);
+    for (int i = 0; i < 3; i++) {
+        s->con[i] = spari_zalloc(n, sizeof *s->con[i]);
+    }
+    int whole = s->xi && s->flags && s->con[0] && s->con[1] && s->con[2];
+    if (elements > 1) {
+        s->element = spari_zalloc(n, sizeof *s->element);
+        s->place = spari_zalloc(n, sizeof *s->place);
+        whole = whole && s->element && s->place;
+    }
+    if (!whole) {
+        spari_nodes_free(s);
+        return NULL;
+    }
+    return s;
+}
+
+void spari_nodes_free(spari_nodes *s) {
+    if (!s) {
+        return;
+    }
+    free(s->xi);
+    free(s->flags);
+    for (int i = 0; i < 3; i++) {
+        free(s->con[i]);
+    }
+    free(s->element);
+    free(s->place);
+    free(s);
+}
+
+/* The tile's nodes by element, in their own order within an element. */
+static void order_tile(const int *element, int count, uint16_t *place) {
+    for (int i = 0; i < count; i++) {
+        int j = i;
+        for (; j > 0 && element[place[j - 1]] > element[i]; j--) {
+            place[j] = place[j - 1];
+        }
+        place[j] = (uint16_t)i;
+    }
+}
+
+void spari_nodes_put(spari_nodes *s, const int *element, const double *xi, const double *con, const uint8_t *flags) {
+    for (int64_t first = 0; s->place && first < s->n; first += SPARI_TILE) {
+        int64_t left = s->n - first;
+        order_tile(element + first, left < SPARI_TILE ? (int)left : SPARI_TILE, s->place + first);
+    }
+    for (int64_t p = 0; p < s->n; p++) {
+        int64_t node = spari_nodes_node(s, p);
+        s->xi[p] = xi[node];
+        for (int i = 0; i < 3; i++) {
+            s->con[i][p] = con[3 * node + i];
+        }
+        if (s->element) {
+            s->element[p] = element[node];
+        }
+        s->flags[node] = flags[node];
+    }
+}
+
+/* ---- nodal fields ---- */
+
+void spari_modal_matrix(int n, double *m) {
+    double x[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
+    const double pi = 3.14159265358979323846;
+    spari_gll(n, x, NULL, bary);
+    memset(m, 0, sizeof *m * (size_t)(n * n));
+    for (int j = 0; j < n; j++) { /* discrete orthogonality at the n Chebyshev points: exact for degree < n */
+        double angle = pi * (j + 0.5) / n;
+        spari_lagrange(n, x, bary, cos(angle), phi, NULL);
+        for (int k = 0; k < n; k++) {
+            double t = (k ? 2.0 : 1.0) / n * cos(k * angle);
+            for (int l = 0; l < n; l++) {
+                m[k * n + l] += t * phi[l];
+            }
+        }
+    }
+}
+
+static int is_negative(const double q[4]) {
+    for (int i = 0; i < 4; i++) {
+        if (q[i] != 0) {
+            return q[i] < 0;
+        }
+    }
+    return 0;
+}
+
+void spari_chain(int n, const double *q, int stride, double *out) {
+    for (int l = 0; l < n; l++) {
+        const double *from = q + (ptrdiff_t)l * stride;
+        double *to = out + (ptrdiff_t)4 * l, s = 1;
+        if (l == 0 ? is_negative(from) : spari_quat_dot(from, to - 4) < 0) {
+            s = -1;
+        }
+        for (int i = 0; i < 4; i++) {
+            to[i] = s * from[i];
+        }
+    }
+}
+
+/* Fields of one node: what is interpolated. */
+static void node_fields(const double *xr, const double *q, const double *v, const double *a, const double chained[4],
+                        int consistent, int upto, double g[SPARI_FIELDS]) {
+    memset(g, 0, sizeof *g * SPARI_FIELDS);
+    for (int i = 0; i < 3; i++) {
+        g[SPARI_F_PLACE + i] = xr[i] + q[i];
+    }
+    memcpy(g + SPARI_F_QUAT, chained, 4 * sizeof *g);
+    if (upto < SPARI_UPTO_RATE) {
+        return;
+    }
+    memcpy(g + SPARI_F_RATE, v, 3 * sizeof *g);
+    double spin[4] = {0, v[3], v[4], v[5]};
+    if (consistent) {
+        spari_quat_mul(spin, chained, g + SPARI_F_SPIN);
+    } else {
+        memcpy(g + SPARI_F_SPIN, v + 3, 3 * sizeof *g);
+    }
+    if (upto < SPARI_UPTO_ACCEL) {
+        return;
+    }
+    memcpy(g + SPARI_F_ACCEL, a, 3 * sizeof *g);
+    if (consistent) { /* 2 q'' = alpha q - |omega|^2 q / 2 */
+        double twist[4] = {-0.5 * spari_dot(v + 3, v + 3), a[3], a[4], a[5]};
+        spari_quat_mul(twist, chained, g + SPARI_F_TWIST);
+    } else {
+        memcpy(g + SPARI_F_TWIST, a + 3, 3 * sizeof *g);
+    }
+}
+
+void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
+                      const double *q, const double *v, const double *a, double *c) {
+    static const int width[] = {SPARI_F_RATE, SPARI_F_ACCEL, SPARI_FIELDS};
+    double chained[4 * SPARI_MAX_NODES], g[SPARI_FIELDS];
+    ptrdiff_t block = (ptrdiff_t)per_element * SPARI_FIELDS;
+    for (int e = 0; e < elements; e++) {
+        ptrdiff_t node = (ptrdiff_t)e * per_element;
+        double *to = c + e * block;
+        memset(to, 0, sizeof *to * (size_t)block);
+        spari_chain(per_element, q + 7 * node + 3, 7, chained);
+        for (int l = 0; l < per_element; l++, node++) {
+            node_fields(xr + 3 * node, q + 7 * node, v + 6 * node, a + 6 * node, chained + 4 * l, consistent, upto, g);
+            for (int k = 0; k < per_element; k++) {
+                double m = modal[k * per_element + l];
+                for (int f = 0; f < width[upto]; f++) {
+                    to[k * SPARI_FIELDS + f] += m * g[f];
+                }
+            }
+        }
+    }
+}
+
+/* ---- tiles ---- */
+
+static int tile_count(const spari_nodes *s, int64_t first) {
+    int64_t left = s->n - first;
+    return left < SPARI_TILE ? (int)left : SPARI_TILE;
+}
+
+/* Length of the run of one element that begins at storage place p, within count. */
+static int run_length(const spari_nodes *s, int64_t p, int count) {
+    if (!s->element) {
+        return count;
+    }
+    int i = 1;
+    while (i < count && s->element[p + i] == s->element[p]) {
+        i++;
+    }
+    return i;
+}
+
+double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, int consistent, int upto,
+                         double (*buf)[SPARI_ROW]) {
+    double least = HUGE_VAL;
+    int count = tile_count(s, first);
+    ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
+    for (int at = 0; at < count;) {
+        int run = run_length(s, first + at, count - at);
+        double d = tile_motion_1(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, upto,
+                                 buf, at);
+        least = d < least ? d : least;
+        at += run;
+    }
+    return least;
+}
+
+static void fetch_rows(const spari_nodes *s, int64_t first, int count, const double *x, double (*f)[SPARI_ROW]) {
+    for (int i = 0; i < count; i++) {
+        const double *from = x + 3 * (s->place ? first + s->place[first + i] : first + i);
+        f[0][i] = from[0], f[1][i] = from[1], f[2][i] = from[2];
+    }
+}
+
+/* Modal sums back to the nodes: f_l = sum_k m[k][l] F_k. */
+static void spread(int elements, int per_element, const double *modal, int consistent, const double *q,
+                   const double *work, double *load) {
+    double chained[4 * SPARI_MAX_NODES], back[4], g[7], m[4];
+    for (int e = 0; e < elements; e++) {
+        ptrdiff_t node = (ptrdiff_t)e * per_element;
+        const double *sums = work + node * 14;
+        if (consistent) {
+            spari_chain(per_element, q + 7 * node + 3, 7, chained);
+        }
+        for (int l = 0; l < per_element; l++) {
+            double *to = load + 6 * (node + l);
+            memset(g, 0, sizeof g);
+            for (int k = 0; k < per_element; k++) {
+                for (int f = 0; f < 7; f++) {
+                    g[f] += modal[k * per_element + l] * (sums[(k * 7 + f) * 2] + sums[(k * 7 + f) * 2 + 1]);
+                }
+            }
+            memcpy(to, g, 3 * sizeof *to);
+            if (consistent) {
+                spari_quat_conj(chained + 4 * l, back);
+                spari_quat_mul(g + 3, back, m);
+                memcpy(to + 3, m + 1, 3 * sizeof *to);
+            } else {
+                memcpy(to + 3, g + 3, 3 * sizeof *to);
+            }
+        }
+    }
+}
+
+static void finish_audit(const double sums[18], const double tops[3], spari_audit *audit) {
+    for (int i = 0; i < 3; i++) {
+        audit->force[i] = sums[2 * i] + sums[2 * i + 1];
+        audit->moment[i] = sums[2 * (i + 3)] + sums[2 * (i + 3) + 1];
+    }
+    audit->power = sums[12] + sums[13];
+    audit->force_sum = -(sums[14] + sums[15]);
+    audit->moment_sum = -(sums[16] + sums[17]);
+    audit->x_max = sqrt(-tops[0]), audit->v_max = sqrt(-tops[1]), audit->omega_max = sqrt(-tops[2]);
+}
+
+double spari_gather_loads(const spari_nodes *s, const double *modal, const double *c, int consistent, const double *q,
+                          const double *force, const double *moment, double *work, double *load, spari_audit *audit) {
+    double f[6][SPARI_ROW], sums[18] = {0}, tops[3] = {0}, least = HUGE_VAL;
+    ptrdiff_t nodes = (ptrdiff_t)s->elements * s->per_element;
+    memset(work, 0, sizeof *work * (size_t)nodes * 14);
+    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
+        int count = tile_count(s, first);
+        fetch_rows(s, first, count, force, f);
+        if (moment) {
+            fetch_rows(s, first, count, moment, f + 3);
+        }
+        for (int i = count; i < count + SPARI_LANES_MAX && i < SPARI_ROW; i++) {
+            f[0][i] = f[1][i] = f[2][i] = 0;
+        }
+        for (int at = 0; at < count;) {
+            int run = run_length(s, first + at, count - at);
+            ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
+            double d = tile_loads_1(s, first + at, run, c + node * SPARI_FIELDS, consistent, moment != NULL, f, at,
+                                    audit != NULL, work + node * 14, sums, tops);
+            least = d < least ? d : least;
+            at += run;
+        }
+    }
+    spread(s->elements, s->per_element, modal, consistent, q, work, load);
+    if (audit) {
+        finish_audit(sums, tops, audit);
+    }
+    return least;
+}

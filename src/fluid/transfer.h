@@ -1,0 +1,94 @@
+/* Fluid nodes tied to a line, and the kernels that move them and gather their loads. Knows no session and no member: it
+   works on nodal arrays of `elements` elements with `per_element` GLL nodes each.
+
+   Nodal fields are turned once per call into Chebyshev coefficients per element (spari_field_fill), so that a node
+   stores its coordinate and its arm and nothing else; the sum over T_k is as well conditioned as the Lagrange sum, for
+   any number of nodes (monomials are not). Loads go the other way through the transposed sums. */
+#ifndef SPARI_TRANSFER_H
+#define SPARI_TRANSFER_H
+
+#include "../math/basis.h"
+#include <stddef.h>
+#include <stdint.h>
+
+/* Nodes are handled in tiles whose buffers stay in the first-level cache; inside a tile they are stored element by
+ * element. */
+enum { SPARI_TILE = 256, SPARI_LANES_MAX = 8, SPARI_ROW = SPARI_TILE + SPARI_LANES_MAX };
+
+typedef struct spari_nodes {
+    int64_t n;
+    int elements, per_element;
+    double *xi;      /* [n] coordinate within the element, in storage order */
+    double *con[3];  /* [n] each: from the reference foot to the node, global axes */
+    int *element;    /* [n]; NULL when there is only one */
+    uint16_t *place; /* [n] storage place -> node within its tile; NULL: as they come */
+    uint8_t *flags;  /* [n] SPAR_MAP_*, by node */
+} spari_nodes;
+
+/* Coefficients of the nodal fields of one state, [element][mode][SPARI_FIELDS]. */
+enum {
+    SPARI_F_PLACE = 0,  /* reference place + displacement */
+    SPARI_F_QUAT = 3,   /* relative rotation, signs chained along the element */
+    SPARI_F_RATE = 7,   /* velocity */
+    SPARI_F_SPIN = 10,  /* nodal: omega (3); consistent: omega q (4) */
+    SPARI_F_ACCEL = 14, /* acceleration */
+    SPARI_F_TWIST = 17, /* nodal: alpha (3); consistent: alpha q - |omega|^2 q / 2 (4) */
+    SPARI_FIELDS = 21
+};
+enum { SPARI_UPTO_PLACE, SPARI_UPTO_RATE, SPARI_UPTO_ACCEL };
+
+/* What a kernel gives for a tile: rows of SPARI_ROW doubles. */
+enum {
+    SPARI_R_PLACE = 0,
+    SPARI_R_RATE = 3,
+    SPARI_R_QUAT = 6, /* not normalised */
+    SPARI_R_OMEGA = 10,
+    SPARI_R_ACCEL = 13,
+    SPARI_R_ALPHA = 16,
+    SPARI_ROWS = 19
+};
+
+/* Sums the loads leave behind for the audit: fluid-side totals. */
+typedef struct spari_audit {
+    double force[3], moment[3], power; /* moment about the origin, in the current configuration */
+    double force_sum, moment_sum;      /* sums of |fx| + |fy| + |fz|, of the moments handed in likewise */
+    double x_max, v_max, omega_max;    /* largest |x|, |v|, |omega| of the nodes */
+} spari_audit;
+
+/* Memory for n nodes; the caller fills by spari_nodes_put. NULL: no memory. */
+spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element);
+void spari_nodes_free(spari_nodes *nodes);
+/* Stores the feet: element [n] and local xi [n] and con [n][3] by node. */
+void spari_nodes_put(spari_nodes *nodes, const int *element, const double *xi, const double *con, const uint8_t *flags);
+/* The node at a storage place, and its element. */
+static inline int64_t spari_nodes_node(const spari_nodes *s, int64_t p) {
+    return s->place ? p - p % SPARI_TILE + s->place[p] : p;
+}
+static inline int spari_nodes_element(const spari_nodes *s, int64_t p) {
+    return s->element ? s->element[p] : 0;
+}
+
+/* c_k = sum_l m[k][l] f_l: nodal values at the GLL points to Chebyshev coefficients. */
+void spari_modal_matrix(int n, double *m);
+
+/* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
+   not depend on the signs that came in: the first node's leading component is made positive, each other follows its
+   predecessor. */
+void spari_chain(int n, const double *q, int stride, double *out);
+
+/* Fills c [elements][P][SPARI_FIELDS] from reference places xr [nodes][3], motion q [nodes][7], v, a [nodes][6]. */
+void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
+                      const double *q, const double *v, const double *a, double *c);
+
+/* One tile, beginning at node `first`: rows of buf filled as far as `upto`. Returns the least |Q|^2 met (0: no rotation
+   can be interpolated there). Rows are in storage order. */
+double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *c, int consistent, int upto,
+                         double (*buf)[SPARI_ROW]);
+
+/* Loads: force, moment (NULL: none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
+   quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */
+double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,
+                          const double *q, const double *force, const double *moment, double *work, double *load,
+                          spari_audit *audit);
+
+#endif
