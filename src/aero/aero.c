@@ -1,0 +1,413 @@
+/* The blade-element fluid: public calls. Everything between the session and the sections goes through spar.h. */
+#include "../fluid/fluid.h"
+#include "../math/rotation.h"
+#include "element.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct spar_aero {
+    spar_session *session; /* for messages; NULL without blades */
+    int blades;            /* on this rank */
+    int64_t n;             /* sections per blade */
+    spar_fluid **fluid;
+    spari_rotor rotor;
+    int rotor_given, effects_given, solved;
+    spari_section *section;  /* [n] */
+    gsl_interp_accel *accel; /* [blades][n] */
+    gsl_root_fsolver *solver;
+    double *place;       /* reference places [blades][n][3] */
+    double *length;      /* [blades][n - 1] */
+    double *loss_radius; /* [blades][n] */
+    double *x, *v, *q, *omega;
+    spari_element *element; /* [blades][n] */
+    double *force, *moment;
+    double thrust, torque, speed;
+};
+
+/* What a solve without momentum theory of its own asking has. */
+enum { SPARI_AERO_ALL = 2 * SPAR_AERO_MOMENT - 1 };
+static const int momentum_effects = SPAR_AERO_INDUCTION | SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS | SPAR_AERO_SWIRL;
+
+static int64_t count(const spar_aero *aero) {
+    return aero->blades * aero->n;
+}
+
+/* ---- life ---- */
+
+static void aero_free(spar_aero *aero) {
+    for (int64_t i = 0; aero->section && i < aero->n; i++) {
+        spari_table_release(aero->section[i].table);
+    }
+    if (aero->solver) {
+        gsl_root_fsolver_free(aero->solver);
+    }
+    void *all[] = {aero->fluid, aero->section, aero->accel, aero->place,   aero->length, aero->loss_radius, aero->x,
+                   aero->v,     aero->q,       aero->omega, aero->element, aero->force,  aero->moment};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        free(all[i]);
+    }
+    free(aero);
+}
+
+void spar_aero_destroy(spar_aero **aero) {
+    if (aero && *aero) {
+        aero_free(*aero);
+        *aero = NULL;
+    }
+}
+
+static int allocate(spar_aero *aero) {
+    int64_t all = count(aero);
+    aero->fluid = spari_zalloc(aero->blades, sizeof(spar_fluid *));
+    aero->section = spari_zalloc(aero->n, sizeof *aero->section);
+    aero->accel = spari_zalloc(all, sizeof *aero->accel);
+    aero->element = spari_zalloc(all, sizeof *aero->element);
+    aero->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+    double **array[] = {&aero->place, &aero->length, &aero->loss_radius, &aero->x,     &aero->v,
+                        &aero->q,     &aero->omega,  &aero->force,       &aero->moment};
+    static const int width[] = {3, 1, 1, 3, 3, 4, 3, 3, 3};
+    int whole = aero->fluid && aero->section && aero->accel && aero->element && aero->solver;
+    for (size_t i = 0; i < sizeof array / sizeof array[0]; i++) {
+        *array[i] = spari_zalloc(width[i] * all, sizeof(double));
+        whole = whole && *array[i];
+    }
+    return whole ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* All fluids there, of one session, made of n >= 2 sections each. */
+static int check_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
+    for (int b = 0; b < blades; b++) {
+        SPARI_REQUIRE(b > 0 ? spari_fluid_session(fluid[0]) : NULL, fluid[b], SPAR_ERR_ARGUMENT,
+                      "spar_aero_create: the fluid of blade %d is NULL", b);
+        spar_session *session = spari_fluid_session(fluid[b]);
+        int64_t nodes, forces;
+        SPARI_REQUIRE(session, session == spari_fluid_session(fluid[0]), SPAR_ERR_ARGUMENT,
+                      "spar_aero_create: fluid '%s' of blade %d is of another session than blade 0",
+                      spari_fluid_name(fluid[b]), b);
+        SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_MOTION, &nodes));
+        SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_FORCE, &forces));
+        SPARI_REQUIRE(
+            session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
+            "spar_aero_create: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 "
+            "sections with spar_fluid_set_sections",
+            spari_fluid_name(fluid[b]), b, (long long)nodes, (long long)forces);
+        *n = b == 0 ? nodes : *n;
+        SPARI_REQUIRE(session, nodes == *n, SPAR_ERR_ARGUMENT,
+                      "spar_aero_create: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; blades are alike",
+                      spari_fluid_name(fluid[b]), b, (long long)nodes, (long long)*n);
+    }
+    return SPAR_OK;
+}
+
+/* Reference places of the aerodynamic centres and the lengths between them. */
+static int measure(spar_aero *aero) {
+    for (int b = 0; b < aero->blades; b++) {
+        double *x = aero->place + 3 * b * aero->n;
+        SPARI_TRY(spar_fluid_get_feet(aero->fluid[b], SPAR_NODES_MOTION, x, NULL, aero->x));
+        for (int64_t i = 0; i < 3 * aero->n; i++) {
+            x[i] += aero->x[i];
+        }
+        for (int64_t i = 0; i + 1 < aero->n; i++) {
+            const double *a = x + 3 * i, *c = a + 3;
+            double d[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]}, length = spari_norm(d);
+            SPARI_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
+                          "spar_aero_create: fluid '%s': sections %lld and %lld lie in one place",
+                          spari_fluid_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
+            aero->length[b * aero->n + i] = length;
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) {
+    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "spar_aero_create: the place for the handle is NULL");
+    SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
+                  "spar_aero_create: %d blades%s; give one fluid per blade", blades, sections ? "" : " without fluids");
+    int64_t n = 0;
+    SPARI_TRY(check_fluids(blades, sections, &n));
+    spar_session *session = blades > 0 ? spari_fluid_session(sections[0]) : NULL;
+    spar_aero *made = spari_zalloc(1, sizeof *made);
+    SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "spar_aero_create: no memory");
+    spari_quiet_gsl();
+    made->session = session;
+    made->blades = blades;
+    made->n = n;
+    made->rotor = (spari_rotor){.turn = 1, .blades = blades, .effects = SPAR_AERO_DRAG};
+    int status = allocate(made);
+    if (status != SPAR_OK) {
+        spari_fail(session, status, "spar_aero_create: no memory for %d blades of %lld sections", blades, (long long)n);
+    } else {
+        memcpy(made->fluid, sections, (size_t)blades * sizeof *sections);
+        status = measure(made);
+    }
+    if (status != SPAR_OK) {
+        aero_free(made);
+        return status;
+    }
+    *aero = made;
+    return SPAR_OK;
+}
+
+/* ---- description ---- */
+
+#define REQUIRE_HANDLE(aero)                                                                                           \
+    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",       \
+                  __func__)
+
+/* Effects the description implies, unless they were given. */
+static void imply_effects(spar_aero *aero) {
+    if (aero->effects_given) {
+        return;
+    }
+    aero->rotor.effects = SPAR_AERO_DRAG | (aero->rotor_given ? momentum_effects : 0);
+    for (int64_t i = 0; i < aero->n; i++) {
+        if (aero->section[i].table && spari_table_has_moment(aero->section[i].table)) {
+            aero->rotor.effects |= SPAR_AERO_MOMENT;
+        }
+    }
+}
+
+int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar) {
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_section: no section %lld; there are %lld, counted from 0", (long long)i,
+                  (long long)aero->n);
+    SPARI_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_section: section %lld: chord %g; give a length >= 0", (long long)i, chord);
+    SPARI_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_section: section %lld: the twist is not finite", (long long)i);
+    SPARI_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "spar_aero_set_section: section %lld: the polar is NULL",
+                  (long long)i);
+    if (aero->blades == 0) {
+        return SPAR_OK;
+    }
+    spari_table *old = aero->section[i].table;
+    aero->section[i] = (spari_section){chord, cos(twist), sin(twist), spari_polar_share(polar)};
+    spari_table_release(old);
+    for (int b = 0; b < aero->blades; b++) {
+        aero->accel[b * aero->n + i] = (gsl_interp_accel){0, 0, 0}; /* its interval was one of the old table */
+    }
+    imply_effects(aero);
+    return SPAR_OK;
+}
+
+int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius,
+                        double tip_radius) {
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "spar_aero_set_rotor: hub or axis is NULL");
+    SPARI_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
+                  SPAR_ERR_ARGUMENT, "spar_aero_set_rotor: hub or axis has an entry that is not finite");
+    double length = hypot(hypot(axis[0], axis[1]), axis[2]);
+    SPARI_REQUIRE(aero->session, isfinite(length) && length > 0.0, SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_rotor: the axis has length %g; give a direction, pointing downwind", length);
+    SPARI_REQUIRE(
+        aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius), SPAR_ERR_ARGUMENT,
+        "spar_aero_set_rotor: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius", hub_radius, tip_radius);
+    for (int i = 0; i < 3; i++) {
+        aero->rotor.hub[i] = hub[i];
+        aero->rotor.axis[i] = axis[i] / length;
+    }
+    aero->rotor.hub_radius = hub_radius;
+    aero->rotor.tip_radius = tip_radius;
+    for (int64_t k = 0; !aero->rotor_given && k < count(aero); k++) {
+        aero->loss_radius[k] = spari_rotor_radius(&aero->rotor, aero->place + 3 * k);
+    }
+    aero->rotor_given = 1;
+    imply_effects(aero);
+    return SPAR_OK;
+}
+
+int spar_aero_set_turn(spar_aero *aero, int turn) {
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_turn: %d; 1 for right-handed about the downwind axis, -1 for left-handed", turn);
+    aero->rotor.turn = turn;
+    return SPAR_OK;
+}
+
+int spar_aero_set_blades(spar_aero *aero, int total) {
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, total >= aero->blades, SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_blades: %d blades in all, but %d of them are on this rank", total, aero->blades);
+    aero->rotor.blades = total;
+    return SPAR_OK;
+}
+
+int spar_aero_set_effects(spar_aero *aero, int effects) {
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
+                  "spar_aero_set_effects: %d has bits that are no SPAR_AERO_ effect", effects);
+    aero->rotor.effects = effects;
+    aero->effects_given = 1;
+    return SPAR_OK;
+}
+
+/* ---- solve ---- */
+
+static int check_solve(const spar_aero *aero, double density, const double *inflow) {
+    spar_session *session = aero->session;
+    SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT,
+                  "spar_aero_solve: density %g; give a number >= 0", density);
+    SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "spar_aero_solve: the inflow is NULL");
+    SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
+                  "spar_aero_solve: induction is asked for but the rotor is not described; call spar_aero_set_rotor");
+    for (int64_t i = 0; i < aero->n; i++) {
+        SPARI_REQUIRE(session, aero->section[i].table, SPAR_ERR_STATE,
+                      "spar_aero_solve: section %lld has no chord and polar; call spar_aero_set_section", (long long)i);
+    }
+    int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
+    if (bad >= 0) {
+        int blade = (int)(bad / (3 * aero->n));
+        return spari_fail(session, SPAR_ERR_ARGUMENT,
+                          "spar_aero_solve: fluid '%s', blade %d, section %lld: component %d of the inflow is %g",
+                          spari_fluid_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n), (int)(bad % 3),
+                          inflow[bad]);
+    }
+    return SPAR_OK;
+}
+
+static int pull(spar_aero *aero, double theta) {
+    for (int b = 0; b < aero->blades; b++) {
+        int64_t n, at = b * aero->n;
+        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &n));
+        SPARI_REQUIRE(
+            aero->session, n == aero->n, SPAR_ERR_STATE,
+            "spar_aero_solve: fluid '%s' had %lld sections when the aero object was made and has %lld now; make "
+            "a new one",
+            spari_fluid_name(aero->fluid[b]), (long long)aero->n, (long long)n);
+        SPARI_TRY(spar_fluid_pull_motion(aero->fluid[b], theta, aero->x + 3 * at, aero->v + 3 * at));
+        SPARI_TRY(spar_fluid_pull_sections(aero->fluid[b], theta, aero->q + 4 * at, aero->omega + 3 * at, NULL));
+    }
+    return SPAR_OK;
+}
+
+/* Node forces and moments of one blade: loads per length linear over each interval, shared consistently between its
+ * ends. */
+static void lump(spar_aero *aero, int blade) {
+    int64_t at = blade * aero->n;
+    int width = aero->rotor.effects & SPAR_AERO_MOMENT ? 6 : 3;
+    memset(aero->force + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *aero->force);
+    memset(aero->moment + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *aero->moment);
+    for (int64_t i = at; i + 1 < at + aero->n; i++) {
+        double sixth = aero->length[i] / 6.0;
+        const double *f = aero->element[i].load, *g = aero->element[i + 1].load;
+        for (int c = 0; c < width; c++) {
+            double *to = c < 3 ? aero->force + 3 * i + c : aero->moment + 3 * i + c - 3;
+            to[0] += sixth * (2.0 * f[c] + g[c]);
+            to[3] += sixth * (f[c] + 2.0 * g[c]);
+        }
+    }
+}
+
+/* Thrust, torque and speed of the blades here about the shaft. */
+static void sum_rotor(spar_aero *aero) {
+    const spari_rotor *rotor = &aero->rotor;
+    aero->thrust = aero->torque = aero->speed = 0.0;
+    for (int64_t k = 0; k < count(aero); k++) {
+        const double *x = aero->x + 3 * k, *f = aero->force + 3 * k;
+        double arm[3] = {x[0] - rotor->hub[0], x[1] - rotor->hub[1], x[2] - rotor->hub[2]}, turn[3];
+        spari_cross(arm, f, turn);
+        aero->thrust += spari_dot(rotor->axis, f);
+        aero->torque += spari_dot(rotor->axis, turn) + spari_dot(rotor->axis, aero->moment + 3 * k);
+    }
+    for (int b = 0; b < aero->blades; b++) {
+        aero->speed += spari_dot(rotor->axis, aero->omega + 3 * b * aero->n) / aero->blades;
+    }
+}
+
+int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_solve(aero, density, inflow));
+    SPARI_TRY(pull(aero, theta));
+    aero->solved = 0;
+    for (int b = 0; b < aero->blades; b++) {
+        for (int64_t i = 0; i < aero->n; i++) {
+            int64_t k = b * aero->n + i;
+            spari_station station = {aero->x + 3 * k, aero->q + 4 * k,      aero->v + 3 * k,
+                                     inflow + 3 * k,  aero->loss_radius[k], aero->accel + k};
+            spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
+        }
+        lump(aero, b);
+    }
+    for (int b = 0; b < aero->blades; b++) {
+        int64_t at = 3 * b * aero->n;
+        const double *moment = aero->rotor.effects & SPAR_AERO_MOMENT ? aero->moment + at : NULL;
+        SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moment));
+    }
+    if (aero->rotor_given) {
+        sum_rotor(aero);
+    }
+    aero->solved = 1;
+    return SPAR_OK;
+}
+
+/* ---- results ---- */
+
+static int check_solved(const spar_aero *aero, const char *caller) {
+    SPARI_REQUIRE(aero->session, aero->solved, SPAR_ERR_STATE, "%s: nothing is solved yet; call spar_aero_solve",
+                  caller);
+    return SPAR_OK;
+}
+
+int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power) {
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_solved(aero, __func__));
+    SPARI_REQUIRE(aero->session, aero->rotor_given, SPAR_ERR_STATE,
+                  "spar_aero_get_rotor: there is no shaft; call spar_aero_set_rotor before spar_aero_solve");
+    double value[] = {aero->thrust, aero->torque, aero->torque * aero->speed}, *out[] = {thrust, torque, power};
+    for (int i = 0; i < 3; i++) {
+        if (out[i]) {
+            *out[i] = value[i];
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
+                           double *a_tangential) {
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_solved(aero, __func__));
+    double *out[] = {alpha, cl, cd, a, a_tangential};
+    for (int64_t k = 0; k < count(aero); k++) {
+        const spari_element *e = aero->element + k;
+        double value[] = {e->alpha, e->cl, e->cd, e->a, e->a_tangential};
+        for (int i = 0; i < 5; i++) {
+            if (out[i]) {
+                out[i][k] = value[i];
+            }
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root) {
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_solved(aero, __func__));
+    int64_t lost = 0;
+    for (int64_t k = 0; k < count(aero); k++) {
+        lost += (aero->element[k].flags & SPAR_AERO_FLAG_NO_ROOT) != 0;
+        if (flags) {
+            flags[k] = aero->element[k].flags;
+        }
+    }
+    if (no_root) {
+        *no_root = lost;
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment) {
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_solved(aero, __func__));
+    size_t bytes = (size_t)(3 * count(aero)) * sizeof(double);
+    for (int64_t k = 0; per_length && k < count(aero); k++) {
+        memcpy(per_length + 6 * k, aero->element[k].load, sizeof aero->element[k].load);
+    }
+    if (force && bytes > 0) {
+        memcpy(force, aero->force, bytes);
+    }
+    if (moment && bytes > 0) {
+        memcpy(moment, aero->moment, bytes);
+    }
+    return SPAR_OK;
+}

@@ -1,0 +1,38 @@
+/* One blade element: from its place, motion and wind to its loads per unit span. Knows no fluid and no session. */
+#ifndef SPARI_ELEMENT_H
+#define SPARI_ELEMENT_H
+
+#include "momentum.h"
+
+/* What the sections of a rotor share. */
+typedef struct spari_rotor {
+    int effects; /* SPAR_AERO_* in force */
+    int turn;    /* 1, or -1: mirrored blades */
+    int blades;  /* of the whole rotor */
+    double hub[3], axis[3];
+    double hub_radius, tip_radius;
+} spari_rotor;
+
+typedef struct spari_section {
+    double chord, cos_twist, sin_twist;
+    spari_table *table; /* NULL: not set yet */
+} spari_section;
+
+typedef struct spari_station {
+    const double *x, *q, *v, *wind; /* place, orientation, velocity of the aerodynamic centre; wind there */
+    double loss_radius;             /* distance from the axis in the reference configuration */
+    gsl_interp_accel *accel;
+} spari_station;
+
+typedef struct spari_element {
+    double alpha, cl, cd, a, a_tangential;
+    int flags;
+    double load[6]; /* force and moment per unit span, global axes */
+} spari_element;
+
+/* Distance of x from the shaft axis. */
+double spari_rotor_radius(const spari_rotor *rotor, const double x[3]);
+void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_station *station,
+                         double density, gsl_root_fsolver *solver, spari_element *element);
+
+#endif

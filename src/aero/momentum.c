@@ -1,0 +1,119 @@
+#include "momentum.h"
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_math.h>
+#include <math.h>
+
+/* The equation is not defined at phi = 0, where it may jump; brackets keep this distance from 0 and from +-pi. */
+#define SPARI_PHI_MIN 1e-8
+enum { SPARI_SCAN = 32, SPARI_BRENT_MAX = 100 };
+
+double spari_prandtl(double f, double sin_phi) {
+    return f < 0.0 ? 1.0 : M_2_PI * acos(exp(-f / fabs(sin_phi)));
+}
+
+static double axial(double sin_phi, double k, double loss) {
+    if (sin_phi < 0.0) {
+        return sin_phi * (1.0 - k);
+    }
+    if (k <= 2.0 / 3.0) {
+        return sin_phi * (1.0 + k);
+    }
+    return sin_phi * (5.0 / 3.0 - loss + sqrt(loss * (2.0 * k - 4.0 / 3.0 + loss)));
+}
+
+spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi) {
+    double side = annulus->vx < 0.0 ? -1.0 : 1.0;
+    double s = sin(phi), c = cos(phi);
+    int beyond;
+    double place = spari_table_wrap(annulus->table, side * phi - annulus->twist, &beyond);
+    double lift = side * annulus->sigma * spari_table_lift(annulus->table, place, annulus->accel);
+    spari_balance b;
+    b.loss = spari_prandtl(annulus->tip, s) * spari_prandtl(annulus->hub, s);
+    b.k = lift * c / (4.0 * b.loss * s * s);
+    b.g = axial(s, b.k, b.loss);
+    b.h = annulus->swirl ? c - (s < 0.0 ? -lift : lift) / (4.0 * b.loss) : c;
+    b.residual = annulus->vy * b.g - fabs(annulus->vx) * b.h;
+    return b;
+}
+
+static double residual(double phi, void *annulus) {
+    return spari_momentum_balance(annulus, phi).residual;
+}
+
+/* A root counts when the flow speed it stands for is positive. */
+static int is_sound(const spari_annulus *annulus, double phi, double *speed) {
+    spari_balance b = spari_momentum_balance(annulus, phi);
+    *speed = (fabs(annulus->vx) * b.g + annulus->vy * b.h) / (b.g * b.g + b.h * b.h);
+    return isfinite(*speed) && *speed > 0.0;
+}
+
+/* Root between lo and hi, where the residual is of opposite signs. */
+static double refine(const spari_annulus *annulus, gsl_root_fsolver *solver, double lo, double hi) {
+    gsl_function f = {residual, (void *)annulus};
+    if (gsl_root_fsolver_set(solver, &f, lo, hi)) {
+        return NAN;
+    }
+    for (int i = 0; i < SPARI_BRENT_MAX; i++) {
+        if (gsl_root_fsolver_iterate(solver)) {
+            return NAN;
+        }
+        lo = gsl_root_fsolver_x_lower(solver);
+        hi = gsl_root_fsolver_x_upper(solver);
+        if (gsl_root_test_interval(lo, hi, 1e-16, 8.0 * GSL_DBL_EPSILON) == GSL_SUCCESS) {
+            break;
+        }
+    }
+    return gsl_root_fsolver_root(solver);
+}
+
+/* Tries the interval from a to b in `parts` pieces that lie closer towards a; takes the first sound root. */
+static int search(const spari_annulus *annulus, gsl_root_fsolver *solver, const double range[2], int parts, double *phi,
+                  double *speed) {
+    double x0 = range[0], r0 = residual(x0, (void *)annulus);
+    for (int i = 1; i <= parts; i++) {
+        double t = (double)i / parts;
+        double x1 = range[0] + (range[1] - range[0]) * t * t, r1 = residual(x1, (void *)annulus);
+        if ((r0 < 0.0 && r1 >= 0.0) || (r0 > 0.0 && r1 <= 0.0)) {
+            *phi = refine(annulus, solver, fmin(x0, x1), fmax(x0, x1));
+            if (is_sound(annulus, *phi, speed)) {
+                return 1;
+            }
+        }
+        x0 = x1;
+        r0 = r1;
+    }
+    return 0;
+}
+
+/* Whether the free flow itself balances, as it does where there is no lift (cylinders). */
+static int is_free(const spari_annulus *annulus) {
+    int beyond;
+    double place = spari_table_wrap(annulus->table, atan2(annulus->vx, annulus->vy) - annulus->twist, &beyond);
+    return spari_table_lift(annulus->table, place, annulus->accel) == 0.0;
+}
+
+int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy) {
+    /* Quadrants in the order of likelihood for vy >= 0 (Ning's: windmill, brake, tangential flow reversed); the other
+       way round for vy < 0. Each begins at the end where the equation changes fastest. */
+    static const double quadrant[4][2] = {{SPARI_PHI_MIN, M_PI_2},
+                                          {-SPARI_PHI_MIN, -M_PI_2},
+                                          {M_PI - SPARI_PHI_MIN, M_PI_2},
+                                          {SPARI_PHI_MIN - M_PI, -M_PI_2}};
+    double phi, speed;
+    *wx = annulus->vx;
+    *wy = annulus->vy;
+    if (is_free(annulus)) {
+        return 0;
+    }
+    int first = annulus->vy < 0.0 ? 2 : 0;
+    for (int parts = 1; parts <= SPARI_SCAN; parts += SPARI_SCAN - 1) {
+        for (int i = 0; i < 4; i++) {
+            if (search(annulus, solver, quadrant[(first + i) % 4], parts, &phi, &speed)) {
+                *wx = (annulus->vx < 0.0 ? -speed : speed) * sin(phi);
+                *wy = speed * cos(phi);
+                return 0;
+            }
+        }
+    }
+    return 1;
+}

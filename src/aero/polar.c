@@ -1,0 +1,245 @@
+#include "polar.h"
+#include "../session/status.h"
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Slack on the width of a full circle (degrees turned into radians) and on ends that are the same angle. */
+#define SPARI_TURN (2.0 * 3.14159265358979323846)
+#define SPARI_TURN_SLACK 1e-9
+#define SPARI_END_SLACK 1e-6
+
+enum { SPARI_CL, SPARI_CD, SPARI_CM, SPARI_COEFFICIENTS };
+
+struct spari_table {
+    atomic_int users;
+    int full, has_moment; /* covers the whole circle; any cm not zero */
+    int64_t n;
+    double *alpha;
+    double *value[SPARI_COEFFICIENTS];
+    gsl_interp *fit[SPARI_COEFFICIENTS];
+};
+
+struct spar_polar {
+    spari_table *table;
+};
+
+void spari_quiet_gsl(void) {
+    gsl_error_handler_t *previous = gsl_set_error_handler_off();
+    if (previous) {
+        gsl_set_error_handler(previous);
+    }
+}
+
+static void table_free(spari_table *table) {
+    for (int c = 0; table && c < SPARI_COEFFICIENTS; c++) {
+        if (table->fit[c]) {
+            gsl_interp_free(table->fit[c]);
+        }
+    }
+    if (table) {
+        free(table->alpha);
+    }
+    free(table);
+}
+
+void spari_table_release(spari_table *table) {
+    if (table && atomic_fetch_sub(&table->users, 1) == 1) {
+        table_free(table);
+    }
+}
+
+spari_table *spari_polar_share(const spar_polar *polar) {
+    atomic_fetch_add(&polar->table->users, 1);
+    return polar->table;
+}
+
+static const gsl_interp_type *fit_type(int kind, int full) {
+    switch (kind) {
+    case SPAR_POLAR_AKIMA:
+        return full ? gsl_interp_akima_periodic : gsl_interp_akima;
+    case SPAR_POLAR_CUBIC:
+        return full ? gsl_interp_cspline_periodic : gsl_interp_cspline;
+    default:
+        return gsl_interp_linear;
+    }
+}
+
+/* One block holds alpha and the three coefficients; cm NULL: zero. */
+static spari_table *table_create(int64_t n, const double *alpha, const double *const value[], int kind) {
+    spari_table *table = spari_zalloc(1, sizeof *table);
+    double *block = spari_zalloc(4 * n, sizeof *block);
+    if (!table || !block) {
+        free(table);
+        free(block);
+        return NULL;
+    }
+    size_t bytes = (size_t)n * sizeof *block;
+    atomic_init(&table->users, 1);
+    table->n = n;
+    table->alpha = memcpy(block, alpha, bytes);
+    table->full = alpha[n - 1] - alpha[0] > SPARI_TURN * (1.0 - SPARI_TURN_SLACK);
+    for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
+        table->value[c] = block + (c + 1) * n;
+        if (value[c]) {
+            memcpy(table->value[c], value[c], bytes);
+        }
+        if (table->full) {
+            table->value[c][n - 1] = table->value[c][0]; /* one angle, one value to the last bit */
+        }
+        table->fit[c] = gsl_interp_alloc(fit_type(kind, table->full), (size_t)n);
+        if (!table->fit[c] || gsl_interp_init(table->fit[c], table->alpha, table->value[c], (size_t)n)) {
+            table_free(table);
+            return NULL;
+        }
+    }
+    for (int64_t i = 0; i < n; i++) {
+        table->has_moment |= table->value[SPARI_CM][i] != 0.0;
+    }
+    return table;
+}
+
+/* Every row finite and the angles in order; the row is counted from 0, as in the arrays. */
+static int check_rows(int64_t n, const double *alpha, const double *const value[]) {
+    static const char *const name[] = {"cl", "cd", "cm"};
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_REQUIRE(NULL, isfinite(alpha[i]), SPAR_ERR_ARGUMENT, "spar_polar_create: alpha of row %lld is not finite",
+                      (long long)i);
+        for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
+            SPARI_REQUIRE(NULL, !value[c] || isfinite(value[c][i]), SPAR_ERR_ARGUMENT,
+                          "spar_polar_create: %s of row %lld (alpha %g rad) is not finite", name[c], (long long)i,
+                          alpha[i]);
+        }
+        SPARI_REQUIRE(
+            NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
+            "spar_polar_create: alpha of row %lld (%g rad) is not above that of the row before (%g rad); sort the "
+            "rows and drop doubles",
+            (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
+    }
+    return SPAR_OK;
+}
+
+/* No more than one turn, and after a whole turn the same coefficients as before it. */
+static int check_turn(int64_t n, const double *alpha, const double *const value[]) {
+    static const char *const name[] = {"cl", "cd", "cm"};
+    double width = alpha[n - 1] - alpha[0];
+    SPARI_REQUIRE(
+        NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
+        "spar_polar_create: alpha goes from %g (row 0) to %g (row %lld), more than a full turn; give radians, at "
+        "most 2 pi of them",
+        alpha[0], alpha[n - 1], (long long)(n - 1));
+    if (width > SPARI_TURN * (1.0 - SPARI_TURN_SLACK)) {
+        for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
+            double first = value[c] ? value[c][0] : 0.0, last = value[c] ? value[c][n - 1] : 0.0;
+            SPARI_REQUIRE(
+                NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
+                "spar_polar_create: %s is %g in row 0 and %g in row %lld, which are the same angle a turn apart; "
+                "make them equal",
+                name[c], first, last, (long long)(n - 1));
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm,
+                      spar_polar **polar) {
+    const double *const value[] = {cl, cd, cm};
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT,
+                  "spar_polar_create: no place for the polar; pass the address of a NULL");
+    SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "spar_polar_create: %lld rows; a polar needs at least 2",
+                  (long long)n);
+    SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "spar_polar_create: %lld rows are too many", (long long)n);
+    SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT,
+                  "spar_polar_create: alpha, cl or cd is NULL; only cm may be");
+    SPARI_TRY(check_rows(n, alpha_rad, value));
+    SPARI_TRY(check_turn(n, alpha_rad, value));
+    spari_quiet_gsl();
+    spar_polar *made = spari_zalloc(1, sizeof *made);
+    spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;
+    if (!table) {
+        free(made);
+        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_polar_create: no memory for %lld rows", (long long)n);
+    }
+    made->table = table;
+    *polar = made;
+    return SPAR_OK;
+}
+
+void spar_polar_destroy(spar_polar **polar) {
+    if (polar && *polar) {
+        spari_table_release((*polar)->table);
+        free(*polar);
+        *polar = NULL;
+    }
+}
+
+int spar_polar_set_interpolation(spar_polar *polar, int kind) {
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_set_interpolation: the polar is NULL");
+    SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
+                  "spar_polar_set_interpolation: no kind %d; there are SPAR_POLAR_LINEAR, _AKIMA and _CUBIC", kind);
+    const spari_table *old = polar->table;
+    int64_t least = (int64_t)gsl_interp_type_min_size(fit_type(kind, old->full));
+    SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT,
+                  "spar_polar_set_interpolation: kind %d needs at least %lld rows, the polar has %lld", kind,
+                  (long long)least, (long long)old->n);
+    const double *const value[] = {old->value[SPARI_CL], old->value[SPARI_CD], old->value[SPARI_CM]};
+    spari_table *table = table_create(old->n, old->alpha, value, kind);
+    SPARI_REQUIRE(NULL, table, SPAR_ERR_MEMORY, "spar_polar_set_interpolation: no memory for %lld rows",
+                  (long long)old->n);
+    spari_table_release(polar->table);
+    polar->table = table;
+    return SPAR_OK;
+}
+
+int spari_table_has_moment(const spari_table *table) {
+    return table->has_moment;
+}
+
+double spari_table_wrap(const spari_table *table, double alpha, int *beyond) {
+    double first = table->alpha[0], last = table->alpha[table->n - 1];
+    *beyond = 0;
+    if (alpha >= first && alpha <= last) {
+        return alpha;
+    }
+    alpha -= SPARI_TURN * floor((alpha - first) / SPARI_TURN); /* into [first, first + 2 pi) */
+    if (alpha <= last) {
+        return fmax(alpha, first);
+    }
+    *beyond = !table->full;
+    return alpha - last <= first + SPARI_TURN - alpha ? last : first;
+}
+
+static double look_up(const spari_table *table, int c, double place, gsl_interp_accel *accel) {
+    double y;
+    gsl_interp_eval_e(table->fit[c], table->alpha, table->value[c], place, accel, &y);
+    return y;
+}
+
+double spari_table_lift(const spari_table *table, double place, gsl_interp_accel *accel) {
+    return look_up(table, SPARI_CL, place, accel);
+}
+
+double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel) {
+    return look_up(table, SPARI_CD, place, accel);
+}
+
+double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel) {
+    return look_up(table, SPARI_CM, place, accel);
+}
+
+int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_evaluate: the polar is NULL");
+    SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "spar_polar_evaluate: alpha is not finite");
+    gsl_interp_accel accel = {0, 0, 0};
+    int beyond;
+    double place = spari_table_wrap(polar->table, alpha_rad, &beyond);
+    double *out[] = {cl, cd, cm};
+    for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
+        if (out[c]) {
+            *out[c] = look_up(polar->table, c, place, &accel);
+        }
+    }
+    return SPAR_OK;
+}

@@ -1,0 +1,31 @@
+/* Polars: tables of lift, drag and moment over the angle of attack. A spar_polar is a handle on an immutable, counted
+   table, so that a section keeps the table it was given whatever becomes of the handle. */
+#ifndef SPARI_POLAR_H
+#define SPARI_POLAR_H
+
+#include <gsl/gsl_interp.h>
+#include <spar/spar_aero.h>
+
+typedef struct spari_table spari_table;
+
+/* GSL's default error handler aborts the host, and there is one for the process. This replaces the default only and
+   keeps a user's; the polars can come before any session. */
+void spari_quiet_gsl(void);
+
+/* The polar's table, one user more; given back with spari_table_release. */
+spari_table *spari_polar_share(const spar_polar *polar);
+void spari_table_release(spari_table *table);
+
+/* Whether any moment coefficient differs from zero. */
+int spari_table_has_moment(const spari_table *table);
+
+/* The place in the table of the angle alpha: whole turns are taken off; an angle that no row covers goes to the nearer
+   end and *beyond becomes 1, else 0. */
+double spari_table_wrap(const spari_table *table, double alpha, int *beyond);
+
+/* Coefficients at a place that spari_table_wrap gave; the accelerator remembers the interval for the next look-up. */
+double spari_table_lift(const spari_table *table, double place, gsl_interp_accel *accel);
+double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel);
+double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel);
+
+#endif
