@@ -1,10 +1,10 @@
-/* The discretised member: forces against the energy they come from, the tangent against finite differences of the forces,
-   invariance under rigid motion. Oracles: central differences (error h^2 + eps/h, so 1e-7 of the largest entry at h = 1e-5) and
-   exact identities (1e-12). */
+/* The discretised member: forces against the energy they come from, the tangent against finite differences of the
+   forces, invariance under rigid motion. Oracles: central differences (error h^2 + eps/h, so 1e-7 of the largest entry
+   at h = 1e-5) and exact identities (1e-12). */
+#include <cmocka.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <cmocka.h>
 
 #include "math/basis.h"
 #include "math/rotation.h"
@@ -33,7 +33,8 @@ static void random_spd(int n, double *a) {
     }
 }
 
-/* elements of Jacobian 1.1 on the x axis (straight), or with random tangents at the points, random section properties */
+/* elements of Jacobian 1.1 on the x axis (straight), or with random tangents at the points, random section properties
+ */
 static spari_body *random_body(int elements, int P, int points, int damped, int straight) {
     spari_body *b = spari_body_create(elements, P, elements * points, 1, damped, 1);
     double x[24], bary[24], gx[24], gw[24];
@@ -141,8 +142,8 @@ static void check_tangent(int elements, int P, int damped, int gyroscopic, doubl
         }
     }
     if (!(worst < 1e-7 * big)) {
-        print_error("elements %d P %d damped %d gyro %d cm %g cv %g: worst %g of %g\n", elements, P, damped, gyroscopic, cm, cv,
-                    worst, big);
+        print_error("elements %d P %d damped %d gyro %d cm %g cv %g: worst %g of %g\n", elements, P, damped, gyroscopic,
+                    cm, cv, worst, big);
     }
     assert_true(worst < 1e-7 * big);
     free(full);
@@ -225,7 +226,8 @@ static void test_frame_indifference(void **unused) {
     spari_body_free(b);
 }
 
-/* the power of the forces is the rate of kinetic and strain energy plus what is dissipated: central difference in time, 1e-6 */
+/* the power of the forces is the rate of kinetic and strain energy plus what is dissipated: central difference in time,
+ * 1e-6 */
 static void test_power_balance(void **unused) {
     (void)unused;
     spari_body *b = random_body(1, 5, 7, 1, 0);

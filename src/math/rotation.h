@@ -1,4 +1,5 @@
-/* Rotations: quaternions scalar first, [w,x,y,z]; 3-vectors; all arrays contiguous, outputs may not alias inputs unless said. */
+/* Rotations: quaternions scalar first, [w,x,y,z]; 3-vectors; all arrays contiguous, outputs may not alias inputs unless
+ * said. */
 #ifndef SPARI_ROTATION_H
 #define SPARI_ROTATION_H
 
@@ -65,7 +66,8 @@ void spari_matrix_quat(const double r[9], double q[4]);
 void spari_quat_exp(const double psi[3], double q[4]);
 /* rotation vector of the shorter turn, |psi| <= pi */
 void spari_quat_log(const double q[4], double psi[3]);
-/* tangent operator of the exponential map, row-major: exp(psi + d psi) = exp(T d psi) exp(psi) to first order; and its inverse */
+/* tangent operator of the exponential map, row-major: exp(psi + d psi) = exp(T d psi) exp(psi) to first order; and its
+ * inverse */
 void spari_tangent(const double psi[3], double t[9]);
 void spari_tangent_inverse(const double psi[3], double t[9]);
 

@@ -108,14 +108,15 @@ void spari_body_free(spari_body *body) {
         free(body->linear[k]);
     }
     free(body->weights);
+    free(body->at_rest);
     free(body->scratch);
     free(body);
 }
 
 /* ---- nodal fields ---- */
 
-/* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. Neighbours are brought into one hemisphere, so that
-   an element may turn by more than half a revolution from end to end. */
+/* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. Neighbours are brought into one
+   hemisphere, so that an element may turn by more than half a revolution from end to end. */
 static void gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
     int P = body->per_element;
     for (int l = 0; l < P; l++) {
@@ -150,19 +151,19 @@ static void gather(const spari_body *body, int e, const double *q, const double 
 /* What the fields are at one point, quaternion parts divided by |Q|. */
 typedef struct point_state {
     double f[POINT];
-    double N;          /* |Q| */
-    double r[4];       /* Q / N, unit */
-    double p[4];       /* dQ/ds / N */
-    double omega[3];   /* body rate 2 Im(r* d) */
-    double d[4];       /* Qd / N */
-    double T[3];       /* R^T (x0' + u') */
-    double e[6];       /* strains */
-    double ed[6];      /* strain rates */
-    double s[6];       /* section force and moment, reference axes turned back */
-    double b;          /* r . d */
-    double z[4];       /* dQd/ds / N */
-    double t_rate[3];  /* R^T u'-dot */
-    double kd0[3];     /* 2 Im(d* p + r* z) */
+    double N;         /* |Q| */
+    double r[4];      /* Q / N, unit */
+    double p[4];      /* dQ/ds / N */
+    double omega[3];  /* body rate 2 Im(r* d) */
+    double d[4];      /* Qd / N */
+    double T[3];      /* R^T (x0' + u') */
+    double e[6];      /* strains */
+    double ed[6];     /* strain rates */
+    double s[6];      /* section force and moment, reference axes turned back */
+    double b;         /* r . d */
+    double z[4];      /* dQd/ds / N */
+    double t_rate[3]; /* R^T u'-dot */
+    double kd0[3];    /* 2 Im(d* p + r* z) */
 } point_state;
 
 static void point_fields(const spari_body *body, int k, const double *z, int moving, point_state *s) {
@@ -271,7 +272,8 @@ static void point_inertia_forces(const spari_body *body, int k, double factor, c
 
 /* ---- residual ---- */
 
-static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r);
+static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
+                              double *r);
 
 /* Nodal force of the 4-vector g: delta q . g = delta theta . 1/2 Im(g q*) */
 static void add_moment(const double g[4], const double q[4], double m[3]) {
@@ -283,7 +285,8 @@ static void add_moment(const double g[4], const double q[4], double m[3]) {
     }
 }
 
-double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r) {
+double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
+                           double *r) {
     if (body->linear[0]) {
         return linear_residual(body, q, v, a, factor, r);
     }
@@ -382,7 +385,8 @@ static void left_matrix(const double t[3], double m[4][4]) {
     memcpy(m, l, sizeof l);
 }
 
-/* Point matrices over the fields y = (u, Q | u', Q'), 14 x 14: K for displacements, B for rates; M over (u, Q), 7 x 7. */
+/* Point matrices over the fields y = (u, Q | u', Q'), 14 x 14: K for displacements, B for rates; M over (u, Q), 7 x 7.
+ */
 typedef struct point_matrices {
     double K[14 * 14], B[14 * 14], M[7 * 7];
 } point_matrices;
@@ -531,7 +535,8 @@ static void add_elastic(const spari_body *body, int k, int moving, double w, con
 }
 
 /* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
-static void add_inertia(const spari_body *body, int k, double factor, double w, const point_state *s, point_matrices *m) {
+static void add_inertia(const spari_body *body, int k, double factor, double w, const point_state *s,
+                        point_matrices *m) {
     const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *Js = mass + 4;
     point_inertia n;
     double L[3][4], Ld[3][4], Ldd[3][4], rdd[4], in = 1 / s->N;
@@ -548,8 +553,8 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
         for (int j = 0; j < 4; j++) {
             WQ[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) * in;
             AQd[i][j] = -2 * s->omega[i] * s->r[j] * in - 4 * s->b * L[i][j] * in;
-            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n.A0[i] * s->r[j]) * in - 2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in -
-                       2 * s->b * WQ[i][j];
+            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n.A0[i] * s->r[j]) * in -
+                       2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in - 2 * s->b * WQ[i][j];
         }
     }
     double J[3][3] = {{Js[0], Js[1], Js[2]}, {Js[1], Js[3], Js[4]}, {Js[2], Js[4], Js[5]}};
@@ -570,7 +575,7 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
                     wj += Wx[i][l] * J[l][j];
                     wc += Wx[i][l] * cx[l][j];
                 }
-                mW[i][j] = wj - JWx[i][j]; /* d(W x JW)/dW */
+                mW[i][j] = wj - JWx[i][j];  /* d(W x JW)/dW */
                 fW[i][j] = -Wcx[i][j] - wc; /* d(W x (W x c))/dW */
             }
         }
@@ -590,7 +595,8 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
         }
     }
     /* force rows */
-    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}}, mQdd[3][4] = {{0}};
+    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}},
+           mQdd[3][4] = {{0}};
     const double(*Lc)[4] = (const double(*)[4])L;
     add_product(&fQdd[0][0], 4, 2 * in, (const double(*)[3])Rc, Lc);
     add_product(&fQd[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQd);
@@ -633,9 +639,10 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
     }
 }
 
-/* Nodal maps: dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm Tinv dtheta. */
-static void node_maps(const double *zn, const double *v, const double *a, double cm, double cv, const double *tinv, double E[4][3],
-                      double F[4][3], double H[4][3]) {
+/* Nodal maps: dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm
+ * Tinv dtheta. */
+static void node_maps(const double *zn, const double *v, const double *a, double cm, double cv, const double *tinv,
+                      double E[4][3], double F[4][3], double H[4][3]) {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const double *t = tinv ? tinv : identity;
     double w[4] = {0}, al[4] = {0};
@@ -669,26 +676,31 @@ static void node_maps(const double *zn, const double *v, const double *a, double
     }
 }
 
-/* S_ij (6 x 6 at row stride `stride`) += E_i^T X E_j for one of K, B, M; X is 7 x 7; the translational factor of column j is `cu`. */
-static void project(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S, int64_t stride) {
+/* S_ij (6 x 6 at row stride `stride`) += E_i^T X E_j for one of K, B, M; X is 7 x 7; the translational factor of column
+ * j is `cu`. */
+static void project(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S,
+                    int64_t stride) {
     double XE[7][6];
     for (int i = 0; i < 7; i++) {
         for (int j = 0; j < 3; j++) {
             XE[i][j] = cu * X[7 * i + j];
-            XE[i][3 + j] = X[7 * i + 3] * Ej[0][j] + X[7 * i + 4] * Ej[1][j] + X[7 * i + 5] * Ej[2][j] + X[7 * i + 6] * Ej[3][j];
+            XE[i][3 + j] =
+                X[7 * i + 3] * Ej[0][j] + X[7 * i + 4] * Ej[1][j] + X[7 * i + 5] * Ej[2][j] + X[7 * i + 6] * Ej[3][j];
         }
     }
     for (int j = 0; j < 6; j++) {
         for (int i = 0; i < 3; i++) {
             S[stride * i + j] += XE[i][j];
-            S[stride * (3 + i) + j] += Ei[0][i] * XE[3][j] + Ei[1][i] * XE[4][j] + Ei[2][i] * XE[5][j] + Ei[3][i] * XE[6][j];
+            S[stride * (3 + i) + j] +=
+                Ei[0][i] * XE[3][j] + Ei[1][i] * XE[4][j] + Ei[2][i] * XE[5][j] + Ei[3][i] * XE[6][j];
         }
     }
 }
 
-/* The element's nodal 7 x 7 blocks [i][j] of a sum over points: phi_i phi_j A00 + phi_i phi'_j A01 + phi'_i phi_j A10 + phi'_i phi'_j A11,
-   in two stages: over j at each point, then over points by one matrix product. */
-static void first_stage(int P, const double *phi, const double *dphi, const double *A, int slopes, double *x0, double *x1) {
+/* The element's nodal 7 x 7 blocks [i][j] of a sum over points: phi_i phi_j A00 + phi_i phi'_j A01 + phi'_i phi_j A10 +
+   phi'_i phi'_j A11, in two stages: over j at each point, then over points by one matrix product. */
+static void first_stage(int P, const double *phi, const double *dphi, const double *A, int slopes, double *x0,
+                        double *x1) {
     for (int j = 0; j < P; j++) {
         double f = phi[j], d = slopes ? dphi[j] : 0;
         for (int i = 0; i < 7; i++) {
@@ -704,8 +716,8 @@ static void first_stage(int P, const double *phi, const double *dphi, const doub
 
 static void linear_tangent(const spari_body *body, int e, double cm, double cv, double *S);
 
-void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor, double cm,
-                        double cv, const double *tinv, double *S) {
+void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
+                        double cm, double cv, const double *tinv, double *S) {
     if (body->linear[0]) {
         linear_tangent(body, e, cm, cv, S);
         return;
@@ -784,7 +796,8 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     int cols = (int)row;
     cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, 2 * n, 1, table, 2 * n, XK, cols, 0, K7, cols);
     if (rates) {
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n, XB, cols, 0, B7, cols);
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n, XB, cols,
+                    0, B7, cols);
     }
     if (masses && !damped) {
         cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, n, 1, table, 2 * n, XM, cols, 0, M7, cols);
@@ -794,8 +807,8 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     double E[SPARI_MAX_NODES][4][3], F[SPARI_MAX_NODES][4][3], H[SPARI_MAX_NODES][4][3];
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)e * (P - 1) + l;
-        node_maps(z + FIELDS * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv, tinv ? tinv + 9 * node : NULL, E[l], F[l],
-                  H[l]);
+        node_maps(z + FIELDS * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv,
+                  tinv ? tinv + 9 * node : NULL, E[l], F[l], H[l]);
     }
     for (int i = 0; i < P; i++) {
         for (int j = 0; j < P; j++) {
@@ -861,27 +874,38 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
 
 /* ---- linear members ---- */
 
+void spari_body_gravity_changed(spari_body *body) {
+    double *stiffness = body->linear[0];
+    if (!stiffness) {
+        return;
+    }
+    double *q = body->at_rest;
+    body->linear[0] = NULL; /* the nonlinear forces at the reference are the weight */
+    spari_body_residual(body, q, NULL, NULL, 1, body->weights);
+    body->linear[0] = stiffness;
+}
+
 int spari_body_linearise(spari_body *body) {
     int P = body->per_element;
     int64_t size = (int64_t)36 * P * P;
-    double *q = spari_zalloc((int64_t)body->unique * 7, sizeof *q), *mk = spari_zalloc(size, sizeof *mk);
-    double *matrices[3] = {0}, *weights = spari_zalloc((int64_t)body->unique * 6, sizeof *weights);
-    int ok = q && mk && weights;
+    double *matrices[3] = {0}, *q = spari_zalloc((int64_t)body->unique * 7, sizeof *q);
+    double *weights = spari_zalloc((int64_t)body->unique * 6, sizeof *weights);
+    int ok = q && weights;
     for (int k = 0; k < 3 && ok; k++) {
         ok = (matrices[k] = spari_zalloc(size * body->elements, sizeof *matrices[k])) != NULL;
     }
     if (!ok) {
-        free(q), free(mk), free(weights);
+        free(q), free(weights);
         free(matrices[0]), free(matrices[1]), free(matrices[2]);
         return 1;
     }
     for (int i = 0; i < body->unique; i++) {
         q[7 * i + 3] = 1;
     }
-    spari_body_residual(body, q, NULL, NULL, 1, weights);
     for (int e = 0; e < body->elements; e++) {
         double *K = matrices[0] + size * e, *B = matrices[1] + size * e, *M = matrices[2] + size * e;
-        /* at rest and unloaded the tangent is K + cv B + cm M: three calls tell them apart; gravity stays out of K (first order) */
+        /* at rest and unloaded the tangent is K + cv B + cm M: three calls tell them apart; gravity stays out of K
+         * (first order) */
         spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 0, NULL, K);
         spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 1, NULL, B);
         spari_body_tangent(body, e, q, NULL, NULL, 0, 1, 0, NULL, M);
@@ -890,13 +914,15 @@ int spari_body_linearise(spari_body *body) {
             M[i] -= K[i];
         }
     }
-    free(q), free(mk);
-    memcpy(body->linear, matrices, sizeof matrices);
+    body->at_rest = q;
     body->weights = weights;
+    memcpy(body->linear, matrices, sizeof matrices);
+    spari_body_gravity_changed(body);
     return 0;
 }
 
-static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r) {
+static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
+                              double *r) {
     int P = body->per_element, n = 6 * P;
     double *x = body->scratch, scale = 0;
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
@@ -912,7 +938,8 @@ static double linear_residual(const spari_body *body, const double *q, const dou
         const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
         for (int k = 0; k < 3; k++) {
             if (in[k] && (k == 0 || (k == 1 ? body->D != NULL : body->mass != NULL))) {
-                cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first, 1);
+                cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first,
+                            1);
             }
         }
     }

@@ -1,11 +1,11 @@
-/* The discretised member: spectral elements, their quadrature points, their section properties. A rigid body is one node with
-   one point and no stiffness; a beam has its elements. This file knows forces and tangents, not time.
+/* The discretised member: spectral elements, their quadrature points, their section properties. A rigid body is one
+   node with one point and no stiffness; a beam has its elements. This file knows forces and tangents, not time.
 
    Unknowns live on `unique` nodes: joints once, unique = elements (P - 1) + 1, element e begins at e (P - 1).
-   Fields within an element are Lagrange sums of nodal u and of nodal unit quaternions q as plain 4-vectors, Q = sum phi_l q_l;
-   the section turns by R(Q/|Q|). Strains, virtual work and inertia are all taken from that one field, so the discrete forces are
-   the gradient of a discrete energy: energy and momenta are kept by the semi-discrete equations and the tangent is symmetric where it should
-   be. Virtual rotations of a node act through delta q = 1/2 delta theta q. */
+   Fields within an element are Lagrange sums of nodal u and of nodal unit quaternions q as plain 4-vectors, Q = sum
+   phi_l q_l; the section turns by R(Q/|Q|). Strains, virtual work and inertia are all taken from that one field, so the
+   discrete forces are the gradient of a discrete energy: energy and momenta are kept by the semi-discrete equations and
+   the tangent is symmetric where it should be. Virtual rotations of a node act through delta q = 1/2 delta theta q. */
 #ifndef SPARI_BODY_H
 #define SPARI_BODY_H
 
@@ -13,42 +13,47 @@
 
 typedef struct spari_body {
     int elements, per_element, unique;
-    int *first;       /* [elements + 1] quadrature points of each element */
-    double *phi;      /* [points][P] */
-    double *dphi;     /* [points][P], per arc length */
-    double *weight;   /* [points], quadrature weight times Jacobian */
-    double *tangent;  /* [points][3] unit tangent of the reference line, global */
-    double *place;    /* [points][3] reference place */
-    double *C;        /* [points][36] stiffness in global axes at the reference; NULL: not elastic */
-    double *D;        /* [points][36] damping likewise; NULL: none */
-    double *mass;     /* [points][10]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
+    int *first;      /* [elements + 1] quadrature points of each element */
+    double *phi;     /* [points][P] */
+    double *dphi;    /* [points][P], per arc length */
+    double *weight;  /* [points], quadrature weight times Jacobian */
+    double *tangent; /* [points][3] unit tangent of the reference line, global */
+    double *place;   /* [points][3] reference place */
+    double *C;       /* [points][36] stiffness in global axes at the reference; NULL: not elastic */
+    double *D;       /* [points][36] damping likewise; NULL: none */
+    double *mass;    /* [points][10]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
     double gravity[3];
     int gyroscopic;
-    double length;    /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
-    double *linear[3];/* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; else NULL */
-    double *weights;  /* linear members: gravity load [unique][6] at the reference */
-    double *scratch;  /* work space of one element */
+    double length;     /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
+    double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; else NULL */
+    double *weights;   /* linear members: forces [unique][6] of gravity at the reference */
+    double *at_rest;   /* linear members: the reference as a state, [unique][7] */
+    double *scratch;   /* work space of one element */
 } spari_body;
 
-/* Sizes the arrays for `points` quadrature points over all elements; elastic, damped, massive say which properties exist.
-   Returns NULL when there is no memory. */
+/* Sizes the arrays for `points` quadrature points over all elements; elastic, damped, massive say which properties
+   exist. Returns NULL when there is no memory. */
 spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive);
 void spari_body_free(spari_body *body);
 
 /* Forces of the state q [unique][7], v [unique][6], a [unique][6] (v, a NULL: at rest):
-   r [unique][6] = inertia + internal - gravity * factor, global axes. Returns an estimate of the largest single contribution (what rounding
-   in r is relative to). */
-double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor, double *r);
+   r [unique][6] = inertia + internal - gravity * factor, global axes. Returns an estimate of the largest single
+   contribution (what rounding in r is relative to). */
+double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
+                           double *r);
 
-/* Tangent of element e, row-major S [6P][6P]: dr = S (du, dtheta) with dv = cv X, da = cm X, X = (du, Tinv dtheta), Tinv [unique][9] or
-   NULL for the identity; v, a NULL: at rest. */
-void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor, double cm,
-                        double cv, const double *tinv, double *S);
+/* Tangent of element e, row-major S [6P][6P]: dr = S (du, dtheta) with dv = cv X, da = cm X, X = (du, Tinv dtheta),
+   Tinv [unique][9] or NULL for the identity; v, a NULL: at rest. */
+void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
+                        double cm, double cv, const double *tinv, double *S);
 
 /* kinetic, strain, gravity potential (zero at the reference), power dissipated; v NULL: at rest */
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
 
-/* Makes the body linear about its reference: element matrices are formed once. Returns 0, or 1 when there is no memory. */
+/* Makes the body linear about its reference: element matrices are formed once. Returns 0, or 1 when there is no memory.
+ */
 int spari_body_linearise(spari_body *body);
+/* A linear body keeps its weight as nodal loads: call this after gravity has changed. */
+void spari_body_gravity_changed(spari_body *body);
 
 #endif

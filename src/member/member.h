@@ -7,13 +7,15 @@
 
 enum { SPARI_POINT, SPARI_RIGID, SPARI_BEAM };
 
-/* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega), a [n][6]. */
+/* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega), a
+ * [n][6]. */
 typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
 typedef struct spari_solver spari_solver; /* src/solve: the owner's integrator */
-typedef struct spari_beam spari_beam;     /* src/member/beam.h */
+typedef struct spari_beam spari_beam;     /* src/member/beam.h: the description of a beam */
+typedef struct spari_body spari_body;     /* src/member/body.h: what of it is solved, on every rank */
 
 struct spar_member {
     spar_session *session;
@@ -22,32 +24,46 @@ struct spar_member {
     int kind, external, root, owner, committed;
     int effects;       /* SPAR_EFFECT_*: asked for; after commit what is in force */
     int effects_given; /* 0: what the description implies */
-    int motion_given;  /* set_motion or drive_root was called for the step under way */
+    int motion_given;  /* set_motion was called in the step under way */
+    int drive_given;   /* drive_root was called for the step under way or next */
 
     int elements, per_element;
     int64_t nodes;
     double *xr, *qr; /* reference places [n][3] and orientations [n][4], placed; after commit */
     double place_x[3], place_q[4];
-    double mass[36];           /* rigid */
-    double velocity[3][3];     /* x0, v0, omega of the initial rigid-body field */
+    double mass[36];       /* rigid */
+    double velocity[3][3]; /* x0, v0, omega of the initial rigid-body field */
     int velocity_given;
     spari_beam *beam;
+    spari_body *body; /* of members that are solved for */
 
     spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
     double drive[2][19];     /* root q, v, a at t^n and t^{n+1} */
 
     /* nodal loads [n][6], global axes */
-    double *dead;             /* spar_member_add_load */
-    double *load_used;        /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
-    double *load_pushed;      /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
-    double *load_history[3];  /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
+    double *dead;            /* spar_member_add_load */
+    double *load_used;       /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
+    double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
+    double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
     double reaction[6];
-    double dissipated;
-    spari_solver *solver; /* on the owner, of members that are solved for */
+    double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
+    spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 
-int spari_member_commit(spar_member *member);
 void spari_member_free(spar_member *member);
+/* The latest iterate becomes the motion the clock stands at, as after a static solution. */
+void spari_member_settle(spar_member *member);
+/* The step under way is accepted, or given up. */
+void spari_member_accept(spar_member *member);
+void spari_member_reject(spar_member *member);
+/* Puts the session's gravity in force. */
+void spari_member_gravity(spar_member *member);
+/* What all ranks must agree on, as one number. */
+uint64_t spari_member_hash(const spar_member *member);
+/* Arrays of `width` doubles a node, from the public numbering (joints twice) to the unknowns' (joints once) and back.
+ */
+void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);
+void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes);
 /* Whether spar advances the member (not a point, not external). */
 int spari_member_is_solved(const spar_member *member);
 /* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */

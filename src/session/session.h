@@ -30,8 +30,8 @@ struct spar_session {
     double relaxation;
     int accept_unconverged; /* option coupling.unconverged = accept */
     int theta_on_group;     /* option fluid.theta = average (default) | group */
-    int far_refuse;         /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
-    int audit_off;          /* option fluid.audit = on (default) | off */
+    int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
+    int audit_off;  /* option fluid.audit = on (default) | off */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
     int64_t step;
@@ -39,9 +39,18 @@ struct spar_session {
     spari_phase phase;
     int started;  /* the clock has run */
     int refused;  /* status of a push refused since the last check */
-    double *pack; /* loads of all members, stacked, for the ranks' sum */
-    int64_t *first; /* motion blocks by rank */
-    double *motion; /* motion of all solved members, by owner */
+    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
+    int64_t pack_count;
+    int64_t *first; /* several ranks: where the block of each rank's members begins in `motion` */
+    double *motion; /* several ranks: motion of all solved members, by owner */
 };
+
+/* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
+int spari_session_exchange_loads(spar_session *session, int status);
+/* Motion, reaction and dissipation of the members each rank has solved for, from member->after, to all ranks.
+ * Collective. */
+int spari_session_share_motion(spar_session *session, int status);
+/* Memory for the two calls above, for the members committed by now; agrees on a status. Collective. */
+int spari_session_seal(spar_session *session, int status);
 
 #endif

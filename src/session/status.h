@@ -9,28 +9,31 @@
 #define SPARI_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 #else
 #define SPARI_PRINTF(fmt, args)
+/* GSL's default error handler aborts: turns it off, once for the process; a handler that a user has set stays. */
+void spari_gsl_quiet(void);
+
 #endif
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
 
-/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this thread,
-   which spar_session_message(NULL) gives back (a failed create has no session to ask). */
+/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
+   thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
 int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
 
 /* Checks and returns, at the public edge and below it. */
-#define SPARI_TRY(call)                                                                                               \
-    do {                                                                                                              \
-        int spari_status_ = (call);                                                                                   \
-        if (spari_status_ != SPAR_OK) {                                                                               \
-            return spari_status_;                                                                                     \
-        }                                                                                                             \
+#define SPARI_TRY(call)                                                                                                \
+    do {                                                                                                               \
+        int spari_status_ = (call);                                                                                    \
+        if (spari_status_ != SPAR_OK) {                                                                                \
+            return spari_status_;                                                                                      \
+        }                                                                                                              \
     } while (0)
 
-#define SPARI_REQUIRE(session, condition, status, ...)                                                                \
-    do {                                                                                                              \
-        if (!(condition)) {                                                                                           \
-            return spari_fail(session, status, __VA_ARGS__);                                                          \
-        }                                                                                                             \
+#define SPARI_REQUIRE(session, condition, status, ...)                                                                 \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            return spari_fail(session, status, __VA_ARGS__);                                                           \
+        }                                                                                                              \
     } while (0)
 
 /* Index of the first entry of x[n] that is not finite, or -1. */
@@ -38,5 +41,8 @@ int64_t spari_first_nonfinite(const double *x, int64_t n);
 
 /* Zeroed memory for n items, never NULL for n = 0; NULL when there is none left. Free with free(). */
 void *spari_zalloc(int64_t n, size_t size);
+
+/* GSL's default error handler aborts: turns it off, once for the process; a handler that a user has set stays. */
+void spari_gsl_quiet(void);
 
 #endif

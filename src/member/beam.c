@@ -1,0 +1,546 @@
+#include "beam.h"
+
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "../session/session.h"
+
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit.h>
+#include <gsl/gsl_spline.h>
+#include <stdlib.h>
+#include <string.h>
+
+void spari_beam_free(spari_beam *beam) {
+    if (!beam) {
+        return;
+    }
+    free(beam->eta);
+    free(beam->xyz);
+    free(beam->twist);
+    free(beam->node_x);
+    free(beam->node_q);
+    free(beam->section_eta);
+    free(beam->stiffness);
+    free(beam->mass);
+    free(beam);
+}
+
+/* ---- the line: nodes from axis points ---- */
+
+static int no_memory(const spar_member *member, const char *what) {
+    return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for %s", member->name, what);
+}
+
+/* Few points: the polynomial through all of them (Lagrange, barycentric), exact on every element. */
+static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
+    int n = (int)beam->axis_count;
+    double sum = 0, total[3] = {0};
+    for (int i = 0; i < n; i++) {
+        double w = 1;
+        for (int j = 0; j < n; j++) {
+            w *= j == i ? 1 : (eta - beam->eta[j]) / (beam->eta[i] - beam->eta[j]);
+        }
+        sum += w;
+        for (int c = 0; c < 3; c++) {
+            total[c] += w * beam->xyz[3 * i + c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        x[c] = total[c] / sum;
+    }
+}
+
+/* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
+   points counts so little (1e-7) that it decides only what the points leave open. */
+static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
+                       const double *spline, double *x) {
+    double e0 = (double)e / elements, e1 = (double)(e + 1) / elements, phi[SPARI_MAX_NODES];
+    int64_t first = 0, last = beam->axis_count - 1;
+    while (first < last && beam->eta[first] < e0) {
+        first++;
+    }
+    while (last > first && beam->eta[last] > e1) {
+        last--;
+    }
+    size_t inner = (size_t)(P - 2),
+           points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (size_t)(last - first + 1) : 0;
+    size_t rows = points + inner;
+    gsl_matrix *A = gsl_matrix_alloc(rows, inner), *cov = gsl_matrix_alloc(inner, inner);
+    gsl_vector *b = gsl_vector_alloc(rows), *c = gsl_vector_alloc(inner);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, inner);
+    int ok = A && cov && b && c && work;
+    for (int d = 0; d < 3 && ok; d++) {
+        for (size_t i = 0; i < rows; i++) {
+            int data = i < points;
+            double w = data ? 1 : 1e-7,
+                   xi = data ? 2 * (beam->eta[first + (int64_t)i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
+            double value = data ? beam->xyz[3 * (first + (int64_t)i) + d] : spline[3 * (1 + i - points) + (size_t)d];
+            spari_lagrange(P, gll, bary, xi, phi, NULL);
+            gsl_vector_set(b, i, w * (value - phi[0] * x[d] - phi[P - 1] * x[3 * (P - 1) + d]));
+            for (size_t j = 0; j < inner; j++) {
+                gsl_matrix_set(A, i, j, w * phi[1 + j]);
+            }
+        }
+        double chisq;
+        size_t rank;
+        ok = gsl_multifit_linear_tsvd(A, b, 1e-14, c, cov, &chisq, &rank, work) == GSL_SUCCESS;
+        for (size_t j = 0; j < inner && ok; j++) {
+            x[3 * (j + 1) + (size_t)d] = gsl_vector_get(c, j);
+        }
+    }
+    gsl_matrix_free(A);
+    gsl_matrix_free(cov);
+    gsl_vector_free(b);
+    gsl_vector_free(c);
+    if (work) {
+        gsl_multifit_linear_free(work);
+    }
+    return ok ? 0 : 1;
+}
+
+/* x [elements * P][3] from the axis points; ends exact, joints on the spline (or on the axis point that is there). */
+static int fit_axis(spar_member *member, const double *gll, const double *bary, double *x) {
+    const spari_beam *beam = member->beam;
+    int E = member->elements, P = member->per_element;
+    size_t n = (size_t)beam->axis_count;
+    double *column = spari_zalloc(beam->axis_count, sizeof *column),
+           *spline_x = spari_zalloc(3 * member->nodes, sizeof *spline_x);
+    gsl_spline *spline = gsl_spline_alloc(gsl_interp_cspline, n);
+    int bad = !column || !spline || !spline_x;
+    for (int d = 0; d < 3 && !bad; d++) {
+        for (size_t i = 0; i < n; i++) {
+            column[i] = beam->xyz[3 * i + (size_t)d];
+        }
+        gsl_spline_init(spline, beam->eta, column, n);
+        for (int64_t i = 0; i < member->nodes; i++) {
+            double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
+            spline_x[3 * i + d] = gsl_spline_eval(spline, fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]), NULL);
+        }
+    }
+    for (int e = 0; e < E && !bad; e++) {
+        double *xe = x + 3 * (int64_t)e * P, *se = spline_x + 3 * (int64_t)e * P;
+        memcpy(xe, e == 0 ? beam->xyz : se, 3 * sizeof *xe);
+        memcpy(xe + 3 * (P - 1), e == E - 1 ? beam->xyz + 3 * (n - 1) : se + 3 * (P - 1), 3 * sizeof *xe);
+        bad = P > 2 && fit_element(beam, E, e, P, gll, bary, se, xe);
+    }
+    gsl_spline_free(spline);
+    free(column);
+    free(spline_x);
+    return bad ? no_memory(member, "the fit of its axis") : SPAR_OK;
+}
+
+/* ---- frames ---- */
+
+static double twist_at(const spari_beam *beam, double eta) {
+    if (!beam->twist) {
+        return 0;
+    }
+    int64_t i = 0, n = beam->axis_count;
+    while (i < n - 2 && eta > beam->eta[i + 1]) {
+        i++;
+    }
+    double s = (eta - beam->eta[i]) / (beam->eta[i + 1] - beam->eta[i]);
+    s = fmin(fmax(s, 0), 1);
+    return (1 - s) * beam->twist[i] + s * beam->twist[i + 1];
+}
+
+/* A point of the line: place, unit tangent, Jacobian ds/dxi. */
+typedef struct line_point {
+    double x[3], t[3], jacobian;
+} line_point;
+
+static void line_at(int P, const double *gll, const double *bary, const double *x, double xi, line_point *p) {
+    double phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
+    spari_lagrange(P, gll, bary, xi, phi, dphi);
+    memset(p, 0, sizeof *p);
+    for (int l = 0; l < P; l++) {
+        for (int i = 0; i < 3; i++) {
+            p->x[i] += phi[l] * x[3 * l + i];
+            p->t[i] += dphi[l] * x[3 * l + i];
+        }
+    }
+    p->jacobian = spari_norm(p->t);
+    for (int i = 0; i < 3; i++) {
+        p->t[i] /= p->jacobian > 0 ? p->jacobian : 1;
+    }
+}
+
+/* y axis of the untwisted section: unit(z x tangent), where the tangent keeps away from z */
+static double level_y(const double t[3], double y[3]) {
+    double n = hypot(t[0], t[1]);
+    y[0] = n > 0 ? -t[1] / n : 0, y[1] = n > 0 ? t[0] / n : 1, y[2] = 0;
+    return n;
+}
+
+/* Carries y from one point of the line to the next with the least turn: double reflection, Wang, Juttler, Zheng & Liu,
+   ACM Trans. Graph. 27 (2008). */
+static void transport(const line_point *from, const line_point *to, double y[3]) {
+    double v[3], t[3], w[3];
+    for (int i = 0; i < 3; i++) {
+        v[i] = to->x[i] - from->x[i];
+    }
+    double c = spari_dot(v, v);
+    if (c > 0) {
+        double fy = 2 * spari_dot(v, y) / c, ft = 2 * spari_dot(v, from->t) / c;
+        for (int i = 0; i < 3; i++) {
+            y[i] -= fy * v[i];
+            t[i] = from->t[i] - ft * v[i];
+            w[i] = to->t[i] - t[i];
+        }
+        double cw = spari_dot(w, w), fw = cw > 0 ? 2 * spari_dot(w, y) / cw : 0;
+        for (int i = 0; i < 3; i++) {
+            y[i] -= fw * w[i];
+        }
+    }
+    double along = spari_dot(y, to->t);
+    for (int i = 0; i < 3; i++) {
+        y[i] -= along * to->t[i];
+    }
+    double n = spari_norm(y);
+    for (int i = 0; i < 3; i++) {
+        y[i] /= n;
+    }
+}
+
+/* R (columns: tangent, y, z) of a section whose untwisted y is given */
+static void frame(const double t[3], const double y0[3], double twist, double R[9]) {
+    double z0[3], c = cos(twist), s = sin(twist), y[3], z[3];
+    spari_cross(t, y0, z0);
+    for (int i = 0; i < 3; i++) {
+        y[i] = c * y0[i] + s * z0[i];
+    }
+    spari_cross(t, y, z);
+    for (int i = 0; i < 3; i++) {
+        R[3 * i] = t[i], R[3 * i + 1] = y[i], R[3 * i + 2] = z[i];
+    }
+}
+
+/* How sections stand along the line: level where the tangent never nears z, else carried along from the root. */
+typedef struct framing {
+    int carried;
+    double *y; /* carried: untwisted y at the nodes, [nodes][3] */
+} framing;
+
+enum { NEAR_VERTICAL = 1000 }; /* sine of the tangent's angle to z below 1/1000: level sections are no longer defined */
+
+static int make_framing(spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
+    int P = member->per_element;
+    line_point p, q;
+    memset(f, 0, sizeof *f);
+    double y[3];
+    for (int64_t i = 0; i < member->nodes; i++) {
+        line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
+        f->carried |= level_y(p.t, y) * NEAR_VERTICAL < 1;
+    }
+    if (!f->carried) {
+        return SPAR_OK;
+    }
+    f->y = spari_zalloc(3 * member->nodes, sizeof *f->y);
+    if (!f->y) {
+        return no_memory(member, "its frames");
+    }
+    line_at(P, gll, bary, x, -1, &p);
+    if (level_y(p.t, y) * NEAR_VERTICAL < 1) {
+        y[0] = -p.t[1] * p.t[0], y[1] = 1 - p.t[1] * p.t[1], y[2] = -p.t[1] * p.t[2];
+        double n = spari_norm(y);
+        y[0] /= n, y[1] /= n, y[2] /= n;
+    }
+    for (int64_t i = 0; i < member->nodes; i++) {
+        line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &q);
+        transport(&p, &q, y);
+        memcpy(f->y + 3 * i, y, 3 * sizeof *y);
+        p = q;
+    }
+    return SPAR_OK;
+}
+
+static void frame_at(const spar_member *member, const framing *f, const double *gll, const double *bary,
+                     const double *x, int e, double xi, double R[9]) {
+    int P = member->per_element, below = 0;
+    const double *xe = x + 3 * (int64_t)e * P;
+    line_point p, q;
+    double y[3];
+    line_at(P, gll, bary, xe, xi, &q);
+    if (f->carried) {
+        while (below < P - 1 && gll[below + 1] <= xi) {
+            below++;
+        }
+        line_at(P, gll, bary, xe, gll[below], &p);
+        memcpy(y, f->y + 3 * ((int64_t)e * P + below), sizeof y);
+        transport(&p, &q, y);
+    } else {
+        level_y(q.t, y);
+    }
+    frame(q.t, y, twist_at(member->beam, 0.5 * (1 + spari_member_xi(member, e, xi))), R);
+}
+
+/* ---- nodes ---- */
+
+/* Own-frame nodes, before placement: x and, when wanted, q. */
+static int own_nodes(spar_member *member, const double *gll, const double *bary, double *x, double *q) {
+    const spari_beam *beam = member->beam;
+    int P = member->per_element;
+    if (beam->node_x) {
+        memcpy(x, beam->node_x, (size_t)member->nodes * 3 * sizeof *x);
+    } else if (beam->axis_count <= P) {
+        for (int64_t i = 0; i < member->nodes; i++) {
+            interpolate_axis(beam, 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P])), x + 3 * i);
+        }
+        memcpy(x, beam->xyz, 3 * sizeof *x);
+        memcpy(x + 3 * (member->nodes - 1), beam->xyz + 3 * (beam->axis_count - 1), 3 * sizeof *x);
+    } else {
+        SPARI_TRY(fit_axis(member, gll, bary, x));
+    }
+    if (beam->node_q) {
+        memcpy(q, beam->node_q, (size_t)member->nodes * 4 * sizeof *q);
+        return SPAR_OK;
+    }
+    framing f;
+    SPARI_TRY(make_framing(member, gll, bary, x, &f));
+    for (int64_t i = 0; i < member->nodes; i++) {
+        double R[9];
+        frame_at(member, &f, gll, bary, x, (int)(i / P), gll[i % P], R);
+        spari_matrix_quat(R, q + 4 * i);
+    }
+    free(f.y);
+    return SPAR_OK;
+}
+
+/* The line must run, and the sections must stand across it. */
+static int check_line(spar_member *member, const double *gll, const double *bary, const double *x, const double *q) {
+    int P = member->per_element;
+    double length = 0;
+    for (int64_t i = 1; i < member->nodes; i++) {
+        double d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
+        length += spari_norm(d);
+    }
+    for (int64_t i = 0; i < member->nodes; i++) {
+        line_point p;
+        double along[3] = {1, 0, 0};
+        line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
+        SPARI_REQUIRE(member->session, p.jacobian > 1e-9 * length / member->elements, SPAR_ERR_ARGUMENT,
+                      "member '%s': its line stands still at node %lld (points coincide); give distinct places",
+                      member->name, (long long)i);
+        spari_rotate(q + 4 * i, along, along);
+        SPARI_REQUIRE(member->session, spari_dot(along, p.t) > 0.7, SPAR_ERR_ARGUMENT,
+                      "member '%s': at node %lld the section's x axis is %.0f degrees off the line's tangent; the x "
+                      "axis of a section runs along the beam",
+                      member->name, (long long)i, 180 / 3.14159265358979323846 * acos(fmax(-1, spari_dot(along, p.t))));
+    }
+    return SPAR_OK;
+}
+
+int spari_beam_place_nodes(spar_member *member) {
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
+    spari_gll(member->per_element, gll, NULL, bary);
+    SPARI_TRY(own_nodes(member, gll, bary, member->xr, member->qr));
+    SPARI_TRY(check_line(member, gll, bary, member->xr, member->qr));
+    for (int64_t i = 0; i < member->nodes; i++) {
+        double *x = member->xr + 3 * i, *q = member->qr + 4 * i;
+        spari_rotate(member->place_q, x, x);
+        for (int c = 0; c < 3; c++) {
+            x[c] += member->place_x[c];
+        }
+        spari_quat_mul(member->place_q, q, q);
+        spari_quat_normalise(q);
+    }
+    return SPAR_OK;
+}
+
+/* ---- sections and quadrature ---- */
+
+/* Linear in eta between stations, constant beyond the first and last. */
+static void section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
+    int64_t i = 0, n = beam->section_count;
+    while (i < n - 2 && eta > beam->section_eta[i + 1]) {
+        i++;
+    }
+    double s = 0;
+    if (n > 1) {
+        s = (eta - beam->section_eta[i]) / (beam->section_eta[i + 1] - beam->section_eta[i]);
+        s = fmin(fmax(s, 0), 1);
+    }
+    for (int k = 0; k < 36; k++) {
+        out[k] = (1 - s) * table[36 * i + k] + (s > 0 ? s * table[36 * (i + 1) + k] : 0);
+    }
+}
+
+/* T C T^T with T = diag(R, R) */
+static void turn_section(const double R[9], const double *C, double *out) {
+    double half[36];
+    for (int bi = 0; bi < 6; bi += 3) {
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 6; j++) {
+                half[6 * (bi + i) + j] =
+                    R[3 * i] * C[6 * bi + j] + R[3 * i + 1] * C[6 * (bi + 1) + j] + R[3 * i + 2] * C[6 * (bi + 2) + j];
+            }
+        }
+    }
+    for (int i = 0; i < 6; i++) {
+        for (int bj = 0; bj < 6; bj += 3) {
+            for (int j = 0; j < 3; j++) {
+                out[6 * i + bj + j] = half[6 * i + bj] * R[3 * j] + half[6 * i + bj + 1] * R[3 * j + 1] +
+                                      half[6 * i + bj + 2] * R[3 * j + 2];
+            }
+        }
+    }
+}
+
+/* Points of element e: xi and weights, at most `room`; returns how many (also with xi NULL). By section intervals: a
+   piece of the element of relative length d gets `points` Gauss points, or, unasked, as many as integrate its share of
+   the element's polynomials. */
+static int element_points(const spari_beam *beam, int elements, int e, int P, double *xi, double *w) {
+    double gx[512], gw[512];
+    int rule = beam->rule;
+    if (rule < 0) {
+        rule = beam->section_count > 2 ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;
+    }
+    if (rule != SPAR_QUADRATURE_SECTIONS) {
+        int n = beam->points > 0 ? beam->points : P;
+        if (!xi) {
+            return n;
+        }
+        if (rule == SPAR_QUADRATURE_LOBATTO) {
+            spari_gll(n, xi, w, NULL);
+            return n;
+        }
+        return spari_gauss(n, xi, w) ? -1 : n;
+    }
+    double from = -1;
+    int count = 0;
+    for (int64_t i = 0; i <= beam->section_count && from < 1; i++) {
+        double to = i < beam->section_count ? 2 * (beam->section_eta[i] * elements - e) - 1 : 1;
+        to = to > 1 - 1e-9 ? 1 : to;
+        if (to - from < 1e-9) {
+            continue;
+        }
+        double half = 0.5 * (to - from);
+        int n = beam->points > 0 ? beam->points : 1 + (int)ceil(half * P);
+        if (xi) {
+            if (spari_gauss(n, gx, gw)) {
+                return -1;
+            }
+            for (int k = 0; k < n; k++) {
+                xi[count + k] = from + half * (1 + gx[k]);
+                w[count + k] = half * gw[k];
+            }
+        }
+        count += n;
+        from = to;
+    }
+    return count;
+}
+
+/* Reference orientation at a quadrature point: from the description of the axis where there is one, else the
+ * interpolated nodes. */
+static void reference_frame(const spar_member *member, const framing *f, const double *gll, const double *bary,
+                            const double *x, int e, double xi, double R[9]) {
+    int P = member->per_element;
+    if (!member->beam->node_q) {
+        double own[9], place[9];
+        frame_at(member, f, gll, bary, x, e, xi, own);
+        spari_quat_matrix(member->place_q, place);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                R[3 * i + j] = place[3 * i] * own[j] + place[3 * i + 1] * own[3 + j] + place[3 * i + 2] * own[6 + j];
+            }
+        }
+        return;
+    }
+    double phi[SPARI_MAX_NODES], q[4] = {0}, sign = 1;
+    const double *qe = member->qr + 4 * (int64_t)e * P;
+    spari_lagrange(P, gll, bary, xi, phi, NULL);
+    for (int l = 0; l < P; l++) {
+        sign = l > 0 && spari_quat_dot(qe + 4 * l, qe + 4 * l - 4) < 0 ? -sign : sign;
+        for (int i = 0; i < 4; i++) {
+            q[i] += sign * phi[l] * qe[4 * l + i];
+        }
+    }
+    spari_quat_normalise(q);
+    spari_quat_matrix(q, R);
+}
+
+static void fill_point(const spar_member *member, spari_body *b, int k, int e, double xi, double w, const double R[9],
+                       const double *gll, const double *bary) {
+    const spari_beam *beam = member->beam;
+    int P = b->per_element;
+    line_point p;
+    double eta = 0.5 * (1 + spari_member_xi(member, e, xi)), section[36];
+    line_at(P, gll, bary, member->xr + 3 * (int64_t)e * P, xi, &p);
+    spari_lagrange(P, gll, bary, xi, b->phi + (int64_t)k * P, b->dphi + (int64_t)k * P);
+    for (int l = 0; l < P; l++) {
+        b->dphi[(int64_t)k * P + l] /= p.jacobian;
+    }
+    b->weight[k] = w * p.jacobian;
+    memcpy(b->tangent + 3 * (int64_t)k, p.t, sizeof p.t);
+    memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
+    b->length += b->weight[k];
+    section_at(beam, beam->stiffness, eta, section);
+    turn_section(R, section, b->C + 36 * (int64_t)k);
+    if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite whatever the coupling, mu_i C_ii on the diagonal */
+        for (int i = 0; i < 6; i++) {
+            for (int j = 0; j < 6; j++) {
+                section[6 * i + j] *= sqrt(beam->mu[i] * beam->mu[j]);
+            }
+        }
+        turn_section(R, section, b->D + 36 * (int64_t)k);
+    }
+    if (b->mass) {
+        double *m = b->mass + 10 * (int64_t)k;
+        section_at(beam, beam->mass, eta, section);
+        spari_mass_place(R, section, m);
+    }
+}
+
+int spari_beam_build(spar_member *member, spari_body **body) {
+    const spari_beam *beam = member->beam;
+    int E = member->elements, P = member->per_element, points = 0, most = 0;
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
+    spari_gll(P, gll, NULL, bary);
+    for (int e = 0; e < E; e++) {
+        int n = element_points(beam, E, e, P, NULL, NULL);
+        SPARI_REQUIRE(member->session, n >= P - 1, SPAR_ERR_ARGUMENT,
+                      "member '%s': element %d has %d quadrature points for %d nodes, its stiffness would be singular; "
+                      "ask for at least %d",
+                      member->name, e, n, P, P - 1);
+        points += n;
+        most = n > most ? n : most;
+    }
+    int damped = beam->damped && (member->effects & SPAR_EFFECT_DAMPING),
+        massive = beam->mass && (member->effects & SPAR_EFFECT_INERTIA);
+    massive = massive || (beam->mass && (member->effects & SPAR_EFFECT_GRAVITY));
+    spari_body *b = spari_body_create(E, P, points, 1, damped, massive);
+    double *xi = spari_zalloc(most, sizeof *xi), *w = spari_zalloc(most, sizeof *w),
+           *x = spari_zalloc(3 * member->nodes, sizeof *x);
+    double *q = spari_zalloc(4 * member->nodes, sizeof *q);
+    framing f = {0, NULL};
+    int status = b && xi && w && x && q ? SPAR_OK : no_memory(member, "its quadrature points");
+    if (status == SPAR_OK && !beam->node_q) {
+        status = own_nodes(member, gll, bary, x, q);
+        status = status == SPAR_OK ? make_framing(member, gll, bary, x, &f) : status;
+    }
+    for (int e = 0, k = 0; e < E && status == SPAR_OK; e++) {
+        int n = element_points(beam, E, e, P, xi, w);
+        if (n < 0) {
+            status = no_memory(member, "its quadrature");
+            break;
+        }
+        for (int i = 0; i < n; i++, k++) {
+            double R[9];
+            reference_frame(member, &f, gll, bary, x, e, xi[i], R);
+            fill_point(member, b, k, e, xi[i], w[i], R, gll, bary);
+        }
+        b->first[e + 1] = k;
+    }
+    free(xi);
+    free(w);
+    free(x);
+    free(q);
+    free(f.y);
+    if (status != SPAR_OK) {
+        spari_body_free(b);
+        return status;
+    }
+    *body = b;
+    return SPAR_OK;
+}

@@ -1,0 +1,33 @@
+/* What a beam's host says of it, and how that becomes nodes and a body. */
+#ifndef SPARI_BEAM_H
+#define SPARI_BEAM_H
+
+#include "body.h"
+#include "member.h"
+
+struct spari_beam {
+    int64_t axis_count, section_count;
+    double *eta, *xyz, *twist; /* axis points */
+    double *node_x, *node_q;   /* nodes given instead */
+    double *section_eta, *stiffness, *mass;
+    int rule, points; /* rule -1: chosen by what the sections are */
+    double mu[6];
+    int damped;
+};
+
+/* Fills member->xr, qr (placed) from the axis or the nodes given. */
+int spari_beam_place_nodes(spar_member *member);
+/* Builds the body; the description has been checked. */
+int spari_beam_build(spar_member *member, spari_body **body);
+void spari_beam_free(spari_beam *beam);
+
+/* A rigid body of 6x6 mass (about its node, in its own axes) as a body of one node. */
+int spari_rigid_build(spar_member *member, spari_body **body);
+
+/* m, c, J of a 6x6 mass matrix in the order (axial, shear y, shear z, torsion, bending y, bending z); 0 if it has that
+   form, else a text that says what is wrong. */
+/* The same turned by R (row-major, local to global) into a row of spari_body.mass. */
+void spari_mass_place(const double R[9], const double M[36], double out[10]);
+const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]);
+
+#endif

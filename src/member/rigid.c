@@ -1,0 +1,95 @@
+#include "beam.h"
+
+#include "../math/rotation.h"
+#include "../session/session.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A rigid section or body moves as m (v + w x c), J w + c x m v: M = [m I, -m c~; m c~, J]. */
+const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]) {
+    double size = 0, inertia = 0;
+    for (int i = 0; i < 3; i++) {
+        size = fmax(size, fabs(M[7 * i]));
+        inertia = fmax(inertia, fabs(M[7 * (3 + i)]));
+    }
+    double coupling = sqrt(size * inertia), tol = 1e-6;
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < i; j++) {
+            double scale = i < 3 ? size : j < 3 ? coupling : inertia;
+            if (fabs(M[6 * i + j] - M[6 * j + i]) > tol * scale) {
+                return "it is not symmetric";
+            }
+        }
+    }
+    *m = (M[0] + M[7] + M[14]) / 3;
+    if (M[0] < 0 || M[7] < 0 || M[14] < 0) {
+        return "its mass is negative";
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            if (fabs(M[6 * i + j] - (i == j ? *m : 0)) > tol * size) {
+                return "its upper left block is not m times the identity";
+            }
+            if (fabs(M[6 * (3 + i) + j] + M[6 * (3 + j) + i]) > tol * coupling) {
+                return "its lower left block is not skew (m times the offset of the centre of mass)";
+            }
+        }
+    }
+    double mc[3] = {0.5 * (M[31] - M[26]), 0.5 * (M[20] - M[30]), 0.5 * (M[24] - M[19])};
+    for (int i = 0; i < 3; i++) {
+        if (*m == 0 && mc[i] != 0) {
+            return "it has an offset but no mass";
+        }
+        c[i] = *m > 0 ? mc[i] / *m : 0;
+    }
+    J[0] = M[21], J[1] = M[22], J[2] = M[23], J[3] = M[28], J[4] = M[29], J[5] = M[35];
+    /* about the centre of mass the inertia must not be negative: leading and trailing minors of J - m (c.c I - c c^T)
+     */
+    double cc = spari_dot(c, c), small = tol * inertia;
+    double a = J[0] - *m * (cc - c[0] * c[0]), b = J[3] - *m * (cc - c[1] * c[1]), d = J[5] - *m * (cc - c[2] * c[2]);
+    double f = J[1] + *m * c[0] * c[1], g = J[2] + *m * c[0] * c[2], h = J[4] + *m * c[1] * c[2];
+    if (a < -small || b < -small || d < -small || a * b - f * f < -small * inertia ||
+        a * d - g * g < -small * inertia || b * d - h * h < -small * inertia ||
+        a * (b * d - h * h) - f * (f * d - g * h) + g * (f * h - g * b) < -small * inertia * inertia) {
+        return "its rotary inertia about the centre of mass is negative";
+    }
+    return NULL;
+}
+
+void spari_mass_place(const double R[9], const double M[36], double out[10]) {
+    double m, c[3], J[6], half[3][3], g[3][3];
+    spari_mass_split(M, &m, c, J);
+    double full[3][3] = {{J[0], J[1], J[2]}, {J[1], J[3], J[4]}, {J[2], J[4], J[5]}};
+    for (int i = 0; i < 3; i++) {
+        out[1 + i] = m * (R[3 * i] * c[0] + R[3 * i + 1] * c[1] + R[3 * i + 2] * c[2]);
+        for (int j = 0; j < 3; j++) {
+            half[i][j] = R[3 * i] * full[0][j] + R[3 * i + 1] * full[1][j] + R[3 * i + 2] * full[2][j];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            g[i][j] = half[i][0] * R[3 * j] + half[i][1] * R[3 * j + 1] + half[i][2] * R[3 * j + 2];
+        }
+    }
+    out[0] = m;
+    out[4] = g[0][0], out[5] = g[0][1], out[6] = g[0][2], out[7] = g[1][1], out[8] = g[1][2], out[9] = g[2][2];
+}
+
+int spari_rigid_build(spar_member *member, spari_body **body) {
+    double R[9];
+    spari_body *b = spari_body_create(1, 1, 1, 0, 0, 1);
+    if (!b) {
+        return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for the rigid body", member->name);
+    }
+    b->first[1] = 1;
+    b->phi[0] = b->weight[0] = 1;
+    spari_quat_matrix(member->qr, R);
+    spari_mass_place(R, member->mass, b->mass);
+    memcpy(b->place, member->xr, 3 * sizeof *b->place);
+    const double *m = b->mass;
+    double gyration = m[0] > 0 ? sqrt((m[4] + m[7] + m[9]) / m[0]) : 0;
+    b->length = gyration > 0 ? gyration : 1;
+    *body = b;
+    return SPAR_OK;
+}

@@ -1,0 +1,371 @@
+#include "session.h"
+
+#include "../member/body.h"
+#include "../solve/solver.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- create and destroy ---- */
+
+/* Default tolerance of Newton: increments to a billionth, and the last digits of a place. */
+static const double default_atol = 1e-12, default_rtol = 1e-9;
+
+static int session_create(spari_comm *comm, spar_session **session) {
+    spar_session *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        spari_comm_destroy(&comm);
+        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_session_create: no memory for the session");
+    }
+    spari_gsl_quiet();
+    s->comm = comm;
+    s->rho_inf = 0.9;
+    s->substeps = 1;
+    s->newton_atol = default_atol;
+    s->newton_rtol = default_rtol;
+    s->newton_max = 50;
+    s->predictor = 1;
+    s->scheme = SPAR_COUPLING_EXPLICIT;
+    s->coupling_atol = 1e-9;
+    s->coupling_rtol = 1e-6;
+    s->coupling_max = 50;
+    s->relaxation = 1;
+    *session = s;
+    return SPAR_OK;
+}
+
+int spar_session_create(spar_session **session) {
+    spari_comm *comm = NULL;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create: no place for the new session (NULL)");
+    SPARI_REQUIRE(NULL, spari_comm_create_self(&comm) == SPAR_OK, SPAR_ERR_MEMORY,
+                  "spar_session_create: no memory for the session");
+    return session_create(comm, session);
+}
+
+int spar_session_create_fcomm(int comm, spar_session **session) {
+    spari_comm *ranks = NULL;
+    const char *why = "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create_fcomm: no place for the new session (NULL)");
+    int status = spari_comm_create_fortran(comm, &ranks, &why);
+    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "spar_session_create_fcomm: %s", why);
+    return session_create(ranks, session);
+}
+
+void spar_session_destroy(spar_session **session) {
+    if (!session || !*session) {
+        return;
+    }
+    spar_session *s = *session;
+    for (spar_fluid *f = s->fluids, *next; f; f = next) {
+        next = spari_fluid_next(f);
+        spari_fluid_free(f);
+    }
+    for (spar_member *m = s->members, *next; m; m = next) {
+        next = m->next;
+        spari_member_free(m);
+    }
+    spari_comm_destroy(&s->comm);
+    free(s->pack);
+    free(s->first);
+    free(s->motion);
+    free(s);
+    *session = NULL;
+}
+
+/* ---- settings ---- */
+
+static int settable(spar_session *session, const char *call) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(session, session->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is under way; change settings between steps", call);
+    return SPAR_OK;
+}
+
+int spar_session_set_log(spar_session *session, spar_log log, void *context) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_set_log: the session is NULL; create it first");
+    session->log = log;
+    session->log_context = context;
+    return SPAR_OK;
+}
+
+int spar_session_set_gravity(spar_session *session, const double g[3]) {
+    const char *call = "spar_session_set_gravity";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, g && spari_first_nonfinite(g, 3) < 0, SPAR_ERR_ARGUMENT,
+                  "%s: gravity must be three finite numbers", call);
+    memcpy(session->gravity, g, sizeof session->gravity);
+    for (spar_member *m = session->members; m; m = m->next) {
+        if (m->committed) {
+            spari_member_gravity(m);
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
+    const char *call = "spar_session_set_integrator";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, rho_inf >= 0 && rho_inf <= 1, SPAR_ERR_ARGUMENT,
+                  "%s: rho_inf is %g; give 0 (most damping) to 1 (none)", call, rho_inf);
+    SPARI_REQUIRE(session, substeps >= 1, SPAR_ERR_ARGUMENT, "%s: %d substeps; give at least 1", call, substeps);
+    session->rho_inf = rho_inf;
+    session->substeps = substeps;
+    return SPAR_OK;
+}
+
+/* tolerances and iteration limits, wherever they are set */
+static int check_limits(spar_session *session, const char *call, double atol, double rtol, int max_iterations) {
+    SPARI_REQUIRE(session, isfinite(atol) && isfinite(rtol) && atol >= 0 && rtol >= 0, SPAR_ERR_ARGUMENT,
+                  "%s: tolerances %g and %g; give finite numbers >= 0", call, atol, rtol);
+    SPARI_REQUIRE(session, max_iterations >= 1, SPAR_ERR_ARGUMENT, "%s: %d iterations; give at least 1", call,
+                  max_iterations);
+    return SPAR_OK;
+}
+
+int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
+    const char *call = "spar_session_set_newton";
+    SPARI_TRY(settable(session, call));
+    SPARI_TRY(check_limits(session, call, atol, rtol, max_iterations));
+    session->newton_atol = atol;
+    session->newton_rtol = rtol;
+    session->newton_max = max_iterations;
+    return SPAR_OK;
+}
+
+int spar_session_set_predictor(spar_session *session, int order) {
+    const char *call = "spar_session_set_predictor";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", call, order);
+    session->predictor = order;
+    return SPAR_OK;
+}
+
+int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
+    const char *call = "spar_session_set_coupling";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, scheme >= SPAR_COUPLING_EXPLICIT && scheme <= SPAR_COUPLING_IQN_ILS, SPAR_ERR_ARGUMENT,
+                  "%s: there is no scheme %d; see SPAR_COUPLING_*", call, scheme);
+    SPARI_TRY(check_limits(session, call, atol, rtol, max_iterations));
+    session->scheme = scheme;
+    session->coupling_atol = atol;
+    session->coupling_rtol = rtol;
+    session->coupling_max = max_iterations;
+    return SPAR_OK;
+}
+
+int spar_session_set_relaxation(spar_session *session, double omega) {
+    const char *call = "spar_session_set_relaxation";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]", call,
+                  omega);
+    session->relaxation = omega;
+    return SPAR_OK;
+}
+
+int spar_session_set_reproducible(spar_session *session, int on) {
+    const char *call = "spar_session_set_reproducible";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, !on || spari_comm_size(session->comm) == 1, SPAR_ERR_UNSUPPORTED,
+                  "%s: sums over several ranks are not yet independent of how nodes are spread over them", call);
+    return SPAR_OK;
+}
+
+/* The long tail: words that set one number. */
+typedef struct option {
+    const char *key, *value;
+    size_t field;
+    int to;
+} option;
+
+static const option options[] = {
+    {"coupling.unconverged", "error", offsetof(spar_session, accept_unconverged), 0},
+    {"coupling.unconverged", "accept", offsetof(spar_session, accept_unconverged), 1},
+    {"fluid.theta", "average", offsetof(spar_session, theta_on_group), 0},
+    {"fluid.theta", "group", offsetof(spar_session, theta_on_group), 1},
+    {"fluid.far", "take", offsetof(spar_session, far_refuse), 0},
+    {"fluid.far", "refuse", offsetof(spar_session, far_refuse), 1},
+    {"fluid.audit", "on", offsetof(spar_session, audit_off), 0},
+    {"fluid.audit", "off", offsetof(spar_session, audit_off), 1},
+};
+
+int spar_session_set_option(spar_session *session, const char *key, const char *value) {
+    const char *call = "spar_session_set_option";
+    SPARI_TRY(settable(session, call));
+    SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", call);
+    int known = 0;
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        if (strcmp(options[i].key, key) == 0) {
+            known = 1;
+            if (strcmp(options[i].value, value) == 0) {
+                *(int *)(void *)((char *)session + options[i].field) = options[i].to;
+                return SPAR_OK;
+            }
+        }
+    }
+    SPARI_REQUIRE(session, known, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", call, key);
+    return spari_fail(session, SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; spar.h lists its values", call, key,
+                      value);
+}
+
+int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_time: the session is NULL; create it first");
+    if (t) {
+        *t = session->time;
+    }
+    if (step) {
+        *step = session->step;
+    }
+    if (iteration) {
+        *iteration = session->iteration;
+    }
+    return SPAR_OK;
+}
+
+/* ---- between the ranks ---- */
+
+enum { MEMBER_EXTRA = 7 }; /* reaction, energy dissipated in the step */
+
+static int64_t block_size(const spar_member *m) {
+    return m->body ? 19 * (int64_t)m->body->unique + MEMBER_EXTRA : 0;
+}
+
+int spari_session_seal(spar_session *s, int status) {
+    int ranks = spari_comm_size(s->comm);
+    int64_t count = 0;
+    for (spar_member *m = s->members; m; m = m->next) {
+        count += m->committed ? 6 * m->nodes : 0;
+    }
+    if (status == SPAR_OK && (!s->pack || s->pack_count != count)) {
+        free(s->pack);
+        free(s->first);
+        free(s->motion);
+        s->pack_count = count;
+        s->first = NULL;
+        s->motion = NULL;
+        s->pack = spari_zalloc(count + 1, sizeof *s->pack);
+        int ok = s->pack != NULL;
+        if (ok && ranks > 1) {
+            s->first = spari_zalloc(ranks + 1, sizeof *s->first);
+            ok = s->first != NULL;
+            for (int r = 0; r < ranks && ok; r++) {
+                s->first[r + 1] = s->first[r] + 1; /* the status */
+                for (const spar_member *m = s->members; m; m = m->next) {
+                    s->first[r + 1] += m->owner == r ? block_size(m) : 0;
+                }
+            }
+            ok = ok && (s->motion = spari_zalloc(s->first[ranks], sizeof *s->motion));
+        }
+        if (!ok) {
+            free(s->pack);
+            s->pack = NULL;
+            status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the ranks exchange");
+        }
+    }
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+}
+
+int spari_session_exchange_loads(spar_session *s, int status) {
+    memset(s->pack, 0, (size_t)(s->pack_count + 1) * sizeof *s->pack);
+    double *at = s->pack;
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (!m->committed) {
+            continue;
+        }
+        for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+            if (spari_fluid_member(f) == m) {
+                spari_fluid_add_loads(f, at);
+            }
+        }
+        at += 6 * m->nodes;
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, s->pack, s->pack_count, status, s->message, sizeof s->message));
+    at = s->pack;
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (m->committed) {
+            memcpy(m->load_pushed, at, (size_t)(6 * m->nodes) * sizeof *at);
+            at += 6 * m->nodes;
+        }
+    }
+    return SPAR_OK;
+}
+
+/* One member's block: unknowns' q, v, a; reaction; dissipation. */
+static void pack_member(spar_member *m, double *to) {
+    int64_t n = m->body->unique;
+    spari_member_to_unique(m, 7, m->after.q, to);
+    spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
+    spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
+    memcpy(to + 19 * n, m->reaction, sizeof m->reaction);
+    to[19 * n + 6] = m->dissipated_step;
+}
+
+static void unpack_member(spar_member *m, const double *from) {
+    int64_t n = m->body->unique;
+    spari_member_from_unique(m, 7, from, m->after.q);
+    spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
+    spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
+    memcpy(m->reaction, from + 19 * n, sizeof m->reaction);
+    m->dissipated_step = from[19 * n + 6];
+}
+
+int spari_session_share_motion(spar_session *s, int status) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    if (ranks == 1) {
+        return status;
+    }
+    double *at = s->motion + s->first[rank];
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        if (m->owner == rank && m->body) {
+            pack_member(m, at);
+            at += block_size(m);
+        }
+    }
+    SPARI_TRY(spari_comm_share(s->comm, s->motion, s->first, status, s->message, sizeof s->message));
+    for (int r = 0; r < ranks; r++) {
+        at = s->motion + s->first[r];
+        for (spar_member *m = s->members; m; m = m->next) {
+            if (m->owner == r && m->body) {
+                if (r != rank) {
+                    unpack_member(m, at);
+                }
+                at += block_size(m);
+            }
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_member_solve_static(spar_member *member, int load_steps) {
+    const char *call = "spar_member_solve_static";
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    spar_session *s = member->session;
+    int status = SPAR_OK;
+    if (!member->committed) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first", call,
+                            member->name);
+    } else if (s->phase != SPARI_IDLE) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first", call,
+                            member->name);
+    } else if (load_steps < 1) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, member->name,
+                            load_steps);
+    } else if (!member->body) {
+        status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)", call,
+                            member->name);
+    } else if (member->root == SPAR_ROOT_FREE || (member->root == SPAR_ROOT_PINNED && !member->body->C)) {
+        status =
+            spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
+    }
+    SPARI_TRY(spari_session_seal(s, status));
+    if (!s->started) {
+        SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
+    }
+    if (member->solver) {
+        status = spari_solver_static(member, load_steps);
+    }
+    SPARI_TRY(spari_session_share_motion(s, status));
+    member->dissipated_step = 0;
+    spari_member_settle(member);
+    return SPAR_OK;
+}

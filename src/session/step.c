@@ -1,0 +1,303 @@
+/* One coupling step: predict, solve, check, accept or reject. */
+#include "session.h"
+
+#include "../member/body.h"
+#include "../solve/solver.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const phase_name[] = {"no step is under way", "the step has begun and is not solved",
+                                         "the step is solved and not checked", "the step is checked"};
+
+/* Every call of the step agrees on a status before anything else. */
+static int agree(spar_session *s, int status) {
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+}
+
+static int wrong_phase(spar_session *s, const char *call, const char *cure) {
+    return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->phase], cure);
+}
+
+/* ---- begin ---- */
+
+static int check_begin(spar_session *s, double dt) {
+    const char *call = "spar_step_begin";
+    if (s->phase != SPARI_IDLE) {
+        return wrong_phase(s, call, "accept or reject it first");
+    }
+    SPARI_REQUIRE(s, isfinite(dt) && dt > 0, SPAR_ERR_ARGUMENT, "%s: dt is %g; give a positive number of seconds", call,
+                  dt);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
+                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
+    }
+    return SPAR_OK;
+}
+
+/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. With order 1 the spec's
+   f + dt^{n+1}/dt^n (f^n - f^{n-1}). */
+static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
+    double w[3] = {1, 0, 0};
+    if (order == 1) {
+        double r = dt / last[0];
+        w[0] = 1 + r, w[1] = -r;
+    } else if (order == 2) {
+        double a = last[0], b = last[0] + last[1]; /* nodes 0, -a, -b */
+        w[0] = (dt + a) * (dt + b) / (a * b);
+        w[1] = -dt * (dt + b) / (a * (b - a));
+        w[2] = dt * (dt + a) / (b * (b - a));
+    }
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        double f = w[0] * m->load_history[0][i];
+        f += order > 0 ? w[1] * m->load_history[1][i] : 0;
+        f += order > 1 ? w[2] * m->load_history[2][i] : 0;
+        m->load_used[i] = f;
+    }
+}
+
+/* A driven root that was not driven for this step stays where it is. */
+static void hold_root(spar_member *m) {
+    if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) && !m->drive_given) {
+        memcpy(m->drive[1], m->drive[0], 7 * sizeof(double));
+        memset(m->drive[1] + 7, 0, 12 * sizeof(double));
+    }
+}
+
+int spar_step_begin(spar_session *session, double dt) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
+    spar_session *s = session;
+    int same = 1;
+    uint64_t key;
+    SPARI_TRY(agree(s, check_begin(s, dt)));
+    memcpy(&key, &dt, sizeof key);
+    SPARI_TRY(spari_comm_same(s->comm, key, &same));
+    SPARI_REQUIRE(s, same, SPAR_ERR_COMM,
+                  "spar_step_begin: the ranks give different dt (here %g); give the same on every rank", dt);
+    if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
+        SPARI_TRY(spari_session_seal(s, SPAR_OK));
+        SPARI_TRY(spari_session_exchange_loads(s, s->refused));
+        for (spar_member *m = s->members; m; m = m->next) {
+            memcpy(m->load_history[0], m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+        }
+    }
+    int order = s->step < s->predictor ? (int)s->step : s->predictor;
+    for (spar_member *m = s->members; m; m = m->next) {
+        hold_root(m);
+        predict_loads(m, order, dt, s->dt_last);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_begin(f, order, dt, s->dt_last);
+    }
+    s->dt = dt;
+    s->iteration = 0;
+    s->refused = SPAR_OK;
+    s->phase = SPARI_BEGUN;
+    s->started = 1;
+    return SPAR_OK;
+}
+
+/* ---- solve ---- */
+
+static int solve_member(spar_member *m, double dt) {
+    if (m->solver) {
+        return spari_solver_advance(m, dt);
+    }
+    if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
+        memcpy(m->after.q, m->drive[1], 7 * sizeof(double));
+        memcpy(m->after.v, m->drive[1] + 7, 6 * sizeof(double));
+        memcpy(m->after.a, m->drive[1] + 13, 6 * sizeof(double));
+    }
+    return SPAR_OK;
+}
+
+int spar_step_solve(spar_session *session) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
+    spar_session *s = session;
+    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        status = solve_member(m, s->dt);
+    }
+    int agreed = spari_comm_size(s->comm) > 1 && s->motion ? spari_session_share_motion(s, status) : agree(s, status);
+    if (agreed != SPAR_OK) {
+        if (s->phase != SPARI_IDLE) { /* t^n is untouched; forget the half-solved iterate */
+            for (spar_member *m = s->members; m; m = m->next) {
+                if (m->body) {
+                    spari_member_reject(m);
+                }
+            }
+            s->phase = SPARI_BEGUN;
+        }
+        return agreed;
+    }
+    s->phase = SPARI_SOLVED;
+    return SPAR_OK;
+}
+
+/* ---- check ---- */
+
+/* Size of the loads' change and of the loads: forces, and moments over the member's length, root of the sum of squares.
+ */
+static void load_norms(const spar_session *s, double *residual, double *size) {
+    double r2 = 0, f2 = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        double per_length = m->body ? 1 / m->body->length : 1;
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * m->load_used[i];
+            r2 += r * r;
+            f2 += f * f;
+        }
+    }
+    *residual = sqrt(r2);
+    *size = sqrt(f2);
+}
+
+/* Loads for the next solution: a part omega of the way to those that came back. */
+static void relax(spar_session *s) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            m->load_used[i] += s->relaxation * (m->load_pushed[i] - m->load_used[i]);
+        }
+    }
+}
+
+static int check_done(spar_session *s, int *done) {
+    double residual, size;
+    *done = 1;
+    if (s->scheme == SPAR_COUPLING_EXPLICIT) {
+        return SPAR_OK;
+    }
+    SPARI_REQUIRE(s, s->scheme == SPAR_COUPLING_FIXED_POINT, SPAR_ERR_UNSUPPORTED,
+                  "spar_step_check: this scheme is not there yet");
+    load_norms(s, &residual, &size);
+    if (residual <= s->coupling_atol + s->coupling_rtol * size) {
+        return SPAR_OK;
+    }
+    if (s->iteration >= s->coupling_max) {
+        SPARI_REQUIRE(s, s->accept_unconverged, SPAR_ERR_NUMERIC,
+                      "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g of "
+                      "%.3g); take a smaller relaxation, another "
+                      "scheme or a smaller dt, or reject the step",
+                      s->iteration, residual, size);
+        return SPAR_OK;
+    }
+    *done = 0;
+    relax(s);
+    return SPAR_OK;
+}
+
+int spar_step_check(spar_session *session, int *done) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
+    spar_session *s = session;
+    int status = SPAR_OK, ended = 0;
+    if (s->phase != SPARI_SOLVED) {
+        status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
+    } else if (!done) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "spar_step_check: done is NULL");
+    } else {
+        status = s->refused; /* a push of this rank was refused; its message stands */
+    }
+    if (!s->pack) {
+        return agree(s, status);
+    }
+    SPARI_TRY(spari_session_exchange_loads(s, status));
+    s->iteration++;
+    s->phase = SPARI_CHECKED;
+    SPARI_TRY(check_done(s, &ended));
+    *done = ended;
+    return SPAR_OK;
+}
+
+/* ---- accept and reject ---- */
+
+static void shift_history(spar_session *s, spar_member *m) {
+    double *oldest = m->load_history[2];
+    m->load_history[2] = m->load_history[1];
+    m->load_history[1] = m->load_history[0];
+    m->load_history[0] = oldest;
+    /* a step that was never checked had no loads but those it was solved with */
+    if (s->phase != SPARI_CHECKED) {
+        memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
+    }
+    memcpy(oldest, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+}
+
+int spar_step_accept(spar_session *session) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
+    spar_session *s = session;
+    int status = SPAR_OK;
+    if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
+        status = wrong_phase(s, "spar_step_accept", "begin and solve a step first");
+    }
+    SPARI_TRY(agree(s, status));
+    for (spar_member *m = s->members; m; m = m->next) {
+        shift_history(s, m);
+        spari_member_accept(m);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_accept(f);
+    }
+    s->time += s->dt;
+    s->step++;
+    s->dt_last[1] = s->dt_last[0];
+    s->dt_last[0] = s->dt;
+    s->refused = SPAR_OK;
+    s->phase = SPARI_IDLE;
+    return SPAR_OK;
+}
+
+int spar_step_reject(spar_session *session) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
+    spar_session *s = session;
+    SPARI_TRY(
+        agree(s, s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_member_reject(m);
+        memcpy(m->load_pushed, m->load_history[0], (size_t)(6 * m->nodes) * sizeof(double));
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_reject(f);
+    }
+    s->refused = SPAR_OK;
+    s->phase = SPARI_IDLE;
+    s->started = s->step > 0;
+    return SPAR_OK;
+}
+
+/* ---- the whole step ---- */
+
+static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
+    int done = 0;
+    while (!done) {
+        SPARI_TRY(spar_step_solve(s));
+        int status = SPAR_OK;
+        if (solve) {
+            s->message[0] = '\0';
+            int answer = solve(s, s->time, s->dt, s->iteration, context);
+            if (answer != 0) {
+                char why[256];
+                memcpy(why, s->message, sizeof why - 1);
+                why[sizeof why - 1] = '\0';
+                status = spari_fail(s, SPAR_ERR_USER, "spar_step: the fluid solver answered %d in iteration %d%s%s",
+                                    answer, s->iteration, why[0] ? ": " : "", why);
+            }
+        }
+        SPARI_TRY(agree(s, status));
+        SPARI_TRY(spar_step_check(s, &done));
+    }
+    return SPAR_OK;
+}
+
+int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
+    SPARI_TRY(spar_step_begin(session, dt));
+    int status = iterate(session, solve, context);
+    if (iterations) {
+        *iterations = session->iteration;
+    }
+    if (status != SPAR_OK) { /* the message of the failure stands: rejecting a step under way cannot fail */
+        (void)spar_step_reject(session);
+        return status;
+    }
+    return spar_step_accept(session);
+}

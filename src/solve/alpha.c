@@ -1,0 +1,407 @@
+/* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
+   composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. */
+#include "../math/rotation.h"
+#include "../session/session.h"
+#include "solver.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct scheme {
+    double h, alpha_m, alpha_f, beta, gamma;
+    double cm, cv; /* d a / d x and d v / d x of the Newton increments */
+    int still;     /* no inertia: equilibrium at each time, rates from the increments */
+} scheme;
+
+static scheme scheme_of(const spar_member *member, double rho, double h) {
+    scheme c = {.h = h};
+    c.alpha_m = (2 * rho - 1) / (rho + 1);
+    c.alpha_f = rho / (rho + 1);
+    c.gamma = 0.5 + c.alpha_f - c.alpha_m;
+    c.beta = 0.25 * (0.5 + c.gamma) * (0.5 + c.gamma);
+    c.still = !(member->effects & SPAR_EFFECT_INERTIA);
+    if (c.still) {
+        c.cm = 0, c.cv = member->body->D ? 1 / h : 0;
+    } else {
+        c.cm = (1 - c.alpha_m) / (h * h * c.beta * (1 - c.alpha_f));
+        c.cv = c.gamma / (h * c.beta);
+    }
+    return c;
+}
+
+/* State of `to` from the increments: place, and without inertia the rates. The rotation vector is the increment plus
+   h^2/12 omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly: the scheme stays of
+   second order and reversible, and a fast spin about an axis that turns no longer drifts off its axis. */
+static void place_node(const scheme *c, const spari_state *from, spari_state *to, const double *x, int i) {
+    double p[4], psi[3] = {x[6 * i + 3], x[6 * i + 4], x[6 * i + 5]};
+    if (!c->still) {
+        double turn[3];
+        spari_cross(to->v + 6 * i + 3, from->v + 6 * i + 3, turn);
+        for (int k = 0; k < 3; k++) {
+            psi[k] += c->h * c->h / 12 * turn[k];
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        to->q[7 * i + k] = from->q[7 * i + k] + x[6 * i + k];
+    }
+    spari_quat_exp(psi, p);
+    spari_quat_mul(p, from->q + 7 * i + 3, to->q + 7 * i + 3);
+    spari_quat_normalise(to->q + 7 * i + 3);
+    for (int k = 0; k < 6 && c->still; k++) {
+        to->v[6 * i + k] = x[6 * i + k] / c->h;
+        to->a[6 * i + k] = to->b[6 * i + k] = 0;
+    }
+}
+
+/* Starting values of Newton: the acceleration stays. In the frame of a root that turns, that is the acceleration that
+ * turns with it. */
+static void predict(const spar_member *member, const scheme *c, const double turn[4], const spari_state *from,
+                    spari_state *to, double *x) {
+    int n = member->solver->n;
+    double h = c->h;
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < 6; k += 3) {
+            spari_rotate(turn, from->a + 6 * i + k, to->a + 6 * i + k);
+        }
+        for (int k = 6 * i; k < 6 * i + 6; k++) {
+            to->b[k] =
+                ((1 - c->alpha_f) * to->a[k] + c->alpha_f * from->a[k] - c->alpha_m * from->b[k]) / (1 - c->alpha_m);
+            x[k] = c->still ? 0 : h * from->v[k] + h * h * ((0.5 - c->beta) * from->b[k] + c->beta * to->b[k]);
+            to->v[k] = from->v[k] + h * ((1 - c->gamma) * from->b[k] + c->gamma * to->b[k]);
+        }
+        place_node(c, from, to, x, i);
+    }
+}
+
+/* A driven root goes where it is told. */
+static void impose_root(const spar_member *member, const double *root, const spari_state *from, spari_state *to,
+                        double *x) {
+    int first, end;
+    spari_solver_fixed(member, &first, &end);
+    if (end == 0) {
+        return;
+    }
+    double c[4], p[4];
+    if (member->root == SPAR_ROOT_DRIVEN) {
+        memcpy(to->q, root, 7 * sizeof *root);
+        memcpy(to->v, root + 7, 6 * sizeof *root);
+        memcpy(to->a, root + 13, 6 * sizeof *root);
+        memcpy(to->b, root + 13, 6 * sizeof *root);
+    } else { /* held where it is */
+        memcpy(to->q, from->q, (size_t)(end == 6 ? 7 : 3) * sizeof *to->q);
+        memset(to->v, 0, (size_t)end * sizeof *to->v);
+        memset(to->a, 0, (size_t)end * sizeof *to->a);
+        memset(to->b, 0, (size_t)end * sizeof *to->b);
+    }
+    for (int k = 0; k < 3; k++) {
+        x[k] = to->q[k] - from->q[k];
+    }
+    if (end == 6) {
+        spari_quat_conj(from->q + 3, c);
+        spari_quat_mul(to->q + 3, c, p);
+        spari_quat_log(p, x + 3);
+    }
+}
+
+/* Residual minus loads, fixed unknowns out; the root's row goes to member->reaction. Returns the size rounding in it is
+ * relative to. */
+static double balance(spar_member *member, const scheme *c, const spari_state *s, double *r) {
+    spari_solver *solver = member->solver;
+    int n = solver->n, first, end;
+    double scale = spari_body_residual(member->body, s->q, c->still && !member->body->D ? NULL : s->v,
+                                       c->still ? NULL : s->a, 1, r);
+    for (int i = 0; i < 6 * n; i++) {
+        r[i] -= solver->load[i];
+    }
+    spari_solver_fixed(member, &first, &end);
+    memset(member->reaction, 0, sizeof member->reaction);
+    memcpy(member->reaction + first, r + first, (size_t)(end - first) * sizeof *r);
+    memset(r + first, 0, (size_t)(end - first) * sizeof *r);
+    return scale;
+}
+
+/* Solves with the kept tangent: it was formed in axes that the root has since carried along. */
+static int correct(const spar_member *member, const double *q, double *r, double *dx) {
+    spari_solver *s = member->solver;
+    double c[4], turn[4];
+    spari_quat_conj(s->kept_q, c);
+    spari_quat_mul(q + 3, c, turn);
+    for (int i = 0; i < 6 * s->n; i += 3) {
+        spari_rotate_back(turn, r + i, dx + i);
+    }
+    if (spari_linear_solve(s->linear, dx)) {
+        return 1;
+    }
+    for (int i = 0; i < 6 * s->n; i += 3) {
+        spari_rotate(turn, dx + i, dx + i);
+    }
+    return 0;
+}
+
+/* dx = tinv dtheta: the inverse tangent operator of the rotation vector psi, and the inverse of d psi / d x = I - k
+   omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
+static void update_tangent_operators(const spari_solver *s, const scheme *c, const spari_state *from,
+                                     const spari_state *to, const double *x) {
+    double k = c->still ? 0 : c->h * c->h * c->cv / 12;
+    for (int i = 0; i < s->n; i++) {
+        const double *w = from->v + 6 * i + 3;
+        double psi[3], turn[3], t[9], *out = s->tinv + 9 * i, f = 1 / (1 + k * k * spari_dot(w, w));
+        spari_cross(to->v + 6 * i + 3, w, turn);
+        for (int j = 0; j < 3; j++) {
+            psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->h * c->h / 12 * turn[j]);
+        }
+        spari_tangent_inverse(psi, t);
+        for (int j = 0; j < 3; j++) {
+            double column[3] = {t[j], t[3 + j], t[6 + j]}, wt[3], along = k * k * spari_dot(w, column);
+            spari_cross(w, column, wt);
+            for (int m = 0; m < 3; m++) {
+                out[3 * m + j] = f * (column[m] + k * wt[m] + along * w[m]);
+            }
+        }
+    }
+}
+
+/* x -= correction, rotations through the inverse tangent operator; returns the largest correction, relative to the
+   member's length for translations, in radians for rotations. */
+static double apply(const spar_member *member, const scheme *c, const spari_state *from, spari_state *to, double *x,
+                    const double *dx) {
+    const spari_solver *s = member->solver;
+    double largest = 0, length = member->body->length;
+    for (int i = 0; i < s->n; i++) {
+        double step[6];
+        const double *t = s->tinv + 9 * i, *d = dx + 6 * i;
+        for (int k = 0; k < 3; k++) {
+            step[k] = -d[k];
+            step[3 + k] = -(t[3 * k] * d[3] + t[3 * k + 1] * d[4] + t[3 * k + 2] * d[5]);
+        }
+        largest = fmax(largest, fmax(spari_norm(step) / length, spari_norm(step + 3)));
+        for (int k = 0; k < 6; k++) {
+            x[6 * i + k] += step[k];
+            to->v[6 * i + k] += c->cv * step[k];
+            to->a[6 * i + k] += c->cm * step[k];
+            to->b[6 * i + k] += c->cm * (1 - c->alpha_f) / (1 - c->alpha_m) * step[k];
+        }
+        place_node(c, from, to, x, i);
+    }
+    return largest;
+}
+
+static double size_of(const spar_member *member, const double *x) {
+    double largest = 0;
+    for (int i = 0; i < member->solver->n; i++) {
+        largest = fmax(largest, fmax(spari_norm(x + 6 * i) / member->body->length, spari_norm(x + 6 * i + 3)));
+    }
+    return largest;
+}
+
+static double infinity_norm(const double *r, int n) {
+    double big = 0;
+    for (int i = 0; i < n; i++) {
+        big = fmax(big, fabs(r[i]));
+    }
+    return big;
+}
+
+static int not_converged(const spar_member *member, const char *why, int iterations, double correction) {
+    return spari_fail(member->session, SPAR_ERR_NUMERIC,
+                      "member '%s': Newton %s after %d iterations at t = %g (last correction %.2g of its length); take "
+                      "a smaller dt or more substeps, "
+                      "or look at the loads",
+                      member->name, why, iterations, member->session->time, correction);
+}
+
+/* Newton with a kept tangent: theta is the observed contraction, theta/(1 - theta) times the last correction what is
+   left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than 1/4 is formed anew; a fresh one
+   that does not contract ends the step. */
+static int newton(spar_member *member, const scheme *c, const double *root, const spari_state *from, spari_state *to,
+                  double *x) {
+    const spar_session *session = member->session;
+    spari_solver *s = member->solver;
+    double last = 0, theta = 0, correction = 0;
+    int fresh = 0, it, grown = 0;
+    for (it = 1; it <= session->newton_max; it++) {
+        impose_root(member, root, from, to, x);
+        double scale = balance(member, c, to, s->r);
+        if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
+            return not_converged(member, "met numbers that are not finite", it, correction);
+        }
+        update_tangent_operators(s, c, from, to, x);
+        if (!s->factored || c->cm != s->kept_cm || c->cv != s->kept_cv) {
+            const double *v = c->still && !member->body->D ? NULL : to->v;
+            if (spari_solver_factor(member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv)) {
+                return not_converged(member, "found a singular tangent", it, correction);
+            }
+            fresh = 1;
+            last = 0;
+        }
+        if (correct(member, to->q, s->r, s->dx)) {
+            return not_converged(member, "found a singular tangent", it, correction);
+        }
+        double noise = infinity_norm(s->r, 6 * s->n);
+        correction = apply(member, c, from, to, x, s->dx);
+        s->newton++;
+        double tolerance = session->newton_atol + session->newton_rtol * size_of(member, x);
+        theta = last > 0 ? correction / last : 0;
+        double left = last > 0 && theta < 1 ? theta / (1 - theta) * correction : correction;
+        if (left <= tolerance || noise <= 64 * DBL_EPSILON * scale || (theta > 0.5 && correction < 1e-11)) {
+            impose_root(member, root, from, to, x);
+            return SPAR_OK;
+        }
+        if (last > 0 && theta > 0.25) {
+            if (fresh && theta > 1 && ++grown > 4) {
+                return not_converged(member, "does not converge", it, correction);
+            }
+            s->factored = 0;
+        }
+        last = correction;
+    }
+    return not_converged(member, "does not converge", it - 1, correction);
+}
+
+/* Root motion at s in (0, 1] of the step: cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1
+ * omega. */
+static void root_at(const spar_member *member, double s, double dt, double out[19]) {
+    const double *a = member->drive[0], *b = member->drive[1];
+    if (s >= 1) {
+        memcpy(out, b, 19 * sizeof *out);
+        return;
+    }
+    double c[4], p[4], psi1[3], t[9], rate1[3], psi[3], rate[3], h00 = 1 - s * s * (3 - 2 * s),
+                                                                 h01 = s * s * (3 - 2 * s);
+    double h10 = s * (1 - s) * (1 - s), h11 = -s * s * (1 - s), d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s),
+           d11 = s * (3 * s - 2);
+    spari_quat_conj(a + 3, c);
+    spari_quat_mul(b + 3, c, p);
+    spari_quat_log(p, psi1);
+    spari_tangent_inverse(psi1, t);
+    for (int k = 0; k < 3; k++) {
+        rate1[k] = t[3 * k] * b[10] + t[3 * k + 1] * b[11] + t[3 * k + 2] * b[12];
+    }
+    for (int k = 0; k < 3; k++) {
+        out[k] = h00 * a[k] + h01 * b[k] + dt * (h10 * a[7 + k] + h11 * b[7 + k]);
+        out[7 + k] = d01 * (b[k] - a[k]) / dt + d10 * a[7 + k] + d11 * b[7 + k];
+        psi[k] = h01 * psi1[k] + dt * (h10 * a[10 + k] + h11 * rate1[k]);
+        rate[k] = d01 * psi1[k] / dt + d10 * a[10 + k] + d11 * rate1[k];
+    }
+    spari_quat_exp(psi, p);
+    spari_quat_mul(p, a + 3, out + 3);
+    spari_tangent(psi, t);
+    for (int k = 0; k < 3; k++) {
+        out[10 + k] = t[3 * k] * rate[0] + t[3 * k + 1] * rate[1] + t[3 * k + 2] * rate[2];
+    }
+    for (int k = 13; k < 19; k++) {
+        out[k] = (1 - s) * a[k] + s * b[k];
+    }
+}
+
+/* Accelerations at t^0 from the balance of forces there: M a = loads - r(q, v, 0). Where that has no solution (no mass)
+   they stay zero: the start is then of first order in the first step only. */
+static int start(spar_member *member) {
+    spari_solver *s = member->solver;
+    spari_state *b = &s->begin;
+    int n = s->n, first, end;
+    spari_solver_fixed(member, &first, &end);
+    s->started = 1;
+    for (int i = end; i < 6 * n; i++) {
+        b->a[i] = 0;
+    }
+    if (member->root != SPAR_ROOT_DRIVEN) {
+        memset(b->a, 0, (size_t)end * sizeof *b->a);
+        memset(b->v, 0, (size_t)end * sizeof *b->v);
+    }
+    spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r);
+    for (int i = 0; i < 6 * n; i++) {
+        s->dx[i] = s->load0[i] - s->r[i];
+    }
+    memset(s->dx + first, 0, (size_t)(end - first) * sizeof *s->dx);
+    /* the mass matrix as a difference of two tangents at zero rates: at cm = 1 and 0 */
+    spari_linear_zero(s->linear);
+    s->factored = 0;
+    int64_t size = (int64_t)36 * member->per_element * member->per_element;
+    double *K = spari_zalloc(size, sizeof *K);
+    SPARI_REQUIRE(member->session, K, SPAR_ERR_MEMORY, "member '%s': no memory to start", member->name);
+    for (int e = 0; e < member->elements; e++) {
+        spari_body_tangent(member->body, e, b->q, NULL, NULL, 0, 1, 0, NULL, s->element);
+        spari_body_tangent(member->body, e, b->q, NULL, NULL, 0, 0, 0, NULL, K);
+        for (int64_t i = 0; i < size; i++) {
+            s->element[i] -= K[i];
+        }
+        spari_linear_add(s->linear, e, s->element);
+    }
+    free(K);
+    for (int i = first; i < end; i++) {
+        spari_linear_fix(s->linear, i);
+    }
+    if (spari_linear_factor(s->linear) == 0 && spari_linear_solve(s->linear, s->dx) == 0) {
+        for (int i = end; i < 6 * n; i++) {
+            b->a[i] = s->dx[i];
+        }
+    }
+    memcpy(b->b, b->a, (size_t)(6 * n) * sizeof *b->b);
+    return SPAR_OK;
+}
+
+/* Power that damping takes out at a state; nothing is computed where nothing damps. */
+static double dissipation(const spar_member *member, const spari_state *state) {
+    double energy[4] = {0};
+    if (member->body->D) {
+        spari_body_energy(member->body, state->q, state->v, energy);
+    }
+    return energy[3];
+}
+
+static void swap(spari_state *a, spari_state *b) {
+    spari_state t = *a;
+    *a = *b;
+    *b = t;
+}
+
+int spari_solver_advance(spar_member *member, double dt) {
+    const spar_session *session = member->session;
+    spari_solver *s = member->solver;
+    int A = session->substeps, n6 = 6 * s->n;
+    double root[19], before[19];
+    spari_solver_gather(member, member->load_history[0], s->load0);
+    spari_solver_gather(member, member->load_used, s->load1);
+    spari_solver_gather(member, member->dead, s->load);
+    for (int i = 0; i < n6; i++) {
+        s->load0[i] += s->load[i];
+        s->load1[i] += s->load[i];
+    }
+    if (!s->started && (member->effects & SPAR_EFFECT_INERTIA)) {
+        SPARI_TRY(start(member));
+    }
+    scheme c = scheme_of(member, session->rho_inf, dt / A);
+    memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
+    memcpy(before, member->drive[0], sizeof before);
+    double reaction[6], power = dissipation(member, &s->begin);
+    memcpy(reaction, member->reaction, sizeof reaction);
+    member->dissipated_step = 0;
+    for (int k = 1; k <= A; k++) {
+        double f = (double)k / A, conj[4], turn[4] = {1, 0, 0, 0};
+        swap(&s->from, &s->to);
+        for (int i = 0; i < n6; i++) {
+            s->load[i] = (1 - f) * s->load0[i] + f * s->load1[i];
+        }
+        root_at(member, f, dt, root);
+        if (member->root == SPAR_ROOT_DRIVEN) {
+            spari_quat_conj(before + 3, conj);
+            spari_quat_mul(root + 3, conj, turn);
+        }
+        predict(member, &c, turn, &s->from, &s->to, s->increment);
+        int status = newton(member, &c, root, &s->from, &s->to, s->increment);
+        if (status != SPAR_OK) {
+            memcpy(member->reaction, reaction, sizeof reaction);
+            s->factored = 0;
+            return status;
+        }
+        memcpy(before, root, sizeof before);
+        double power_before = power;
+        power = dissipation(member, &s->to);
+        member->dissipated_step += 0.5 * c.h * (power_before + power);
+    }
+    balance(member, &c, &s->to, s->r);
+    spari_solver_publish(member, &s->to, &member->after);
+    return SPAR_OK;
+}

@@ -1,0 +1,20 @@
+/* Linear systems of a member: element matrices on a chain of elements, dense for one element, banded for more. */
+#ifndef SPARI_LINEAR_H
+#define SPARI_LINEAR_H
+
+typedef struct spari_linear spari_linear;
+
+/* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. NULL when there is no
+ * memory. */
+spari_linear *spari_linear_create(int elements, int block, int overlap);
+void spari_linear_free(spari_linear *system);
+void spari_linear_zero(spari_linear *system);
+void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
+/* Takes unknown i out: its row and column become those of the identity. Before factoring. */
+void spari_linear_fix(spari_linear *system, int i);
+/* Returns 0, or 1 when the matrix is singular or not finite. */
+int spari_linear_factor(spari_linear *system);
+/* x := A^-1 x; 0, or 1 when the result is not finite. */
+int spari_linear_solve(spari_linear *system, double *x);
+
+#endif

@@ -1,0 +1,122 @@
+#include "solver.h"
+
+#include "../session/session.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void carve(double *block, int n, spari_state *s) {
+    s->q = block;
+    s->v = s->q + 7 * (int64_t)n;
+    s->a = s->v + 6 * (int64_t)n;
+    s->b = s->a + 6 * (int64_t)n;
+}
+
+spari_solver *spari_solver_create(const spar_member *member) {
+    int64_t n = member->body->unique, m = 6 * (int64_t)member->per_element;
+    spari_solver *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    s->n = member->body->unique;
+    int ok = 1;
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
+    }
+    double **sixes[] = {&s->increment, &s->load, &s->load0, &s->load1, &s->r, &s->dx};
+    for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
+        ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
+    }
+    ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) && (s->element = spari_zalloc(m * m, sizeof(double)));
+    ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
+    ok = ok && (s->linear = spari_linear_create(member->elements, (int)m, 6));
+    if (!ok) {
+        spari_solver_free(s);
+        return NULL;
+    }
+    carve(s->block[0], s->n, &s->begin);
+    carve(s->block[1], s->n, &s->from);
+    carve(s->block[2], s->n, &s->to);
+    return s;
+}
+
+void spari_solver_free(spari_solver *s) {
+    if (!s) {
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        free(s->block[k]);
+    }
+    free(s->increment);
+    free(s->load);
+    free(s->load0);
+    free(s->load1);
+    free(s->r);
+    free(s->dx);
+    free(s->tinv);
+    free(s->element);
+    free(s->best);
+    spari_linear_free(s->linear);
+    free(s);
+}
+
+void spari_solver_restart(spari_solver *s, const spar_member *member) {
+    spari_member_to_unique(member, 7, member->now.q, s->begin.q);
+    spari_member_to_unique(member, 6, member->now.v, s->begin.v);
+    spari_member_to_unique(member, 6, member->now.a, s->begin.a);
+    memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
+    memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
+    s->started = 0;
+}
+
+void spari_solver_accept(spari_solver *s) {
+    spari_state t = s->begin;
+    s->begin = s->to;
+    s->to = t;
+}
+
+void spari_solver_fixed(const spar_member *member, int *first, int *end) {
+    *first = 0;
+    *end = member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
+}
+
+void spari_solver_gather(const spar_member *m, const double *nodal, double *unique) {
+    int P = m->per_element;
+    memset(unique, 0, (size_t)m->body->unique * 6 * sizeof *unique);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / P;
+        for (int k = 0; k < 6; k++) {
+            unique[6 * u + k] += nodal[6 * i + k];
+        }
+    }
+}
+
+int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
+                        double cm, double cv, const double *tinv) {
+    spari_solver *s = member->solver;
+    int first, end;
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    for (int e = 0; e < member->elements; e++) {
+        spari_body_tangent(member->body, e, q, v, a, factor, cm, cv, tinv, s->element);
+        spari_linear_add(s->linear, e, s->element);
+    }
+    spari_solver_fixed(member, &first, &end);
+    for (int i = first; i < end; i++) {
+        spari_linear_fix(s->linear, i);
+    }
+    s->factors++;
+    if (spari_linear_factor(s->linear)) {
+        return 1;
+    }
+    s->factored = 1;
+    s->kept_cm = cm, s->kept_cv = cv;
+    memcpy(s->kept_q, q + 3, sizeof s->kept_q);
+    return 0;
+}
+
+void spari_solver_publish(spar_member *member, const spari_state *state, spari_motion *to) {
+    spari_member_from_unique(member, 7, state->q, to->q);
+    spari_member_from_unique(member, 6, state->v, to->v);
+    spari_member_from_unique(member, 6, state->a, to->a);
+}

@@ -1,0 +1,56 @@
+/* The owner's solver of one member: generalised-alpha in time on R^3 x SO(3), static equilibrium, modes. It works on
+   the unknowns' nodes (joints once) and asks the member's body for forces and tangents. */
+#ifndef SPARI_SOLVER_H
+#define SPARI_SOLVER_H
+
+#include "../member/body.h"
+#include "../member/member.h"
+#include "linear.h"
+
+/* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
+ * doubles a node. */
+typedef struct spari_state {
+    double *q, *v, *a, *b;
+} spari_state;
+
+struct spari_solver {
+    int n;                        /* unique nodes */
+    spari_state begin;            /* at t^n */
+    spari_state from, to;         /* a substep's ends; after a solve `to` is t^{n+1} */
+    double *block[3];             /* the memory of the three */
+    double *increment;            /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
+    double *tinv;                 /* [n][9] inverse tangent operator of the rotation vector */
+    double *load, *load0, *load1; /* [n][6] at a substep's end, at t^n and at t^{n+1} */
+    double *r, *dx, *element;
+    double *best; /* static: state to go back to */
+    spari_linear *linear;
+    /* the factored tangent, kept while it contracts */
+    int factored;
+    double kept_cm, kept_cv, kept_q[4]; /* coefficients, and how the root was turned when it was formed */
+    int started;                        /* accelerations at t^0 are known */
+    int64_t newton, factors;            /* totals: iterations, factorisations */
+};
+
+spari_solver *spari_solver_create(const spar_member *member);
+void spari_solver_free(spari_solver *solver);
+/* Takes the motion at t^n from member->now. */
+void spari_solver_restart(spari_solver *solver, const spar_member *member);
+/* From t^n to t^n + dt in the session's substeps; leaves t^n alone, writes member->after, reaction. */
+int spari_solver_advance(spar_member *member, double dt);
+/* The step is accepted: t^{n+1} becomes t^n. */
+void spari_solver_accept(spari_solver *solver);
+/* Equilibrium under dead, fluid and gravity loads; writes member->now, after, reaction, or leaves all as it was. */
+int spari_solver_static(spar_member *member, int load_steps);
+
+/* Shared by the three files of the room */
+/* Fixed unknowns of the root: those of node 0 that the root condition takes out: [first, end) of its six. */
+void spari_solver_fixed(const spar_member *member, int *first, int *end);
+/* Loads of the member's nodes summed onto the unknowns' nodes. */
+void spari_solver_gather(const spar_member *member, const double *nodal, double *unique);
+/* Forms and factors the tangent at state q, v, a. */
+int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
+                        double cm, double cv, const double *tinv);
+/* Copies a state into member->after (with joints twice). */
+void spari_solver_publish(spar_member *member, const spari_state *state, spari_motion *to);
+
+#endif
