@@ -1,0 +1,220 @@
+#include "vtk.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- base64 (RFC 4648) of a stream of bytes ---- */
+
+typedef struct stream {
+    FILE *file;
+    unsigned char group[3];
+    int held; /* bytes waiting in group */
+} stream;
+
+static void put_group(stream *s) {
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *g = s->group;
+    char text[4] = {digit[g[0] >> 2], digit[(g[0] & 3) << 4 | g[1] >> 4], digit[(g[1] & 15) << 2 | g[2] >> 6],
+                    digit[g[2] & 63]};
+    for (int i = s->held + 1; i < 4; i++) {
+        text[i] = '=';
+    }
+    fwrite(text, 1, sizeof text, s->file);
+    memset(s->group, 0, sizeof s->group);
+    s->held = 0;
+}
+
+static void put_bytes(stream *s, const void *data, size_t size) {
+    const unsigned char *byte = data;
+    for (size_t i = 0; i < size; i++) {
+        s->group[s->held++] = byte[i];
+        if (s->held == 3) {
+            put_group(s);
+        }
+    }
+}
+
+static void put_int64(stream *s, int64_t value) {
+    put_bytes(s, &value, sizeof value);
+}
+
+/* ---- XML ---- */
+
+/* An array begins with its size in bytes, in the same base64 text as the numbers. */
+static void begin_array(stream *s, const char *type, const char *name, int components, int64_t tuples, size_t item) {
+    int64_t bytes = tuples * components * (int64_t)item;
+    fprintf(s->file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
+            components);
+    put_int64(s, bytes);
+}
+
+static void end_array(stream *s) {
+    if (s->held > 0) {
+        put_group(s);
+    }
+    fputs("</DataArray>\n", s->file);
+}
+
+static void put_field(stream *s, const spari_vtk_field *f, int64_t tuples) {
+    begin_array(s, "Float64", f->name, f->components, tuples, sizeof(double));
+    put_bytes(s, f->value, (size_t)tuples * (size_t)f->components * sizeof(double));
+    end_array(s);
+}
+
+/* What belongs to the whole picture: NumberOfTuples is required here, where no number of points implies it. */
+static void put_fact(stream *s, const spari_vtk_field *f) {
+    fprintf(s->file,
+            "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" NumberOfTuples=\"1\" format=\"binary\">",
+            f->name, f->components);
+    put_int64(s, f->components * (int64_t)sizeof(double));
+    put_bytes(s, f->value, (size_t)f->components * sizeof(double));
+    end_array(s);
+}
+
+static void put_facts(stream *s, const spari_vtk_picture *p) {
+    fputs("<FieldData>\n", s->file);
+    put_fact(s, &(spari_vtk_field){"TimeValue", 1, &p->time});
+    for (int i = 0; i < p->facts; i++) {
+        put_fact(s, &p->fact[i]);
+    }
+    fputs("</FieldData>\n", s->file);
+}
+
+static void put_points(stream *s, const spari_vtk_picture *p) {
+    fputs("<PointData>\n", s->file);
+    for (int i = 0; i < p->fields; i++) {
+        put_field(s, &p->field[i], p->points);
+    }
+    fputs("</PointData>\n<Points>\n", s->file);
+    put_field(s, &(spari_vtk_field){"Points", 3, p->x}, p->points);
+    fputs("</Points>\n", s->file);
+}
+
+static int64_t line_points(const spari_vtk_picture *p) {
+    return p->lines > 0 ? p->line_end[p->lines - 1] : 0;
+}
+
+static void put_vert_numbers(stream *s, const spari_vtk_picture *p) {
+    for (int64_t i = 0; i < p->verts; i++) {
+        put_int64(s, p->vert ? p->vert[i] : i);
+    }
+}
+
+static void put_count(stream *s, int64_t first, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        put_int64(s, first + i);
+    }
+}
+
+static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
+    fputs("<Verts>\n", s->file);
+    begin_array(s, "Int64", "connectivity", 1, p->verts, 8);
+    put_vert_numbers(s, p);
+    end_array(s);
+    begin_array(s, "Int64", "offsets", 1, p->verts, 8);
+    put_count(s, 1, p->verts);
+    end_array(s);
+    fputs("</Verts>\n<Lines>\n", s->file);
+    begin_array(s, "Int64", "connectivity", 1, line_points(p), 8);
+    put_count(s, 0, line_points(p));
+    end_array(s);
+    begin_array(s, "Int64", "offsets", 1, p->lines, 8);
+    put_bytes(s, p->line_end, (size_t)p->lines * sizeof *p->line_end);
+    end_array(s);
+    fputs("</Lines>\n", s->file);
+}
+
+static void put_grid_cells(stream *s, const spari_vtk_picture *p) {
+    enum { VERTEX = 1, POLY_LINE = 4 }; /* VTK's numbers of the cell types */
+    fputs("<Cells>\n", s->file);
+    begin_array(s, "Int64", "connectivity", 1, p->verts + line_points(p), 8);
+    put_vert_numbers(s, p);
+    put_count(s, 0, line_points(p));
+    end_array(s);
+    begin_array(s, "Int64", "offsets", 1, p->verts + p->lines, 8);
+    put_count(s, 1, p->verts);
+    for (int64_t k = 0; k < p->lines; k++) {
+        put_int64(s, p->verts + p->line_end[k]);
+    }
+    end_array(s);
+    begin_array(s, "UInt8", "types", 1, p->verts + p->lines, 1);
+    for (int64_t k = 0; k < p->verts + p->lines; k++) {
+        unsigned char type = k < p->verts ? VERTEX : POLY_LINE;
+        put_bytes(s, &type, 1);
+    }
+    end_array(s);
+    fputs("</Cells>\n", s->file);
+}
+
+static const char *byte_order(void) {
+    int64_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 1 ? "LittleEndian" : "BigEndian";
+}
+
+static void put_picture(FILE *file, const spari_vtk_picture *p, int grid) {
+    stream s = {.file = file};
+    const char *kind = grid ? "UnstructuredGrid" : "PolyData";
+    fprintf(file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n",
+            kind, byte_order());
+    fprintf(file, "<%s>\n", kind);
+    put_facts(&s, p);
+    fprintf(file, "<Piece NumberOfPoints=\"%lld\" ", (long long)p->points);
+    if (grid) {
+        fprintf(file, "NumberOfCells=\"%lld\">\n", (long long)(p->verts + p->lines));
+    } else {
+        fprintf(file, "NumberOfVerts=\"%lld\" NumberOfLines=\"%lld\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
+                (long long)p->verts, (long long)p->lines);
+    }
+    put_points(&s, p);
+    (grid ? put_grid_cells : put_poly_cells)(&s, p);
+    fprintf(file, "</Piece>\n</%s>\n</VTKFile>\n", kind);
+}
+
+/* ---- the file ---- */
+
+static int ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), k = strlen(end);
+    return n >= k && strcmp(text + n - k, end) == 0;
+}
+
+/* Returns errno of the first thing that failed, 0 when all is well. */
+static int write_file(const char *path, const char *temporary, const spari_vtk_picture *p) {
+    errno = 0;
+    FILE *file = fopen(temporary, "wb");
+    if (!file) {
+        return errno ? errno : EIO;
+    }
+    put_picture(file, p, ends_with(path, ".vtu"));
+    int why = ferror(file) ? (errno ? errno : EIO) : 0;
+    if (fclose(file) != 0 && why == 0) {
+        why = errno ? errno : EIO;
+    }
+    if (why == 0 && rename(temporary, path) != 0) {
+        why = errno ? errno : EIO;
+    }
+    if (why != 0) {
+        remove(temporary);
+    }
+    return why;
+}
+
+int spari_vtk_write(spar_session *session, const char *call, const char *path, const spari_vtk_picture *picture) {
+    static const char suffix[] = ".part";
+    SPARI_REQUIRE(session, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is %s; name a file ending in .vtp or .vtu",
+                  call, path ? "empty" : "NULL");
+    size_t size = strlen(path);
+    char *temporary = malloc(size + sizeof suffix);
+    SPARI_REQUIRE(session, temporary, SPAR_ERR_MEMORY, "%s: no memory", call);
+    memcpy(temporary, path, size);
+    memcpy(temporary + size, suffix, sizeof suffix);
+    int why = write_file(path, temporary, picture);
+    free(temporary);
+    SPARI_REQUIRE(session, why == 0, SPAR_ERR_IO,
+                  "%s: '%s' cannot be written: %s; check the folder, its rights and the disk's room", call, path,
+                  strerror(why));
+    return SPAR_OK;
+}
