@@ -54,10 +54,11 @@ static void place_node(const scheme *c, const spari_state *from, spari_state *to
     }
 }
 
-/* Starting values of Newton: the acceleration stays. In the frame of a root that turns, that is the acceleration that
- * turns with it. */
-static void predict(const spar_member *member, const scheme *c, const double turn[4], const spari_state *from,
-                    spari_state *to, double *x) {
+/* Starting values of Newton. Smooth motion: the acceleration stays; in the frame of a root that turns, that is the
+   acceleration that turns with it. Where stiff parts ring, their acceleration says nothing of the next: the velocity
+   stays. */
+static void predict(const spar_member *member, const scheme *c, const double turn[4], int smooth,
+                    const spari_state *from, spari_state *to, double *x) {
     int n = member->solver->n;
     double h = c->h;
     for (int i = 0; i < n; i++) {
@@ -65,10 +66,15 @@ static void predict(const spar_member *member, const scheme *c, const double tur
             spari_rotate(turn, from->a + 6 * i + k, to->a + 6 * i + k);
         }
         for (int k = 6 * i; k < 6 * i + 6; k++) {
-            to->b[k] =
-                ((1 - c->alpha_f) * to->a[k] + c->alpha_f * from->a[k] - c->alpha_m * from->b[k]) / (1 - c->alpha_m);
-            x[k] = c->still ? 0 : h * from->v[k] + h * h * ((0.5 - c->beta) * from->b[k] + c->beta * to->b[k]);
-            to->v[k] = from->v[k] + h * ((1 - c->gamma) * from->b[k] + c->gamma * to->b[k]);
+            double b = from->b[k], a = from->a[k];
+            if (smooth) {
+                to->b[k] = ((1 - c->alpha_f) * to->a[k] + c->alpha_f * a - c->alpha_m * b) / (1 - c->alpha_m);
+            } else { /* the b that makes x = h v, and the a that goes with it */
+                to->b[k] = (1 - 0.5 / c->beta) * b;
+                to->a[k] = ((1 - c->alpha_m) * to->b[k] + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
+            }
+            x[k] = c->still ? 0 : h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
+            to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
         }
         place_node(c, from, to, x, i);
     }
@@ -162,25 +168,30 @@ static void update_tangent_operators(const spari_solver *s, const scheme *c, con
     }
 }
 
-/* x -= correction, rotations through the inverse tangent operator; returns the largest correction, relative to the
-   member's length for translations, in radians for rotations. */
-static double apply(const spar_member *member, const scheme *c, const spari_state *from, spari_state *to, double *x,
-                    const double *dx) {
+/* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
+   relative to the member's length for translations, in radians for rotations. */
+static double apply(const spar_member *member, const scheme *c, const spari_state *from, spari_state *to,
+                    double longest, double *x, double *dx) {
     const spari_solver *s = member->solver;
     double largest = 0, length = member->body->length;
     for (int i = 0; i < s->n; i++) {
-        double step[6];
-        const double *t = s->tinv + 9 * i, *d = dx + 6 * i;
+        const double *t = s->tinv + 9 * i;
+        double *d = dx + 6 * i, turn[3];
         for (int k = 0; k < 3; k++) {
-            step[k] = -d[k];
-            step[3 + k] = -(t[3 * k] * d[3] + t[3 * k + 1] * d[4] + t[3 * k + 2] * d[5]);
+            turn[k] = t[3 * k] * d[3] + t[3 * k + 1] * d[4] + t[3 * k + 2] * d[5];
         }
-        largest = fmax(largest, fmax(spari_norm(step) / length, spari_norm(step + 3)));
-        for (int k = 0; k < 6; k++) {
-            x[6 * i + k] += step[k];
-            to->v[6 * i + k] += c->cv * step[k];
-            to->a[6 * i + k] += c->cm * step[k];
-            to->b[6 * i + k] += c->cm * (1 - c->alpha_f) / (1 - c->alpha_m) * step[k];
+        memcpy(d + 3, turn, sizeof turn);
+        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
+    }
+    double cut = largest > longest ? longest / largest : 1;
+    double to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
+    for (int i = 0; i < s->n; i++) {
+        for (int k = 6 * i; k < 6 * i + 6; k++) {
+            double step = -cut * dx[k];
+            x[k] += step;
+            to->v[k] += c->cv * step;
+            to->a[k] += c->cm * step;
+            to->b[k] += to_b * step;
         }
         place_node(c, from, to, x, i);
     }
@@ -203,60 +214,78 @@ static double infinity_norm(const double *r, int n) {
     return big;
 }
 
-static int not_converged(const spar_member *member, const char *why, int iterations, double correction) {
-    return spari_fail(member->session, SPAR_ERR_NUMERIC,
-                      "member '%s': Newton %s after %d iterations at t = %g (last correction %.2g of its length); take "
-                      "a smaller dt or more substeps, "
-                      "or look at the loads",
-                      member->name, why, iterations, member->session->time, correction);
+/* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
+typedef enum effort { KEPT, FRESH, FULL } effort;
+
+static int form_tangent(spar_member *member, const scheme *c, const spari_state *to) {
+    const double *v = c->still && !member->body->D ? NULL : to->v;
+    return spari_solver_factor(member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, member->solver->tinv);
 }
 
-/* Newton with a kept tangent: theta is the observed contraction, theta/(1 - theta) times the last correction what is
-   left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than 1/4 is formed anew; a fresh one
-   that does not contract ends the step. */
-static int newton(spar_member *member, const scheme *c, const double *root, const spari_state *from, spari_state *to,
-                  double *x) {
+/* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
+   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than 1/4 is formed anew.
+   Returns NULL, or what went wrong. */
+static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how,
+                           const spari_state *from, spari_state *to, double *x, int *iterations) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
-    double last = 0, theta = 0, correction = 0;
-    int fresh = 0, it, grown = 0;
-    for (it = 1; it <= session->newton_max; it++) {
+    double last = 0, longest = how == FULL ? 0.5 : INFINITY;
+    s->factored = s->factored && how == KEPT && c->cm == s->kept_cm && c->cv == s->kept_cv;
+    int fresh = !s->factored;
+    for (int it = 1; it <= session->newton_max; it++, ++*iterations) {
         impose_root(member, root, from, to, x);
         double scale = balance(member, c, to, s->r);
         if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
-            return not_converged(member, "met numbers that are not finite", it, correction);
+            return "met numbers that are not finite";
         }
         update_tangent_operators(s, c, from, to, x);
-        if (!s->factored || c->cm != s->kept_cm || c->cv != s->kept_cv) {
-            const double *v = c->still && !member->body->D ? NULL : to->v;
-            if (spari_solver_factor(member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv)) {
-                return not_converged(member, "found a singular tangent", it, correction);
-            }
-            fresh = 1;
-            last = 0;
+        if (!s->factored && form_tangent(member, c, to)) {
+            return "found a singular tangent";
         }
         if (correct(member, to->q, s->r, s->dx)) {
-            return not_converged(member, "found a singular tangent", it, correction);
+            return "found a singular tangent";
         }
         double noise = infinity_norm(s->r, 6 * s->n);
-        correction = apply(member, c, from, to, x, s->dx);
+        double correction = apply(member, c, from, to, longest, x, s->dx);
         s->newton++;
         double tolerance = session->newton_atol + session->newton_rtol * size_of(member, x);
-        theta = last > 0 ? correction / last : 0;
+        double theta = last > 0 ? correction / last : 0;
         double left = last > 0 && theta < 1 ? theta / (1 - theta) * correction : correction;
         if (left <= tolerance || noise <= 64 * DBL_EPSILON * scale || (theta > 0.5 && correction < 1e-11)) {
             impose_root(member, root, from, to, x);
-            return SPAR_OK;
+            return NULL;
         }
-        if (last > 0 && theta > 0.25) {
-            if (fresh && theta > 1 && ++grown > 4) {
-                return not_converged(member, "does not converge", it, correction);
-            }
+        if (theta > 2 && how != FULL) {
+            return "diverges";
+        }
+        if (how == FULL || theta > 0.25 || (it > 3 && !fresh)) {
             s->factored = 0;
+            fresh = 1;
+            last = how == FULL ? 0 : correction;
+            continue;
         }
         last = correction;
     }
-    return not_converged(member, "does not converge", it - 1, correction);
+    return "does not converge";
+}
+
+/* The state at the end of a substep, by attempts that get more careful. */
+static int newton(spar_member *member, const scheme *c, const double *root, const double turn[4],
+                  const spari_state *from, spari_state *to, double *x) {
+    const char *wrong = NULL;
+    int iterations = 0;
+    for (effort how = member->solver->factored ? KEPT : FRESH; how <= FULL; how++) {
+        predict(member, c, turn, how != FULL, from, to, x);
+        wrong = attempt(member, c, root, how, from, to, x, &iterations);
+        if (!wrong) {
+            return SPAR_OK;
+        }
+    }
+    return spari_fail(
+        member->session, SPAR_ERR_NUMERIC,
+        "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
+        "or look at the loads",
+        member->name, wrong, iterations, member->session->time);
 }
 
 /* Root motion at s in (0, 1] of the step: cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1
@@ -295,17 +324,14 @@ static void root_at(const spar_member *member, double s, double dt, double out[1
     }
 }
 
-/* Accelerations at t^0 from the balance of forces there: M a = loads - r(q, v, 0). Where that has no solution (no mass)
-   they stay zero: the start is then of first order in the first step only. */
-static int start(spar_member *member) {
+/* Accelerations at t^0: those of the initial rigid-body field, and what the balance of forces there asks beyond them,
+   through M + K / cm instead of M: parts that are stiff or light against this step (or have no mass at all) would start
+   with accelerations that the step cannot follow. Resolved motion is changed by O(h^2). */
+static int start(spar_member *member, const scheme *c) {
     spari_solver *s = member->solver;
     spari_state *b = &s->begin;
     int n = s->n, first, end;
     spari_solver_fixed(member, &first, &end);
-    s->started = 1;
-    for (int i = end; i < 6 * n; i++) {
-        b->a[i] = 0;
-    }
     if (member->root != SPAR_ROOT_DRIVEN) {
         memset(b->a, 0, (size_t)end * sizeof *b->a);
         memset(b->v, 0, (size_t)end * sizeof *b->v);
@@ -315,30 +341,19 @@ static int start(spar_member *member) {
         s->dx[i] = s->load0[i] - s->r[i];
     }
     memset(s->dx + first, 0, (size_t)(end - first) * sizeof *s->dx);
-    /* the mass matrix as a difference of two tangents at zero rates: at cm = 1 and 0 */
-    spari_linear_zero(s->linear);
+    int singular =
+        spari_solver_factor(member, b->q, NULL, NULL, 0, c->cm, 0, NULL) || spari_linear_solve(s->linear, s->dx);
     s->factored = 0;
-    int64_t size = (int64_t)36 * member->per_element * member->per_element;
-    double *K = spari_zalloc(size, sizeof *K);
-    SPARI_REQUIRE(member->session, K, SPAR_ERR_MEMORY, "member '%s': no memory to start", member->name);
-    for (int e = 0; e < member->elements; e++) {
-        spari_body_tangent(member->body, e, b->q, NULL, NULL, 0, 1, 0, NULL, s->element);
-        spari_body_tangent(member->body, e, b->q, NULL, NULL, 0, 0, 0, NULL, K);
-        for (int64_t i = 0; i < size; i++) {
-            s->element[i] -= K[i];
-        }
-        spari_linear_add(s->linear, e, s->element);
-    }
-    free(K);
-    for (int i = first; i < end; i++) {
-        spari_linear_fix(s->linear, i);
-    }
-    if (spari_linear_factor(s->linear) == 0 && spari_linear_solve(s->linear, s->dx) == 0) {
-        for (int i = end; i < 6 * n; i++) {
-            b->a[i] = s->dx[i];
-        }
+    SPARI_REQUIRE(
+        member->session, !singular, SPAR_ERR_NUMERIC,
+        "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia to every "
+        "direction in which it can move freely",
+        member->name);
+    for (int i = end; i < 6 * n; i++) {
+        b->a[i] += c->cm * s->dx[i];
     }
     memcpy(b->b, b->a, (size_t)(6 * n) * sizeof *b->b);
+    s->started = 1;
     return SPAR_OK;
 }
 
@@ -369,10 +384,10 @@ int spari_solver_advance(spar_member *member, double dt) {
         s->load0[i] += s->load[i];
         s->load1[i] += s->load[i];
     }
-    if (!s->started && (member->effects & SPAR_EFFECT_INERTIA)) {
-        SPARI_TRY(start(member));
-    }
     scheme c = scheme_of(member, session->rho_inf, dt / A);
+    if (!s->started && !c.still) {
+        SPARI_TRY(start(member, &c));
+    }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     memcpy(before, member->drive[0], sizeof before);
     double reaction[6], power = dissipation(member, &s->begin);
@@ -389,8 +404,7 @@ int spari_solver_advance(spar_member *member, double dt) {
             spari_quat_conj(before + 3, conj);
             spari_quat_mul(root + 3, conj, turn);
         }
-        predict(member, &c, turn, &s->from, &s->to, s->increment);
-        int status = newton(member, &c, root, &s->from, &s->to, s->increment);
+        int status = newton(member, &c, root, turn, &s->from, &s->to, s->increment);
         if (status != SPAR_OK) {
             memcpy(member->reaction, reaction, sizeof reaction);
             s->factored = 0;
