@@ -1,6 +1,6 @@
 /* The ranks of a session. Only this room knows MPI: serial.c serves builds and sessions without it, mpi.c the others.
-   Every call below is collective over the session's ranks and carries a status, so that a failure on one rank is known on
-   all before any of them can block (what the others get is SPAR_ERR_PEER and the failing rank's message). */
+   Every call below is collective over the session's ranks and carries a status, so that a failure on one rank is known
+   on all before any of them can block (what the others get is SPAR_ERR_PEER and the failing rank's message). */
 #ifndef SPARI_COMM_H
 #define SPARI_COMM_H
 
@@ -16,17 +16,21 @@ void spari_comm_destroy(spari_comm **comm);
 int spari_comm_rank(const spari_comm *comm); /* local */
 int spari_comm_size(const spari_comm *comm); /* local */
 
-/* Agrees on a status: SPAR_OK if it is so on all ranks; else the rank's own failure, or SPAR_ERR_PEER where a peer failed,
-   with "rank R: " and the peer's text put into message (of `size` chars; in: own text, read only when status is a failure).
-   The lowest failing rank's text is the one that is told. */
+/* Agrees on a status: SPAR_OK if it is so on all ranks; else the rank's own failure, or SPAR_ERR_PEER where a peer
+   failed, with "rank R: " and the peer's text put into message (of `size` chars; in: own text, read only when status is
+   a failure). The lowest failing rank's text is the one that is told. */
 int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size);
 
-/* x[n] becomes its sum over the ranks, the same bits on all of them; a failing rank's x counts as zero. x must have room
-   for n + 1 doubles: the last one carries the status. One message up, one down. Returns as spari_comm_agree. */
+/* As spari_comm_agree, at the entry of a collective call named `call`: ranks
+   that are in different calls would wait for each other for ever, so this is SPAR_ERR_COMM on all of them. */
+int spari_comm_enter(spari_comm *comm, const char *call, int status, char *message, size_t size);
+
+/* x[n] becomes its sum over the ranks, the same bits on all of them; a failing rank's x counts as zero. x must have
+   room for n + 1 doubles: the last one carries the status. One message up, one down. Returns as spari_comm_agree. */
 int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
 
-/* Each rank owns x[first[rank] .. first[rank+1]-1] and gets all the others': the last double of each rank's own block carries
-   its status (so every block has at least one). Returns as spari_comm_agree. */
+/* Each rank owns x[first[rank] .. first[rank+1]-1] and gets all the others': the last double of each rank's own block
+   carries its status (so every block has at least one). Returns as spari_comm_agree. */
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
 
 /* Whether `key` is the same on all ranks: *same is 1 or 0 everywhere. */

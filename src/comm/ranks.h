@@ -1,0 +1,20 @@
+/* What the two sides of the room share: the serial one has no table and answers at once. */
+#ifndef SPARI_RANKS_H
+#define SPARI_RANKS_H
+
+#include "comm.h"
+
+typedef struct spari_comm_ops {
+    void (*destroy)(spari_comm *comm);
+    int (*agree)(spari_comm *comm, const char *call, int status, char *message, size_t size);
+    int (*sum)(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
+    int (*share)(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
+    int (*same)(spari_comm *comm, uint64_t key, int *same);
+} spari_comm_ops;
+
+struct spari_comm {
+    const spari_comm_ops *ops; /* NULL: this process alone */
+    int rank, size;
+};
+
+#endif

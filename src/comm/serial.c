@@ -1,0 +1,63 @@
+/* One process alone, and the way to the ranks' table. */
+#include "ranks.h"
+
+#include <stdlib.h>
+
+int spari_comm_create_self(spari_comm **comm) {
+    spari_comm *c = spari_zalloc(1, sizeof *c);
+    if (!c) {
+        return SPAR_ERR_MEMORY;
+    }
+    c->size = 1;
+    *comm = c;
+    return SPAR_OK;
+}
+
+#ifndef SPAR_MPI
+int spari_comm_create_fortran(int handle, spari_comm **comm, const char **why) {
+    (void)handle;
+    (void)comm;
+    *why = "this build of spar has no MPI; configure with -DSPAR_MPI=ON, or use spar_session_create";
+    return SPAR_ERR_UNSUPPORTED;
+}
+#endif
+
+void spari_comm_destroy(spari_comm **comm) {
+    if (!comm || !*comm) {
+        return;
+    }
+    if ((*comm)->ops) {
+        (*comm)->ops->destroy(*comm);
+    }
+    free(*comm);
+    *comm = NULL;
+}
+
+int spari_comm_rank(const spari_comm *comm) {
+    return comm->rank;
+}
+
+int spari_comm_size(const spari_comm *comm) {
+    return comm->size;
+}
+
+int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size) {
+    return comm->ops ? comm->ops->agree(comm, NULL, status, message, size) : status;
+}
+
+int spari_comm_enter(spari_comm *comm, const char *call, int status, char *message, size_t size) {
+    return comm->ops ? comm->ops->agree(comm, call, status, message, size) : status;
+}
+
+int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size) {
+    return comm->ops ? comm->ops->sum(comm, x, n, status, message, size) : status;
+}
+
+int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
+    return comm->ops ? comm->ops->share(comm, x, first, status, message, size) : status;
+}
+
+int spari_comm_same(spari_comm *comm, uint64_t key, int *same) {
+    *same = 1;
+    return comm->ops ? comm->ops->same(comm, key, same) : SPAR_OK;
+}

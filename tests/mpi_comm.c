@@ -1,0 +1,193 @@
+/* The ranks of a communicator: sums, shares, agreement, and failures on one rank that all are told of. Oracle: closed
+   forms in the number of ranks. Any number of ranks; a rank that waits is caught by the time limit of ctest. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+#include <mpi.h>
+
+#include "comm/comm.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static spari_comm *ranks;
+static int rank, size;
+
+static void identity(void **state) {
+    (void)state;
+    int r, n;
+    MPI_Comm_rank(MPI_COMM_WORLD, &r);
+    MPI_Comm_size(MPI_COMM_WORLD, &n);
+    assert_int_equal(rank, r);
+    assert_int_equal(size, n);
+}
+
+static void refused_communicators(void **state) {
+    (void)state;
+    spari_comm *c = NULL;
+    const char *why = NULL;
+    assert_int_equal(spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_NULL), &c, &why), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(why, "MPI_COMM_NULL"));
+    assert_int_not_equal(spari_comm_create_fortran(123456789, &c, &why), SPAR_OK);
+    assert_int_not_equal(spari_comm_create_fortran(-7, &c, &why), SPAR_OK);
+    assert_null(c);
+}
+
+/* sum over ranks of (r + 1) * (i + 1) = n(n+1)/2 * (i+1): small integers, exact */
+static void sums(void **state) {
+    (void)state;
+    double x[6], expected = 0.5 * size * (size + 1);
+    char text[SPARI_MESSAGE_SIZE] = "";
+    for (int i = 0; i < 5; i++) {
+        x[i] = (rank + 1) * (i + 1);
+    }
+    assert_int_equal(spari_comm_sum(ranks, x, 5, SPAR_OK, text, sizeof text), SPAR_OK);
+    for (int i = 0; i < 5; i++) {
+        assert_true(x[i] == expected * (i + 1));
+    }
+    assert_int_equal(spari_comm_sum(ranks, x, 0, SPAR_OK, text, sizeof text), SPAR_OK); /* nothing but the status */
+}
+
+/* The bits of a sum that rounds are the same on all ranks. */
+static void same_bits(void **state) {
+    (void)state;
+    double x[33];
+    char text[SPARI_MESSAGE_SIZE] = "";
+    srand(7 + (unsigned)rank);
+    for (int i = 0; i < 32; i++) {
+        x[i] = (2.0 * rand() / RAND_MAX - 1) * (i % 2 ? 1e9 : 1e-9);
+    }
+    assert_int_equal(spari_comm_sum(ranks, x, 32, SPAR_OK, text, sizeof text), SPAR_OK);
+    for (int i = 0; i < 32; i++) {
+        int same = 0;
+        uint64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        assert_int_equal(spari_comm_same(ranks, bits, &same), SPAR_OK);
+        assert_int_equal(same, 1);
+    }
+}
+
+/* What rank `failing` says is SPAR_ERR_NUMERIC there and SPAR_ERR_PEER with its text elsewhere. */
+static void check_told(int failing, int status, const char *text) {
+    char expected[64];
+    snprintf(expected, sizeof expected, "rank %d: wings fell off at %d", failing, failing);
+    assert_int_equal(status, rank == failing ? SPAR_ERR_NUMERIC : SPAR_ERR_PEER);
+    assert_string_equal(text, rank == failing ? strchr(expected, 'w') : expected);
+}
+
+static void failures(void **state) {
+    (void)state;
+    int64_t *first = calloc((size_t)size + 1, sizeof *first);
+    double *y = calloc((size_t)size, sizeof *y), x[4];
+    for (int r = 0; r < size; r++) {
+        first[r + 1] = first[r] + 1;
+    }
+    for (int failing = 0; failing < size; failing++) {
+        char text[SPARI_MESSAGE_SIZE] = "";
+        int status = rank == failing ? SPAR_ERR_NUMERIC : SPAR_OK;
+        if (status) {
+            snprintf(text, sizeof text, "wings fell off at %d", rank);
+        }
+        check_told(failing, spari_comm_agree(ranks, status, text, sizeof text), text);
+        if (!status) {
+            text[0] = '\0';
+        }
+        check_told(failing, spari_comm_sum(ranks, x, 3, status, text, sizeof text), text);
+        if (!status) {
+            text[0] = '\0';
+        }
+        check_told(failing, spari_comm_share(ranks, y, first, status, text, sizeof text), text);
+        if (!status) {
+            text[0] = '\0';
+        }
+        check_told(failing, spari_comm_enter(ranks, "spar_step_solve", status, text, sizeof text), text);
+    }
+    free(first);
+    free(y);
+}
+
+/* All fail: each keeps its own, nobody is told of a peer. */
+static void all_fail(void **state) {
+    (void)state;
+    char text[SPARI_MESSAGE_SIZE], own[64];
+    snprintf(own, sizeof own, "own %d", rank);
+    snprintf(text, sizeof text, "%s", own);
+    assert_int_equal(spari_comm_agree(ranks, SPAR_ERR_IO, text, sizeof text), SPAR_ERR_IO);
+    assert_string_equal(text, own);
+}
+
+/* A rank in another collective call is found at the entry, on all ranks. */
+static void different_calls(void **state) {
+    (void)state;
+    char text[SPARI_MESSAGE_SIZE] = "";
+    const char *call = rank == size - 1 ? "spar_step_check" : "spar_step_solve";
+    int status = spari_comm_enter(ranks, call, SPAR_OK, text, sizeof text);
+    assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_COMM);
+    assert_true(size == 1 || strstr(text, call) == text);
+    assert_int_equal(spari_comm_enter(ranks, "spar_step_check", SPAR_OK, text, sizeof text), SPAR_OK);
+}
+
+/* blocks of 2 r + 1 numbers, the last of which is the status: rank 0 has nothing to share */
+static void shares(void **state) {
+    (void)state;
+    int64_t *first = calloc((size_t)size + 1, sizeof *first);
+    for (int r = 0; r < size; r++) {
+        first[r + 1] = first[r] + 2 * r + 1;
+    }
+    double *x = calloc((size_t)first[size], sizeof *x);
+    char text[SPARI_MESSAGE_SIZE] = "";
+    for (int64_t i = first[rank]; i < first[rank + 1] - 1; i++) {
+        x[i] = 0.1 * (double)i + rank;
+    }
+    assert_int_equal(spari_comm_share(ranks, x, first, SPAR_OK, text, sizeof text), SPAR_OK);
+    for (int r = 0; r < size; r++) {
+        for (int64_t i = first[r]; i < first[r + 1] - 1; i++) {
+            assert_true(x[i] == 0.1 * (double)i + r);
+        }
+    }
+    free(first);
+    free(x);
+}
+
+static void keys(void **state) {
+    (void)state;
+    int same = 0;
+    uint64_t big = UINT64_MAX - 3;
+    assert_int_equal(spari_comm_same(ranks, big, &same), SPAR_OK);
+    assert_int_equal(same, 1);
+    assert_int_equal(spari_comm_same(ranks, rank == 0 ? big : big - 1, &same), SPAR_OK);
+    assert_int_equal(same, size == 1);
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(identity), cmocka_unit_test(refused_communicators),
+        cmocka_unit_test(sums),     cmocka_unit_test(same_bits),
+        cmocka_unit_test(failures), cmocka_unit_test(all_fail),
+        cmocka_unit_test(shares),   cmocka_unit_test(different_calls),
+        cmocka_unit_test(keys),
+    };
+    const char *why = "";
+    char text[SPARI_MESSAGE_SIZE] = "";
+    int failed, worst = 0;
+    MPI_Init(&argc, &argv);
+    if (spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_WORLD), &ranks, &why) != SPAR_OK) {
+        fprintf(stderr, "%s\n", why);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    rank = spari_comm_rank(ranks);
+    size = spari_comm_size(ranks);
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Finalize();
+    /* after MPI_Finalize: refused, and destroy only frees */
+    if (spari_comm_agree(ranks, SPAR_OK, text, sizeof text) != SPAR_ERR_COMM || !strstr(text, "MPI_Finalize")) {
+        fprintf(stderr, "a call after MPI_Finalize was not refused\n");
+        worst = 1;
+    }
+    spari_comm_destroy(&ranks);
+    return worst;
+}
