@@ -1,0 +1,178 @@
+/* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. */
+#include "../fluid/transfer.h"
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "../member/member.h"
+#include "vtk.h"
+#include <spar/spar_output.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pieces that the line is drawn with between two nodes: a basis of high order bends there. */
+enum { SPARI_PIECES = 4 };
+
+/* Columns of the table of samples, and the fields made of them. */
+enum { X, U = 3, AXES = 6, V = 15, OMEGA = 18, A = 21, ALPHA = 24, FORCE = 27, MOMENT = 30, NODE = 33, COLUMNS = 34 };
+static const struct {
+    const char *name;
+    int column, components;
+} field_of[] = {{"points", X, 3},
+                {"displacement", U, 3},
+                {"section_x", AXES, 3},
+                {"section_y", AXES + 3, 3},
+                {"section_z", AXES + 6, 3},
+                {"velocity", V, 3},
+                {"angular_velocity", OMEGA, 3},
+                {"acceleration", A, 3},
+                {"angular_acceleration", ALPHA, 3},
+                {"nodal_force", FORCE, 3},
+                {"nodal_moment", MOMENT, 3},
+                {"node", NODE, 1}};
+enum { FIELDS = sizeof field_of / sizeof field_of[0] };
+
+typedef struct sampled {
+    int64_t n;     /* samples */
+    double *table; /* [COLUMNS][n], each field as VTK wants it: at table + column * n, [n][components] */
+    int64_t *node; /* [nodes] the sample at each node */
+    int64_t *end;  /* [elements] */
+} sampled;
+
+typedef struct nodal {
+    double *q, *v, *a, *load; /* [nodes][7], [6], [6], [6] */
+    double *chain, *frame;    /* [nodes][4]: q and the reference orientation, signs chained along each element */
+} nodal;
+
+static void put(const sampled *s, int column, int components, int64_t sample, const double *value) {
+    memcpy(s->table + (int64_t)column * s->n + sample * components, value, (size_t)components * sizeof *value);
+}
+
+static void blend(int n, const double *phi, int stride, const double *from, int components, double *to) {
+    for (int c = 0; c < components; c++) {
+        to[c] = 0;
+        for (int k = 0; k < n; k++) {
+            to[c] += phi[k] * from[k * stride + c];
+        }
+    }
+}
+
+static void put_axes(const sampled *s, int64_t sample, int n, const double *phi, const double *chain,
+                     const double *frame) {
+    static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double turn[4], at_rest[4], now[4];
+    blend(n, phi, 4, chain, 4, turn);
+    blend(n, phi, 4, frame, 4, at_rest);
+    spari_quat_mul(turn, at_rest, now);
+    spari_quat_normalise(now);
+    for (int i = 0; i < 3; i++) {
+        double axis[3];
+        spari_rotate(now, unit[i], axis);
+        put(s, AXES + 3 * i, 3, sample, axis);
+    }
+}
+
+/* One sample of the element whose nodes begin at `first`. node: its number where there is one, else -1. */
+static void put_sample(const sampled *s, const spar_member *m, const nodal *at, int64_t first, const double *phi,
+                       int64_t node, int64_t sample) {
+    static const double zero[6] = {0};
+    int n = m->per_element;
+    double x[3], u[3], rate[6], number = (double)node;
+    const double *load = node < 0 ? zero : at->load + 6 * node; /* lumped: there is none between nodes */
+    blend(n, phi, 3, m->xr + 3 * first, 3, x);
+    blend(n, phi, 7, at->q + 7 * first, 3, u);
+    for (int i = 0; i < 3; i++) {
+        x[i] += u[i];
+    }
+    put(s, X, 3, sample, x);
+    put(s, U, 3, sample, u);
+    put_axes(s, sample, n, phi, at->chain + 4 * first, at->frame + 4 * first);
+    blend(n, phi, 6, at->v + 6 * first, 6, rate);
+    put(s, V, 3, sample, rate);
+    put(s, OMEGA, 3, sample, rate + 3);
+    blend(n, phi, 6, at->a + 6 * first, 6, rate);
+    put(s, A, 3, sample, rate);
+    put(s, ALPHA, 3, sample, rate + 3);
+    put(s, FORCE, 3, sample, load);
+    put(s, MOMENT, 3, sample, load + 3);
+    put(s, NODE, 1, sample, &number);
+}
+
+static void sample_member(const sampled *s, const spar_member *m, const nodal *at) {
+    int n = m->per_element;
+    double x[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
+    int64_t sample = 0;
+    spari_gll(n, x, NULL, bary);
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * n;
+        for (int k = 0; k < n; k++) {
+            for (int piece = 0; piece < (k + 1 < n ? SPARI_PIECES : 1); piece++, sample++) {
+                double xi = piece == 0 ? x[k] : x[k] + (x[k + 1] - x[k]) * piece / SPARI_PIECES;
+                spari_lagrange(n, x, bary, xi, phi, NULL);
+                if (piece == 0) {
+                    s->node[first + k] = sample;
+                }
+                put_sample(s, m, at, first, phi, piece == 0 ? first + k : -1, sample);
+            }
+        }
+        s->end[e] = sample;
+    }
+}
+
+static int fill_nodal(const spar_member *m, nodal *at) {
+    SPARI_TRY(spar_member_get_motion(m, at->q, at->v, at->a));
+    SPARI_TRY(spar_member_get_loads(m, at->load));
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * m->per_element;
+        spari_chain(m->per_element, at->q + 7 * first + 3, 7, at->chain + 4 * first);
+        spari_chain(m->per_element, m->qr + 4 * first, 4, at->frame + 4 * first);
+    }
+    return SPAR_OK;
+}
+
+static int write_picture(const spar_member *m, const sampled *s, const char *path) {
+    spari_vtk_field field[FIELDS];
+    for (int i = 0; i < FIELDS; i++) {
+        field[i] = (spari_vtk_field){field_of[i].name, field_of[i].components, s->table + field_of[i].column * s->n};
+    }
+    spari_vtk_field fact[] = {{"reaction_force", 3, m->reaction}, {"reaction_moment", 3, m->reaction + 3}};
+    spari_vtk_picture picture = {.points = s->n,
+                                 .x = field[0].value,
+                                 .verts = m->nodes,
+                                 .vert = s->node,
+                                 .lines = m->per_element > 1 ? m->elements : 0,
+                                 .line_end = s->end,
+                                 .fields = FIELDS - 1,
+                                 .field = field + 1,
+                                 .facts = 2,
+                                 .fact = fact};
+    SPARI_TRY(spar_session_get_time(m->session, &picture.time, NULL, NULL));
+    return spari_vtk_write(m->session, "spar_member_write_vtk", path, &picture);
+}
+
+int spar_member_write_vtk(const spar_member *member, const char *path) {
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "spar_member_write_vtk: the member is NULL; create it first");
+    SPARI_REQUIRE(member->session, member->committed, SPAR_ERR_STATE,
+                  "spar_member_write_vtk: member '%s' is not committed; call spar_member_commit first", member->name);
+    int64_t n = member->nodes;
+    sampled s = {.n = (int64_t)member->elements * ((member->per_element - 1) * SPARI_PIECES + 1)};
+    double *work = spari_zalloc(33 * n, sizeof *work);
+    nodal at = {work, work + 7 * n, work + 13 * n, work + 19 * n, work + 25 * n, work + 29 * n};
+    s.table = spari_zalloc(COLUMNS * s.n, sizeof *s.table);
+    s.node = spari_zalloc(n, sizeof *s.node);
+    s.end = spari_zalloc(member->elements, sizeof *s.end);
+    int status = SPAR_OK;
+    if (!work || !s.table || !s.node || !s.end) {
+        status =
+            spari_fail(member->session, SPAR_ERR_MEMORY, "spar_member_write_vtk: no memory for '%s'", member->name);
+    } else {
+        status = fill_nodal(member, &at);
+    }
+    if (status == SPAR_OK) {
+        sample_member(&s, member, &at);
+        status = write_picture(member, &s, path);
+    }
+    free(work);
+    free(s.table);
+    free(s.node);
+    free(s.end);
+    return status;
+}
