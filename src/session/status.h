@@ -9,12 +9,12 @@
 #define SPARI_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 #else
 #define SPARI_PRINTF(fmt, args)
-/* GSL's default error handler aborts: turns it off, once for the process; a handler that a user has set stays. */
-void spari_gsl_quiet(void);
-
 #endif
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
+
+/* levels of the log callback */
+enum { SPARI_LOG_ERROR = 0, SPARI_LOG_WARNING = 1, SPARI_LOG_INFO = 2, SPARI_LOG_DEBUG = 3 };
 
 /* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
    thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */

@@ -1,0 +1,112 @@
+# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package.
+find_package(PkgConfig QUIET)
+find_path(SPAR_CMOCKA_INCLUDE cmocka.h)
+find_library(SPAR_CMOCKA_LIBRARY cmocka)
+mark_as_advanced(SPAR_CMOCKA_INCLUDE SPAR_CMOCKA_LIBRARY)
+if(NOT SPAR_CMOCKA_INCLUDE OR NOT SPAR_CMOCKA_LIBRARY)
+  message(FATAL_ERROR "SPAR_BUILD_TESTS needs CMocka (Debian: libcmocka-dev); or set SPAR_BUILD_TESTS=OFF")
+endif()
+
+# Open MPI as root, in a container, on fewer cores than ranks, without ssh.
+set(spar_test_environment
+  OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+  OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_plm_rsh_agent=true
+  OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader
+  OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
+  "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0"
+  UBSAN_OPTIONS=print_stacktrace=1)
+
+# What tests share: tests/support/*.c, and any header under tests/ or src/.
+add_library(spar_test_base INTERFACE)
+target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests")
+target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
+target_compile_definitions(spar_test_base INTERFACE
+  SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
+  $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1> $<$<BOOL:${SPAR_LAPACK}>:SPARI_HAVE_LAPACK=1>)
+# cmocka.h wants these before it, and the formatter sorts includes
+target_compile_options(spar_test_base INTERFACE
+  "$<$<COMPILE_LANGUAGE:C>:SHELL:-include stdarg.h -include stddef.h -include stdint.h -include setjmp.h>")
+target_link_libraries(spar_test_base INTERFACE spar_flags $<TARGET_NAME_IF_EXISTS:spar_example_parts> "${SPAR_CMOCKA_LIBRARY}" spar::gsl)
+file(GLOB spar_support CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/support/*.c")
+if(spar_support)
+  add_library(spar_test_support STATIC ${spar_support})
+  target_link_libraries(spar_test_support PUBLIC spar_test_base spar_static)
+  set(spar_test_libraries spar_test_support)
+endif()
+# The static library: tests may call what the shared one hides.
+list(APPEND spar_test_libraries spar_static spar_test_base)
+
+function(spar_set_test name label timeout)
+  set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT ${timeout} ENVIRONMENT "${spar_test_environment}")
+endfunction()
+
+# spar_add_test(<file> <label> <timeout>): one program, run as it is
+function(spar_add_test file label timeout)
+  get_filename_component(name "${file}" NAME_WE)
+  add_executable(${name} "${file}")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_link_libraries(${name} PRIVATE ${spar_test_libraries})
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  spar_set_test(${name} ${label} ${timeout})
+endfunction()
+
+# spar_add_ranks(<target> <label> <timeout> [arguments]): the program of a target under 1, 2 and 4 ranks
+function(spar_add_ranks target label timeout)
+  foreach(ranks IN ITEMS 1 2 4)
+    add_test(NAME ${target}_np${ranks}
+      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} --oversubscribe --allow-run-as-root
+              $<TARGET_FILE:${target}> ${ARGN}
+      WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    spar_set_test(${target}_np${ranks} ${label} ${timeout})
+    set_tests_properties(${target}_np${ranks} PROPERTIES PROCESSORS 2)
+  endforeach()
+endfunction()
+
+file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/test_*.c")
+foreach(file IN LISTS files)
+  spar_add_test("${file}" unit 120)
+endforeach()
+foreach(kind IN ITEMS verification stability)
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${kind}/*.c")
+  foreach(file IN LISTS files)
+    spar_add_test("${file}" ${kind} 300)
+  endforeach()
+endforeach()
+
+if(SPAR_MPI)
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/mpi_*.c")
+  foreach(file IN LISTS files)
+    get_filename_component(name "${file}" NAME_WE)
+    add_executable(${name} "${file}")
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    target_link_libraries(${name} PRIVATE ${spar_test_libraries} MPI::MPI_C)
+    spar_add_ranks(${name} mpi 60)
+  endforeach()
+endif()
+
+if(TARGET spar_fortran)
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/fortran/test_*.f90"
+       "${PROJECT_SOURCE_DIR}/tests/fortran/mpi_*.f90")
+  foreach(file IN LISTS files)
+    get_filename_component(name "${file}" NAME_WE)
+    set(target fortran_${name})
+    if(name MATCHES "^mpi_" AND NOT TARGET MPI::MPI_Fortran)
+      continue()
+    endif()
+    add_executable(${target} "${file}")
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
+      Fortran_MODULE_DIRECTORY "${PROJECT_BINARY_DIR}/tests/modules_${name}")
+    target_compile_options(${target} PRIVATE -cpp)
+    target_compile_definitions(${target} PRIVATE $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1>)
+    target_link_libraries(${target} PRIVATE spar_flags spar_fortran)
+    if(name MATCHES "^mpi_")
+      target_link_libraries(${target} PRIVATE MPI::MPI_Fortran)
+      spar_add_ranks(${target} fortran 60)
+    else()
+      add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+      spar_set_test(${target} fortran 120)
+    endif()
+  endforeach()
+endif()
+
+include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)

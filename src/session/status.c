@@ -1,0 +1,140 @@
+#include "status.h"
+
+#include "session.h"
+
+#include <gsl/gsl_errno.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One table gives code, name and text; the order is that of the codes. */
+#define SPARI_STATUS_TABLE(ROW)                                                                                        \
+    ROW(SPAR_OK, "no error")                                                                                           \
+    ROW(SPAR_ERR_ARGUMENT, "an argument is not allowed")                                                               \
+    ROW(SPAR_ERR_STATE, "the call is not allowed in this state")                                                       \
+    ROW(SPAR_ERR_MEMORY, "out of memory")                                                                              \
+    ROW(SPAR_ERR_NUMERIC, "the computation did not converge or is singular")                                           \
+    ROW(SPAR_ERR_MAPPING, "a node could not be mapped")                                                                \
+    ROW(SPAR_ERR_COMM, "the communication failed")                                                                     \
+    ROW(SPAR_ERR_PEER, "another rank failed")                                                                          \
+    ROW(SPAR_ERR_IO, "a file could not be read or written")                                                            \
+    ROW(SPAR_ERR_UNSUPPORTED, "not supported by this build")                                                           \
+    ROW(SPAR_ERR_USER, "a callback of the host failed")
+
+static const struct {
+    int code;
+    const char *text;
+} table[] = {
+#define SPARI_ROW(code, text) {code, #code ": " text},
+    SPARI_STATUS_TABLE(SPARI_ROW)
+#undef SPARI_ROW
+};
+
+/* A failed create has no session that could keep its message. */
+static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
+
+const char *spar_status_text(int status) {
+    if (status < 0 || (size_t)status >= sizeof table / sizeof table[0] || table[status].code != status) {
+        return "unknown status";
+    }
+    return table[status].text;
+}
+
+const char *spar_version(void) {
+    return SPARI_VERSION;
+}
+
+int spar_has(const char *feature) {
+    static const char *const features[] = {
+#ifdef SPARI_HAVE_MPI
+        "mpi",
+#endif
+#ifdef SPARI_HAVE_FORTRAN
+        "fortran",
+#endif
+#ifdef SPARI_HAVE_OPENBLAS
+        "openblas",
+#endif
+#ifdef SPARI_HAVE_LAPACK
+        "lapack",
+#endif
+        "gsl",
+    };
+    if (!feature) {
+        return 0;
+    }
+    for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
+        if (strcmp(feature, features[i]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int spari_fail(spar_session *session, int status, const char *format, ...) {
+    /* Formatted aside first: an argument may point into the message that is about to be replaced. */
+    char text[SPARI_MESSAGE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) {
+        snprintf(text, sizeof text, "%s", spar_status_text(status));
+    }
+    va_end(arguments);
+    memcpy(session ? session->message : thread_message, text, sizeof text);
+    if (session && session->log) {
+        session->log(session, SPARI_LOG_ERROR, session->message, session->log_context);
+    }
+    return status;
+}
+
+const char *spar_session_message(const spar_session *session) {
+    return session ? session->message : thread_message;
+}
+
+int64_t spari_first_nonfinite(const double *x, int64_t n) {
+    /* 0 * x is 0 for every finite x and NaN otherwise, so that one vector sum decides; several sums, because the order of
+       additions in one may not be changed. Looking for the culprit is the rare case. */
+    double sum[8] = {0.0};
+    int64_t i = 0;
+    for (; i + 8 <= n; i += 8) {
+        for (int k = 0; k < 8; k++) {
+            sum[k] += 0.0 * x[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum[0] += 0.0 * x[i];
+    }
+    double all = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+    if (all == 0.0) {
+        return -1;
+    }
+    for (i = 0; i < n; i++) {
+        if (!(0.0 * x[i] == 0.0)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+void *spari_zalloc(int64_t n, size_t size) {
+    if (n < 0 || (uint64_t)n > SIZE_MAX) {
+        return NULL;
+    }
+    return calloc(n > 0 && size > 0 ? (size_t)n : 1, size > 0 ? size : 1);
+}
+
+/* GSL has one error handler for the whole process and its default one aborts. gsl_set_error_handler_off answers with the
+   handler in force before: NULL is the default (which stays off), anything else is the host's own and goes back. */
+static void quiet_once(void) {
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    if (handler) {
+        gsl_set_error_handler(handler);
+    }
+}
+
+void spari_gsl_quiet(void) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, quiet_once);
+}
