@@ -8,6 +8,7 @@
 
 #include "../src/aero/element.h"
 #include "../src/math/rotation.h"
+#include "../src/session/status.h"
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846
@@ -27,7 +28,7 @@ static int set_up(void **state) {
         cm[i] = -0.3 * sin(alpha[i]);
     }
     cl[180] = cm[0] = cm[360] = 0.0;
-    spari_quiet_gsl();
+    spari_gsl_quiet();
     solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     return spar_polar_create(361, alpha, cl, cd, cm, &polar) != SPAR_OK;
 }

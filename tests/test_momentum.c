@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "../src/aero/momentum.h"
+#include "../src/session/status.h"
 #include <cmocka.h>
 #include <gsl/gsl_integration.h>
 
@@ -309,7 +310,7 @@ static void test_continuous(void **state) {
 }
 
 int main(void) {
-    spari_quiet_gsl();
+    spari_gsl_quiet();
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_prandtl),   cmocka_unit_test(test_betz),
                                        cmocka_unit_test(test_glauert),   cmocka_unit_test(test_random),
                                        cmocka_unit_test(test_mirror),    cmocka_unit_test(test_corners),

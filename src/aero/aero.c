@@ -128,7 +128,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     spar_session *session = blades > 0 ? spari_fluid_session(sections[0]) : NULL;
     spar_aero *made = spari_zalloc(1, sizeof *made);
     SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "spar_aero_create: no memory");
-    spari_quiet_gsl();
+    spari_gsl_quiet();
     made->session = session;
     made->blades = blades;
     made->n = n;

@@ -1,6 +1,5 @@
 #include "polar.h"
 #include "../session/status.h"
-#include <gsl/gsl_errno.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -25,13 +24,6 @@ struct spari_table {
 struct spar_polar {
     spari_table *table;
 };
-
-void spari_quiet_gsl(void) {
-    gsl_error_handler_t *previous = gsl_set_error_handler_off();
-    if (previous) {
-        gsl_set_error_handler(previous);
-    }
-}
 
 static void table_free(spari_table *table) {
     for (int c = 0; table && c < SPARI_COEFFICIENTS; c++) {
@@ -155,7 +147,7 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                   "spar_polar_create: alpha, cl or cd is NULL; only cm may be");
     SPARI_TRY(check_rows(n, alpha_rad, value));
     SPARI_TRY(check_turn(n, alpha_rad, value));
-    spari_quiet_gsl();
+    spari_gsl_quiet();
     spar_polar *made = spari_zalloc(1, sizeof *made);
     spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;
     if (!table) {

@@ -8,10 +8,6 @@
 
 typedef struct spari_table spari_table;
 
-/* GSL's default error handler aborts the host, and there is one for the process. This replaces the default only and
-   keeps a user's; the polars can come before any session. */
-void spari_quiet_gsl(void);
-
 /* The polar's table, one user more; given back with spari_table_release. */
 spari_table *spari_polar_share(const spar_polar *polar);
 void spari_table_release(spari_table *table);
