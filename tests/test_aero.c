@@ -1,15 +1,9 @@
 /* The blade-element fluid through the whole library: the NREL 5-MW rotor against AeroDyn, invariance, bad input. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "../examples/nrel5mw.h"
 #include <cmocka.h>
+#include <nrel5mw.h>
 #include <spar/spar.h>
 #include <spar/spar_aero.h>
 
@@ -29,12 +23,7 @@ typedef struct scene {
 } scene;
 
 static void load_tables(nrel5mw *data) {
-    char path[1024];
-    snprintf(path, sizeof path, "%s", __FILE__);
-    char *end = strrchr(path, '/');
-    assert_non_null(end);
-    snprintf(end, sizeof path - (size_t)(end - path), "/../examples/data/nrel5mw");
-    if (nrel5mw_load(data, path) != SPAR_OK) {
+    if (nrel5mw_load(data, SPAR_DATA_DIR "/nrel5mw") != SPAR_OK) {
         print_error("%s\n", data->message);
         fail();
     }

@@ -1,14 +1,10 @@
 /* One blade element: closed forms of its loads, and that they turn with the axes and mirror with the rotor. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "../src/aero/element.h"
-#include "../src/math/rotation.h"
-#include "../src/session/status.h"
+#include "aero/element.h"
+#include "math/rotation.h"
+#include "session/status.h"
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846

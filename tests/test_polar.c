@@ -1,9 +1,5 @@
 /* Polars: look-up between the rows, round the circle and beyond the table; every bad table is refused with its row. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
 #include <cmocka.h>
