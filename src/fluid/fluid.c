@@ -648,15 +648,23 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
     return n;
 }
 
-/* Three rows of the tile to the host's triples, by node. */
-static void emit(const spari_nodes *s, int64_t first, int count, int n, const double share[2],
-                 double (*buf[2])[SPARI_ROW], int row, double *out) {
-    for (int i = 0; out && i < count; i++) {
-        double *to = out + 3 * (s->place ? first + s->place[first + i] : first + i);
-        for (int k = 0; k < 3; k++) {
-            double x = buf[0][row + k][i];
-            to[k] = n == 2 ? share[0] * x + share[1] * buf[1][row + k][i] : x;
+/* Rows of two states become those of the time between them, in the first's place. */
+static void average(const double share[2], double (*buf[2])[SPARI_ROW], int row, int count) {
+    for (int k = row; k < row + 3; k++) {
+        for (int i = 0; i < count; i++) {
+            buf[0][k][i] = share[0] * buf[0][k][i] + share[1] * buf[1][k][i];
         }
+    }
+}
+
+/* Three rows of the tile to the host's triples, by node. */
+static void emit(const spari_nodes *s, int64_t first, int n, const double share[2], double (*buf[2])[SPARI_ROW],
+                 int row, double *out) {
+    if (out) {
+        if (n == 2) {
+            average(share, buf, row, spari_tile_count(s, first));
+        }
+        spari_tile_store(s, first, buf[0] + row, out);
     }
 }
 
@@ -682,21 +690,21 @@ int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v
     int upto = v ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE;
     int n = fill_states(fluid, theta, upto, share);
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
-        int count = s->n - first < SPARI_TILE ? (int)(s->n - first) : SPARI_TILE;
         for (int i = 0; i < n; i++) {
             least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, upto, buf[i]));
         }
-        emit(s, first, count, n, share, buf, SPARI_R_PLACE, x);
-        emit(s, first, count, n, share, buf, SPARI_R_RATE, v);
+        emit(s, first, n, share, buf, SPARI_R_PLACE, x);
+        emit(s, first, n, share, buf, SPARI_R_RATE, v);
     }
     return check_rotation(fluid, least, __func__);
 }
 
 /* Orientation now of the tile's nodes: the states' rotations, averaged where there are two, times the reference's. */
-static void emit_orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t first, int count, int n,
-                             const double share[2], double (*buf[2])[SPARI_ROW], double *out) {
+static void emit_orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t first, int n, const double share[2],
+                             double (*buf[2])[SPARI_ROW], double *out) {
+    int count = spari_tile_count(s, first);
     for (int i = 0; out && i < count; i++) {
-        double q[2][4], x[3], reference[4];
+        double q[2][4] = {{0}}, x[3], reference[4];
         for (int k = 0; k < n; k++) {
             for (int c = 0; c < 4; c++) {
                 q[k][c] = buf[k][SPARI_R_QUAT + c][i];
@@ -731,14 +739,13 @@ int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double 
                                                                least = HUGE_VAL;
     int n = fill_states(fluid, theta, SPARI_UPTO_ACCEL, share);
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
-        int count = s->n - first < SPARI_TILE ? (int)(s->n - first) : SPARI_TILE;
         for (int i = 0; i < n; i++) {
             least =
                 fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_ACCEL, buf[i]));
         }
-        emit(s, first, count, n, share, buf, SPARI_R_OMEGA, omega);
-        emit(s, first, count, n, share, buf, SPARI_R_ACCEL, accel);
-        emit_orientation(fluid, s, first, count, n, share, buf, q);
+        emit(s, first, n, share, buf, SPARI_R_OMEGA, omega);
+        emit(s, first, n, share, buf, SPARI_R_ACCEL, accel);
+        emit_orientation(fluid, s, first, n, share, buf, q);
     }
     return check_rotation(fluid, least, __func__);
 }

@@ -1,9 +1,13 @@
 /* The transfer kernels for one vector width. Included by transfer.c once per width with
-     W       nodes handled together
-     NAME(x) the name of x at this width
-     TARGET  function attributes of the instruction set
+     W           nodes in a vector
+     NAME(x)     the name of x at this width
+     TARGET      function attributes of the instruction set
+     MADD(a,b,c) a b + c, rounded once where the processor can
+     SPLAT(p)    *p in every lane
    Without GNU vector types W is 1 and everything below is plain C. No include guard: this is a body, not an interface.
- */
+
+   Two vectors are worked on side by side (PAIR nodes): the chains of multiply-adds are then long enough apart to hide
+   their latency, and each coefficient is spread over the lanes once for both. */
 
 #if W > 1
 typedef double NAME(lanes) __attribute__((vector_size(8 * W)));
@@ -12,6 +16,7 @@ typedef int64_t NAME(bits) __attribute__((vector_size(8 * W)));
 typedef double NAME(lanes);
 #endif
 #define L NAME(lanes)
+#define PAIR (2 * W)
 #define SPARI_INLINE TARGET static inline SPARI_ALWAYS_INLINE
 
 SPARI_INLINE L NAME(get)(const double *p) {
@@ -53,30 +58,115 @@ SPARI_INLINE double NAME(least)(L v) {
     return s;
 }
 
-/* s[f] = sum_k T_k(x) c[k][f]; the T_k go to t (rows of SPARI_ROW) when asked for. n is a constant where this is
- * inlined. */
-SPARI_INLINE void NAME(sum)(const int n, int modes, const double *c, L x, L *s, double *t) {
-    L t0 = x - x + 1.0, t1 = x, twice = x + x;
+/* ---- triples in memory, rows in the tile ---- */
+
+/* W triples x0 y0 z0 x1 ... from three vectors, and back. */
+SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
+#if W == 2
+    NAME(put)(out, __builtin_shufflevector(x, y, 0, 2));
+    NAME(put)(out + 2, __builtin_shufflevector(z, x, 0, 3));
+    NAME(put)(out + 4, __builtin_shufflevector(y, z, 1, 3));
+#elif W == 4
+    NAME(put)(out, __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 1, 1), z, 0, 1, 4, 2));
+    NAME(put)(out + 4, __builtin_shufflevector(__builtin_shufflevector(y, z, 1, 5, 2, 2), x, 0, 1, 6, 2));
+    NAME(put)(out + 8, __builtin_shufflevector(__builtin_shufflevector(z, x, 2, 7, 3, 3), y, 0, 1, 7, 2));
+#elif W == 8
+    L a = __builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 1, 2, 10),
+      b = __builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
+      c = __builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0);
+    NAME(put)(out, __builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7));
+    NAME(put)(out + 8, __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
+    NAME(put)(out + 16, __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
+#else
+    out[0] = x, out[1] = y, out[2] = z;
+#endif
+}
+
+SPARI_INLINE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
+#if W == 2
+    L a = NAME(get)(in), b = NAME(get)(in + 2), c = NAME(get)(in + 4);
+    *x = __builtin_shufflevector(a, b, 0, 3);
+    *y = __builtin_shufflevector(a, c, 1, 2);
+    *z = __builtin_shufflevector(b, c, 0, 3);
+#elif W == 4
+    L a = NAME(get)(in), b = NAME(get)(in + 4), c = NAME(get)(in + 8);
+    *x = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 6), c, 0, 1, 2, 5);
+    *y = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 7), c, 0, 1, 2, 6);
+    *z = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 5, 5), c, 0, 1, 4, 7);
+#elif W == 8
+    L a = NAME(get)(in), b = NAME(get)(in + 8), c = NAME(get)(in + 16);
+    *x = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, 0, 0), c, 0, 1, 2, 3, 4, 5, 10, 13);
+    *y = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 10, 13, 0, 0, 0), c, 0, 1, 2, 3, 4, 8, 11, 14);
+    *z = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 8, 11, 14, 0, 0, 0), c, 0, 1, 2, 3, 4, 9, 12, 15);
+#else
+    *x = in[0], *y = in[1], *z = in[2];
+#endif
+}
+
+TARGET static void NAME(store_triples)(double (*row)[SPARI_ROW], int count, double *out) {
+    int i = 0;
+    for (; i + W <= count; i += W) {
+        NAME(weave)(NAME(get)(row[0] + i), NAME(get)(row[1] + i), NAME(get)(row[2] + i), out + 3 * (ptrdiff_t)i);
+    }
+    for (; i < count; i++) {
+        out[3 * i] = row[0][i], out[3 * i + 1] = row[1][i], out[3 * i + 2] = row[2][i];
+    }
+}
+
+TARGET static void NAME(load_triples)(const double *in, int count, double (*row)[SPARI_ROW]) {
+    int i = 0;
+    for (; i + W <= count; i += W) {
+        L x, y, z;
+        NAME(unweave)(in + 3 * (ptrdiff_t)i, &x, &y, &z);
+        NAME(put)(row[0] + i, x);
+        NAME(put)(row[1] + i, y);
+        NAME(put)(row[2] + i, z);
+    }
+    for (; i < count; i++) {
+        row[0][i] = in[3 * i], row[1][i] = in[3 * i + 1], row[2][i] = in[3 * i + 2];
+    }
+}
+
+/* ---- sums over the modes ---- */
+
+/* T_k of a pair of vectors, row k at t + k * stride. */
+SPARI_INLINE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stride) {
+    static const double one = 1;
+    L a0 = SPLAT(&one), b0 = a0, a1 = x[0], b1 = x[1], a2 = a1 + a1, b2 = b1 + b1;
+    NAME(put)(t, a0);
+    NAME(put)(t + W, b0);
+    for (int k = 1; k < modes; k++) {
+        L a = MADD(a2, a1, -a0), b = MADD(b2, b1, -b0);
+        NAME(put)(t + k * stride, a1);
+        NAME(put)(t + k * stride + W, b1);
+        a0 = a1, a1 = a, b0 = b1, b1 = b;
+    }
+}
+
+/* s[f] and s[n + f] = sum_k T_k c[k][f] for the first and the second vector. n is a constant where this is inlined. */
+SPARI_INLINE void NAME(sum)(const int n, int modes, const double *c, const double *t, const ptrdiff_t stride, L *s) {
+    L a[6], b[6];
     SPARI_UNROLL
     for (int f = 0; f < n; f++) {
-        s[f] = t0 * c[f];
-    }
-    if (t) {
-        NAME(put)(t, t0);
+        a[f] = SPLAT(c + f), b[f] = a[f];
     }
     for (int k = 1; k < modes; k++) {
         const double *row = c + (ptrdiff_t)k * SPARI_FIELDS;
+        L ta = NAME(get)(t + k * stride), tb = NAME(get)(t + k * stride + W);
         SPARI_UNROLL
         for (int f = 0; f < n; f++) {
-            s[f] += t1 * row[f];
+            L r = SPLAT(row + f);
+            a[f] = MADD(ta, r, a[f]);
+            b[f] = MADD(tb, r, b[f]);
         }
-        if (t) {
-            NAME(put)(t + (ptrdiff_t)k * SPARI_ROW, t1);
-        }
-        L t2 = twice * t1 - t0;
-        t0 = t1, t1 = t2;
+    }
+    SPARI_UNROLL
+    for (int f = 0; f < n; f++) {
+        s[f] = a[f], s[n + f] = b[f];
     }
 }
+
+/* ---- rotations ---- */
 
 SPARI_INLINE void NAME(cross)(const L *a, const L *b, L *c) {
     L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
@@ -84,7 +174,7 @@ SPARI_INLINE void NAME(cross)(const L *a, const L *b, L *c) {
 }
 
 SPARI_INLINE L NAME(square)(const L *q) {
-    return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]);
 }
 
 /* r = R(Q / |Q|) c without a square root: c + 2 / |Q|^2 (w u x c + u x (u x c)) */
@@ -93,7 +183,7 @@ SPARI_INLINE void NAME(turn)(const L *q, L over, const L *c, L *r) {
     NAME(cross)(q + 1, c, t);
     NAME(cross)(q + 1, t, s);
     for (int i = 0; i < 3; i++) {
-        r[i] = c[i] + g * (q[0] * t[i] + s[i]);
+        r[i] = MADD(g, MADD(q[0], t[i], s[i]), c[i]);
     }
 }
 
@@ -106,182 +196,217 @@ SPARI_INLINE void NAME(spin)(const L *d, const L *q, L over, L *w) {
     }
 }
 
-/* Rows of one run of nodes in one element, buffers beginning at the run. */
-SPARI_INLINE L NAME(block)(int modes, const double *c, const int consistent, const int upto, L x, const L *con,
-                           double (*buf)[SPARI_ROW], int at) {
-    L s[7], r[3], v[7], w[3], a[7], alpha[3], t[3];
-    NAME(sum)(7, modes, c + SPARI_F_PLACE, x, s, NULL);
-    const L *q = s + SPARI_F_QUAT;
-    L square = NAME(square)(q), over = 1.0 / square;
-    NAME(turn)(q, over, con, r);
-    for (int i = 0; i < 3; i++) {
-        NAME(put)(buf[SPARI_R_PLACE + i] + at, s[i] + r[i]);
-    }
-    if (upto == SPARI_UPTO_PLACE) {
-        return square;
-    }
-    NAME(sum)(consistent ? 7 : 6, modes, c + SPARI_F_RATE, x, v, NULL);
+/* ---- motion out ---- */
+
+/* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. */
+SPARI_INLINE void NAME(accelerate)(const int consistent, const L *q, L over, const L *r, const L *d, const L *w,
+                                   const L *wr, const L *accel, const L *twist, double (*buf)[SPARI_ROW], int at) {
+    L alpha[3], wt[3], ar[3];
     if (consistent) {
-        NAME(spin)(v + 3, q, over, w);
-    } else {
-        w[0] = v[3], w[1] = v[4], w[2] = v[5];
-    }
-    NAME(cross)(w, r, t);
-    for (int i = 0; i < 3; i++) {
-        NAME(put)(buf[SPARI_R_RATE + i] + at, v[i] + t[i]);
-    }
-    if (upto == SPARI_UPTO_RATE) {
-        return square;
-    }
-    NAME(sum)(consistent ? 7 : 6, modes, c + SPARI_F_ACCEL, x, a, NULL);
-    if (consistent) { /* alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt */
-        L rate = (v[3] * q[0] + v[4] * q[1] + v[5] * q[2] + v[6] * q[3]) * over;
-        NAME(spin)(a + 3, q, over, alpha);
+        L rate = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2] + d[3] * q[3]) * over;
+        NAME(spin)(twist, q, over, alpha);
         for (int i = 0; i < 3; i++) {
             alpha[i] -= w[i] * rate;
         }
     } else {
-        alpha[0] = a[3], alpha[1] = a[4], alpha[2] = a[5];
+        alpha[0] = twist[0], alpha[1] = twist[1], alpha[2] = twist[2];
     }
-    L wt[3], ar[3];
-    NAME(cross)(w, t, wt);
+    NAME(cross)(w, wr, wt);
     NAME(cross)(alpha, r, ar);
     for (int i = 0; i < 3; i++) {
         NAME(put)(buf[SPARI_R_OMEGA + i] + at, w[i]);
-        NAME(put)(buf[SPARI_R_ACCEL + i] + at, a[i] + ar[i] + wt[i]);
+        NAME(put)(buf[SPARI_R_ACCEL + i] + at, accel[i] + ar[i] + wt[i]);
         NAME(put)(buf[SPARI_R_ALPHA + i] + at, alpha[i]);
     }
     for (int i = 0; i < 4; i++) {
         NAME(put)(buf[SPARI_R_QUAT + i] + at, q[i]);
     }
-    return square;
 }
 
-/* Nodes of a tile's end that fill no whole vector repeat the last one, so that every lane is a real node. */
-SPARI_INLINE void NAME(fetch)(const double *const *from, int n, int64_t p, int count, L *to) {
-    for (int f = 0; f < n; f++) {
-        if (count >= W) {
-            to[f] = NAME(get)(from[f] + p);
-        } else {
-            double t[W];
-            for (int i = 0; i < W; i++) {
-                t[i] = from[f][p + (i < count ? i : count - 1)];
-            }
-            memcpy(&to[f], t, sizeof t);
+/* PAIR nodes of one element; in: xi and con of either vector. Returns the lesser |Q|^2, lane by lane. */
+SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, const int upto, const L (*in)[2],
+                          double (*buf)[SPARI_ROW], int at) {
+    const int spins = consistent ? 4 : 3;
+    double t[SPARI_MAX_NODES * PAIR];
+    L place[6], quat[8], rate[6], spin[8], accel[6], twist[8], least[2];
+    NAME(chebyshev)(modes, in[0], t, PAIR);
+    NAME(sum)(4, modes, c + SPARI_F_QUAT, t, PAIR, quat);
+    NAME(sum)(3, modes, c + SPARI_F_PLACE, t, PAIR, place);
+    if (upto >= SPARI_UPTO_RATE) {
+        NAME(sum)(3, modes, c + SPARI_F_RATE, t, PAIR, rate);
+        NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, PAIR, spin);
+    }
+    if (upto >= SPARI_UPTO_ACCEL) {
+        NAME(sum)(3, modes, c + SPARI_F_ACCEL, t, PAIR, accel);
+        NAME(sum)(spins, modes, c + SPARI_F_TWIST, t, PAIR, twist);
+    }
+    SPARI_UNROLL
+    for (int u = 0; u < 2; u++, at += W) {
+        const L *q = quat + 4 * u, con[3] = {in[1][u], in[2][u], in[3][u]};
+        L square = NAME(square)(q), over = 1.0 / square, r[3], w[3], wr[3];
+        least[u] = square;
+        NAME(turn)(q, over, con, r);
+        for (int i = 0; i < 3; i++) {
+            NAME(put)(buf[SPARI_R_PLACE + i] + at, place[3 * u + i] + r[i]);
         }
+        if (upto < SPARI_UPTO_RATE) {
+            continue;
+        }
+        if (consistent) {
+            NAME(spin)(spin + 4 * u, q, over, w);
+        } else {
+            w[0] = spin[3 * u], w[1] = spin[3 * u + 1], w[2] = spin[3 * u + 2];
+        }
+        NAME(cross)(w, r, wr);
+        for (int i = 0; i < 3; i++) {
+            NAME(put)(buf[SPARI_R_RATE + i] + at, rate[3 * u + i] + wr[i]);
+        }
+        if (upto >= SPARI_UPTO_ACCEL) {
+            NAME(accelerate)
+            (consistent, q, over, r, spin + spins * u, w, wr, accel + 3 * u, twist + spins * u, buf, at);
+        }
+    }
+    return NAME(less)(least[0], least[1]);
+}
+
+/* PAIR values of n rows; what lies beyond the end of a run repeats the last node, so that every lane is a real one. */
+SPARI_INLINE void NAME(fetch)(const double *const *from, int n, int64_t p, int count, L (*to)[2]) {
+    for (int f = 0; f < n; f++) {
+        const double *row = from[f] + p;
+        double t[PAIR];
+        if (count < PAIR) {
+            for (int i = 0; i < PAIR; i++) {
+                t[i] = row[i < count ? i : count - 1];
+            }
+            row = t;
+        }
+        to[f][0] = NAME(get)(row), to[f][1] = NAME(get)(row + W);
     }
 }
 
 SPARI_INLINE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                               const int upto, double (*buf)[SPARI_ROW], int at) {
+    static const double huge = HUGE_VAL;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
-    L least = NAME(get)(spari_huge), in[4];
-    for (int i = 0; i < count; i += W) {
+    L least = SPLAT(&huge), in[4][2];
+    for (int i = 0; i < count; i += PAIR) {
         NAME(fetch)(from, 4, first + i, count - i, in);
-        least = NAME(less)(least, NAME(block)(s->per_element, c, consistent, upto, in[0], in + 1, buf, at + i));
+        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, upto, (const L(*)[2])in, buf, at + i));
     }
     return NAME(least)(least);
 }
 
-TARGET static double NAME(tile_motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
-                                       int upto, double (*buf)[SPARI_ROW], int at) {
-    if (consistent) {
-        switch (upto) {
-        case SPARI_UPTO_PLACE:
-            return NAME(run)(s, first, count, c, 1, SPARI_UPTO_PLACE, buf, at);
-        case SPARI_UPTO_RATE:
-            return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE, buf, at);
-        default:
-            return NAME(run)(s, first, count, c, 1, SPARI_UPTO_ACCEL, buf, at);
-        }
-    }
-    switch (upto) {
-    case SPARI_UPTO_PLACE:
+TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
+                                  int upto, double (*buf)[SPARI_ROW], int at) {
+    switch (2 * upto + consistent) {
+    case 2 * SPARI_UPTO_PLACE:
+    case 2 * SPARI_UPTO_PLACE + 1: /* places are the same in both kinds */
         return NAME(run)(s, first, count, c, 0, SPARI_UPTO_PLACE, buf, at);
-    case SPARI_UPTO_RATE:
+    case 2 * SPARI_UPTO_RATE:
         return NAME(run)(s, first, count, c, 0, SPARI_UPTO_RATE, buf, at);
-    default:
+    case 2 * SPARI_UPTO_RATE + 1:
+        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE, buf, at);
+    case 2 * SPARI_UPTO_ACCEL:
         return NAME(run)(s, first, count, c, 0, SPARI_UPTO_ACCEL, buf, at);
+    default:
+        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_ACCEL, buf, at);
     }
 }
 
-/* Moment at the foot of one block, and what the audit wants to know of it. g: rows of the moment field at this block.
- */
-SPARI_INLINE L NAME(load_block)(int modes, const double *c, const int consistent, const int has_moment, const L *in,
-                                const L *fm, double *t, double (*g)[SPARI_ROW], int at, const int audited, L *sums,
-                                L *tops) {
-    L q[4], r[3], m[3], zero = in[0] - in[0];
-    NAME(sum)(4, modes, c + SPARI_F_QUAT, in[0], q, t);
-    L square = NAME(square)(q), over = 1.0 / square;
-    NAME(turn)(q, over, in + 1, r);
-    NAME(cross)(r, fm, m);
-    if (has_moment) {
-        for (int i = 0; i < 3; i++) {
-            m[i] += fm[3 + i];
-        }
-    }
-    if (consistent) { /* (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2 */
-        L u[3];
-        NAME(cross)(m, q + 1, u);
-        NAME(put)(g[0] + at, -(m[0] * q[1] + m[1] * q[2] + m[2] * q[3]) * over);
-        for (int i = 0; i < 3; i++) {
-            NAME(put)(g[1 + i] + at, (m[i] * q[0] + u[i]) * over);
-        }
-    } else {
-        for (int i = 0; i < 3; i++) {
-            NAME(put)(g[i] + at, m[i]);
-        }
-    }
-    if (!audited) {
-        return square;
-    }
-    L x[3], v[7], w[3], xf[3], wr[3];
-    NAME(sum)(3, modes, c + SPARI_F_PLACE, in[0], x, NULL);
-    NAME(sum)(consistent ? 7 : 6, modes, c + SPARI_F_RATE, in[0], v, NULL);
-    if (consistent) {
-        NAME(spin)(v + 3, q, over, w);
-    } else {
-        w[0] = v[3], w[1] = v[4], w[2] = v[5];
-    }
+/* ---- loads in ---- */
+
+/* What the audit wants to know of one vector: totals of the fluid's side, largest sizes (as least negatives). */
+SPARI_INLINE void NAME(audit)(const int has_moment, const L *place, const L *r, const L *rate, const L *w, const L *f,
+                              const L *m, L *sums, L *tops) {
+    L x[3], v[3], xf[3];
+    NAME(cross)(w, r, v);
     for (int i = 0; i < 3; i++) {
-        x[i] += r[i];
+        x[i] = place[i] + r[i];
+        v[i] += rate[i];
     }
-    NAME(cross)(x, fm, xf);
-    NAME(cross)(w, r, wr);
+    NAME(cross)(x, f, xf);
     for (int i = 0; i < 3; i++) {
-        v[i] += wr[i];
-        sums[i] += fm[i];
-        sums[3 + i] += has_moment ? xf[i] + fm[3 + i] : xf[i];
-        sums[6] += fm[i] * v[i];
-        sums[7] += NAME(less)(fm[i], -fm[i]); /* minus |f| */
+        sums[i] += f[i];
+        sums[3 + i] += has_moment ? xf[i] + m[i] : xf[i];
+        sums[6] = MADD(f[i], v[i], sums[6]);
+        sums[7] += NAME(less)(f[i], -f[i]); /* minus |f| */
         if (has_moment) {
-            sums[6] += fm[3 + i] * w[i];
-            sums[8] += NAME(less)(fm[3 + i], -fm[3 + i]);
+            sums[6] = MADD(m[i], w[i], sums[6]);
+            sums[8] += NAME(less)(m[i], -m[i]);
         }
     }
-    tops[0] = NAME(less)(tops[0], zero - (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
-    tops[1] = NAME(less)(tops[1], zero - (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    tops[2] = NAME(less)(tops[2], zero - (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
-    return square;
+    tops[0] = NAME(less)(tops[0], -(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
+    tops[1] = NAME(less)(tops[1], -(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    tops[2] = NAME(less)(tops[2], -(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+}
+
+/* Moments at the feet of PAIR nodes, into the rows g at `at`; their T_k into t. in: xi, con, force, moment. */
+SPARI_INLINE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
+                           const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
+    const int spins = consistent ? 4 : 3;
+    L quat[8], place[6], rate[6], spin[8], least[2];
+    NAME(chebyshev)(modes, in[0], t, SPARI_ROW);
+    NAME(sum)(4, modes, c + SPARI_F_QUAT, t, SPARI_ROW, quat);
+    if (audited) {
+        NAME(sum)(3, modes, c + SPARI_F_PLACE, t, SPARI_ROW, place);
+        NAME(sum)(3, modes, c + SPARI_F_RATE, t, SPARI_ROW, rate);
+        NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, SPARI_ROW, spin);
+    }
+    SPARI_UNROLL
+    for (int u = 0; u < 2; u++, at += W) {
+        const L *q = quat + 4 * u, con[3] = {in[1][u], in[2][u], in[3][u]}, f[3] = {in[4][u], in[5][u], in[6][u]};
+        L square = NAME(square)(q), over = 1.0 / square, r[3], m[3], moment[3] = {0}, w[3];
+        least[u] = square;
+        NAME(turn)(q, over, con, r);
+        NAME(cross)(r, f, m);
+        if (has_moment) {
+            for (int i = 0; i < 3; i++) {
+                moment[i] = in[7 + i][u];
+                m[i] += moment[i];
+            }
+        }
+        if (consistent) { /* (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2 */
+            L s[3];
+            NAME(cross)(m, q + 1, s);
+            NAME(put)(g[0] + at, -(m[0] * q[1] + m[1] * q[2] + m[2] * q[3]) * over);
+            for (int i = 0; i < 3; i++) {
+                NAME(put)(g[1 + i] + at, (m[i] * q[0] + s[i]) * over);
+            }
+        } else {
+            for (int i = 0; i < 3; i++) {
+                NAME(put)(g[i] + at, m[i]);
+            }
+        }
+        if (audited) {
+            if (consistent) {
+                NAME(spin)(spin + 4 * u, q, over, w);
+            } else {
+                w[0] = spin[3 * u], w[1] = spin[3 * u + 1], w[2] = spin[3 * u + 2];
+            }
+            NAME(audit)(has_moment, place + 3 * u, r, rate + 3 * u, w, f, moment, sums, tops);
+        }
+    }
+    return NAME(less)(least[0], least[1]);
 }
 
 /* sum_k over one run: modal[k][f] += sum_i t[k][i] row_f[i]; two k at a time keep their sums in registers. */
 SPARI_INLINE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
                                 double (*g)[SPARI_ROW], int at, double *modal) {
+    static const double zero = 0;
     for (int k = 0; k < modes; k += 2) {
         int k1 = k + 1 < modes ? k + 1 : k;
-        L a[7], b[7], zero = NAME(get)(spari_zeros);
+        L a[7], b[7];
         SPARI_UNROLL
         for (int j = 0; j < rows; j++) {
-            a[j] = zero, b[j] = zero;
+            a[j] = SPLAT(&zero), b[j] = a[j];
         }
         for (int i = 0; i < count; i += W) {
             L ta = NAME(get)(t[k] + i), tb = NAME(get)(t[k1] + i);
             SPARI_UNROLL
             for (int j = 0; j < rows; j++) {
                 L y = NAME(get)(j < 3 ? f[j] + at + i : g[j - 3] + i);
-                a[j] += ta * y;
-                b[j] += tb * y;
+                a[j] = MADD(ta, y, a[j]);
+                b[j] = MADD(tb, y, b[j]);
             }
         }
         for (int j = 0; j < rows; j++) {
@@ -293,32 +418,33 @@ SPARI_INLINE void NAME(project)(const int rows, int modes, int count, double (*t
     }
 }
 
-SPARI_INLINE double NAME(load_run)(const spari_nodes *s, int64_t first, int count, const double *c,
-                                   const int consistent, const int has_moment, double (*f)[SPARI_ROW], int at,
-                                   const int audited, double *modal, double *sums, double *tops) {
+SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
+                                 const int has_moment, double (*f)[SPARI_ROW], int at, const int audited, double *modal,
+                                 double *sums, double *tops) {
+    static const double huge = HUGE_VAL, zero = 0;
     double t[SPARI_MAX_NODES][SPARI_ROW], g[4][SPARI_ROW];
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     const double *loads[6] = {f[0], f[1], f[2], f[3], f[4], f[5]};
-    int modes = s->per_element;
-    L least = NAME(get)(spari_huge), zero = NAME(get)(spari_zeros), in[4], fm[6], add[9], top[3];
+    const int modes = s->per_element, rows = has_moment ? 6 : 3;
+    L least = SPLAT(&huge), in[10][2], add[9], top[3];
     for (int i = 0; i < 9; i++) {
-        add[i] = zero;
+        add[i] = SPLAT(&zero);
     }
-    top[0] = top[1] = top[2] = zero;
-    for (int i = 0; i < count; i += W) {
+    top[0] = top[1] = top[2] = SPLAT(&zero);
+    for (int i = 0; i < count; i += PAIR) {
         NAME(fetch)(from, 4, first + i, count - i, in);
-        NAME(fetch)(loads, has_moment ? 6 : 3, at + i, count - i, fm);
-        if (count - i < W) { /* the repeated lanes carry nothing */
-            double keep[W];
-            for (int j = 0; j < W; j++) {
+        NAME(fetch)(loads, rows, at + i, count - i, in + 4);
+        if (count - i < PAIR) { /* the repeated lanes carry nothing */
+            double keep[PAIR];
+            for (int j = 0; j < PAIR; j++) {
                 keep[j] = j < count - i;
             }
-            for (int j = 0; j < (has_moment ? 6 : 3); j++) {
-                fm[j] *= NAME(get)(keep);
+            for (int j = 4; j < 4 + rows; j++) {
+                in[j][0] *= NAME(get)(keep), in[j][1] *= NAME(get)(keep + W);
             }
         }
         least = NAME(less)(
-            least, NAME(load_block)(modes, c, consistent, has_moment, in, fm, t[0] + i, g, i, audited, add, top));
+            least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in, t[0] + i, g, i, add, top));
     }
     for (int k = 0; k < modes; k++) {
         for (int i = count; i % W; i++) {
@@ -338,20 +464,21 @@ SPARI_INLINE double NAME(load_run)(const spari_nodes *s, int64_t first, int coun
     return NAME(least)(least);
 }
 
-TARGET static double NAME(tile_loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
-                                      int has_moment, double (*f)[SPARI_ROW], int at, int audited, double *modal,
-                                      double *sums, double *tops) {
-    if (consistent) {
-        if (audited) {
-            return NAME(load_run)(s, first, count, c, 1, has_moment, f, at, 1, modal, sums, tops);
-        }
-        return NAME(load_run)(s, first, count, c, 1, has_moment, f, at, 0, modal, sums, tops);
+TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
+                                 int has_moment, double (*f)[SPARI_ROW], int at, int audited, double *modal,
+                                 double *sums, double *tops) {
+    switch (2 * !!audited + !!consistent) {
+    case 0:
+        return NAME(gather)(s, first, count, c, 0, has_moment, f, at, 0, modal, sums, tops);
+    case 1:
+        return NAME(gather)(s, first, count, c, 1, has_moment, f, at, 0, modal, sums, tops);
+    case 2:
+        return NAME(gather)(s, first, count, c, 0, has_moment, f, at, 1, modal, sums, tops);
+    default:
+        return NAME(gather)(s, first, count, c, 1, has_moment, f, at, 1, modal, sums, tops);
     }
-    if (audited) {
-        return NAME(load_run)(s, first, count, c, 0, has_moment, f, at, 1, modal, sums, tops);
-    }
-    return NAME(load_run)(s, first, count, c, 0, has_moment, f, at, 0, modal, sums, tops);
 }
 
 #undef L
+#undef PAIR
 #undef SPARI_INLINE

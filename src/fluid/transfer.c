@@ -14,10 +14,6 @@
 #define SPARI_UNROLL
 #endif
 
-static const double spari_huge[SPARI_LANES_MAX] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL,
-                                                   HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
-static const double spari_zeros[SPARI_LANES_MAX] = {0};
-
 /* s[0] + s[1] += x, the rounding error kept (Knuth's two-sum): the sum over tiles loses nothing that matters. */
 static inline void spari_add(double *s, double x) {
     double a = s[0], t = a + x, b = t - a;
@@ -25,13 +21,79 @@ static inline void spari_add(double *s, double x) {
     s[1] += (a - (t - b)) + (x - b);
 }
 
+/* Two lanes are in every processor that has lanes at all; more are asked for at run time. */
+#if defined(__GNUC__)
+#define W 2
+#else
 #define W 1
-#define NAME(x) x##_1
+#endif
+#define NAME(x) x##_plain
 #define TARGET
+#define MADD(a, b, c) ((a) * (b) + (c))
+#if W == 2
+#define SPLAT(p) ((lanes_plain){*(p), *(p)})
+#else
+#define SPLAT(p) (*(p))
+#endif
 #include "kernel.h"
 #undef W
 #undef NAME
 #undef TARGET
+#undef MADD
+#undef SPLAT
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#define SPARI_X86 1
+#include <immintrin.h>
+
+#define W 4
+#define NAME(x) x##_avx2
+#define TARGET __attribute__((target("avx2,fma")))
+#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define SPLAT(p) _mm256_broadcast_sd(p)
+#include "kernel.h"
+#undef W
+#undef NAME
+#undef TARGET
+#undef MADD
+#undef SPLAT
+
+#define W 8
+#define NAME(x) x##_avx512
+#define TARGET __attribute__((target("avx512f,avx512dq,prefer-vector-width=512")))
+#define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define SPLAT(p) _mm512_set1_pd(*(p))
+#include "kernel.h"
+#undef W
+#undef NAME
+#undef TARGET
+#undef MADD
+#undef SPLAT
+#endif
+
+/* The kernels of one instruction set. */
+typedef struct kernels {
+    double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int upto,
+                     double (*buf)[SPARI_ROW], int at);
+    double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
+                    double (*f)[SPARI_ROW], int at, int audited, double *modal, double *sums, double *tops);
+    void (*store)(double (*row)[SPARI_ROW], int count, double *out);
+    void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
+} kernels;
+
+static kernels choose_kernels(const spari_nodes *s) {
+    (void)s;
+#ifdef SPARI_X86
+    int most = s->lanes ? s->lanes : SPARI_LANES_MAX;
+    if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+        return (kernels){motion_avx512, loads_avx512, store_triples_avx512, load_triples_avx512};
+    }
+    if (most >= 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        return (kernels){motion_avx2, loads_avx2, store_triples_avx2, load_triples_avx2};
+    }
+#endif
+    return (kernels){motion_plain, loads_plain, store_triples_plain, load_triples_plain};
+}
 
 /* ---- node sets ---- */
 
@@ -86,8 +148,7 @@ static void order_tile(const int *element, int count, uint16_t *place) {
 
 void spari_nodes_put(spari_nodes *s, const int *element, const double *xi, const double *con, const uint8_t *flags) {
     for (int64_t first = 0; s->place && first < s->n; first += SPARI_TILE) {
-        int64_t left = s->n - first;
-        order_tile(element + first, left < SPARI_TILE ? (int)left : SPARI_TILE, s->place + first);
+        order_tile(element + first, spari_tile_count(s, first), s->place + first);
     }
     for (int64_t p = 0; p < s->n; p++) {
         int64_t node = spari_nodes_node(s, p);
@@ -197,11 +258,6 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
 
 /* ---- tiles ---- */
 
-static int tile_count(const spari_nodes *s, int64_t first) {
-    int64_t left = s->n - first;
-    return left < SPARI_TILE ? (int)left : SPARI_TILE;
-}
-
 /* Length of the run of one element that begins at storage place p, within count. */
 static int run_length(const spari_nodes *s, int64_t p, int count) {
     if (!s->element) {
@@ -216,12 +272,13 @@ static int run_length(const spari_nodes *s, int64_t p, int count) {
 
 double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, int consistent, int upto,
                          double (*buf)[SPARI_ROW]) {
+    const kernels kernel = choose_kernels(s);
     double least = HUGE_VAL;
-    int count = tile_count(s, first);
+    int count = spari_tile_count(s, first);
     ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
     for (int at = 0; at < count;) {
         int run = run_length(s, first + at, count - at);
-        double d = tile_motion_1(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, upto,
+        double d = kernel.motion(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, upto,
                                  buf, at);
         least = d < least ? d : least;
         at += run;
@@ -229,10 +286,28 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
     return least;
 }
 
-static void fetch_rows(const spari_nodes *s, int64_t first, int count, const double *x, double (*f)[SPARI_ROW]) {
+/* Triples of the host's [n][3] as rows in storage order, and back. */
+static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, const double *x,
+                       double (*f)[SPARI_ROW]) {
+    if (!s->place) {
+        kernel->load(x + 3 * first, count, f);
+        return;
+    }
     for (int i = 0; i < count; i++) {
-        const double *from = x + 3 * (s->place ? first + s->place[first + i] : first + i);
+        const double *from = x + 3 * (first + s->place[first + i]);
         f[0][i] = from[0], f[1][i] = from[1], f[2][i] = from[2];
+    }
+}
+
+void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
+    int count = spari_tile_count(s, first);
+    if (!s->place) {
+        choose_kernels(s).store(row, count, x + 3 * first);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        double *to = x + 3 * (first + s->place[first + i]);
+        to[0] = row[0][i], to[1] = row[1][i], to[2] = row[2][i];
     }
 }
 
@@ -279,22 +354,23 @@ static void finish_audit(const double sums[18], const double tops[3], spari_audi
 
 double spari_gather_loads(const spari_nodes *s, const double *modal, const double *c, int consistent, const double *q,
                           const double *force, const double *moment, double *work, double *load, spari_audit *audit) {
+    const kernels kernel = choose_kernels(s);
     double f[6][SPARI_ROW], sums[18] = {0}, tops[3] = {0}, least = HUGE_VAL;
     ptrdiff_t nodes = (ptrdiff_t)s->elements * s->per_element;
     memset(work, 0, sizeof *work * (size_t)nodes * 14);
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
-        int count = tile_count(s, first);
-        fetch_rows(s, first, count, force, f);
+        int count = spari_tile_count(s, first);
+        fetch_rows(&kernel, s, first, count, force, f);
         if (moment) {
-            fetch_rows(s, first, count, moment, f + 3);
+            fetch_rows(&kernel, s, first, count, moment, f + 3);
         }
-        for (int i = count; i < count + SPARI_LANES_MAX && i < SPARI_ROW; i++) {
+        for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
             f[0][i] = f[1][i] = f[2][i] = 0;
         }
         for (int at = 0; at < count;) {
             int run = run_length(s, first + at, count - at);
             ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-            double d = tile_loads_1(s, first + at, run, c + node * SPARI_FIELDS, consistent, moment != NULL, f, at,
+            double d = kernel.loads(s, first + at, run, c + node * SPARI_FIELDS, consistent, moment != NULL, f, at,
                                     audit != NULL, work + node * 14, sums, tops);
             least = d < least ? d : least;
             at += run;

@@ -13,7 +13,7 @@
 
 /* Nodes are handled in tiles whose buffers stay in the first-level cache; inside a tile they are stored element by
  * element. */
-enum { SPARI_TILE = 256, SPARI_LANES_MAX = 8, SPARI_ROW = SPARI_TILE + SPARI_LANES_MAX };
+enum { SPARI_TILE = 256, SPARI_LANES_MAX = 16, /* two vectors of eight */ SPARI_ROW = SPARI_TILE + SPARI_LANES_MAX };
 
 typedef struct spari_nodes {
     int64_t n;
@@ -23,6 +23,7 @@ typedef struct spari_nodes {
     int *element;    /* [n]; NULL when there is only one */
     uint16_t *place; /* [n] storage place -> node within its tile; NULL: as they come */
     uint8_t *flags;  /* [n] SPAR_MAP_*, by node */
+    int lanes;       /* widest vectors to use; 0: what the processor has (tests try all) */
 } spari_nodes;
 
 /* Coefficients of the nodal fields of one state, [element][mode][SPARI_FIELDS]. */
@@ -64,6 +65,10 @@ void spari_nodes_put(spari_nodes *nodes, const int *element, const double *xi, c
 static inline int64_t spari_nodes_node(const spari_nodes *s, int64_t p) {
     return s->place ? p - p % SPARI_TILE + s->place[p] : p;
 }
+/* Nodes of the tile that begins at `first`. */
+static inline int spari_tile_count(const spari_nodes *s, int64_t first) {
+    return s->n - first < SPARI_TILE ? (int)(s->n - first) : SPARI_TILE;
+}
 static inline int spari_nodes_element(const spari_nodes *s, int64_t p) {
     return s->element ? s->element[p] : 0;
 }
@@ -84,6 +89,9 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
    can be interpolated there). Rows are in storage order. */
 double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *c, int consistent, int upto,
                          double (*buf)[SPARI_ROW]);
+
+/* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
+void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
 
 /* Loads: force, moment (NULL: none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
    quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */
