@@ -1,7 +1,7 @@
 /* The ranks of an MPI communicator. */
 #include "ranks.h"
 
-#ifdef SPAR_MPI
+#ifdef SPARI_HAVE_MPI
 
 #include <limits.h>
 #include <mpi.h>

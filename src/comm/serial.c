@@ -13,7 +13,7 @@ int spari_comm_create_self(spari_comm **comm) {
     return SPAR_OK;
 }
 
-#ifndef SPAR_MPI
+#ifndef SPARI_HAVE_MPI
 int spari_comm_create_fortran(int handle, spari_comm **comm, const char **why) {
     (void)handle;
     (void)comm;
