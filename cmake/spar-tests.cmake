@@ -14,14 +14,14 @@ set(spar_test_environment
   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader
   OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0"
-  UBSAN_OPTIONS=print_stacktrace=1)
+  ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1)
 
 # What tests share: tests/support/*.c, and any header under tests/ or src/.
 add_library(spar_test_base INTERFACE)
 target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests")
 target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
 target_compile_definitions(spar_test_base INTERFACE
-  SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
+  SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
   $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1> $<$<BOOL:${SPAR_LAPACK}>:SPARI_HAVE_LAPACK=1>)
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE

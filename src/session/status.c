@@ -94,8 +94,8 @@ const char *spar_session_message(const spar_session *session) {
 }
 
 int64_t spari_first_nonfinite(const double *x, int64_t n) {
-    /* 0 * x is 0 for every finite x and NaN otherwise, so that one vector sum decides; several sums, because the order of
-       additions in one may not be changed. Looking for the culprit is the rare case. */
+    /* 0 * x is 0 for every finite x and NaN otherwise, so that one vector sum decides; several sums, because the order
+       of additions in one may not be changed. Looking for the culprit is the rare case. */
     double sum[8] = {0.0};
     int64_t i = 0;
     for (; i + 8 <= n; i += 8) {
@@ -125,8 +125,8 @@ void *spari_zalloc(int64_t n, size_t size) {
     return calloc(n > 0 && size > 0 ? (size_t)n : 1, size > 0 ? size : 1);
 }
 
-/* GSL has one error handler for the whole process and its default one aborts. gsl_set_error_handler_off answers with the
-   handler in force before: NULL is the default (which stays off), anything else is the host's own and goes back. */
+/* GSL has one error handler for the whole process and its default one aborts. gsl_set_error_handler_off answers with
+   the handler in force before: NULL is the default (which stays off), anything else is the host's own and goes back. */
 static void quiet_once(void) {
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     if (handler) {
