@@ -412,6 +412,20 @@ static void test_wing(void **state) {
         assert_true(fabs(moment[i][0] - share[i] * m) < 1e-12 * f);
     }
     assert_int_equal(spar_aero_get_rotor(aero, NULL, NULL, NULL), SPAR_ERR_STATE);
+    /* A polar of 0.1 rad on the middle section, flow from below at 0.2 rad: its end value, and a flag. */
+    int flags[3];
+    double lift[3];
+    OK(spar_polar_create(2, (double[]){0.0, 0.1}, (double[]){0.0, 0.5}, (double[]){0.0, 0.0}, NULL, &polar));
+    OK(spar_aero_set_section(aero, 1, 1.0, 0.0, polar));
+    spar_polar_destroy(&polar);
+    for (int i = 0; i < 3; i++) {
+        wind[i][2] = -20.0 * tan(0.2);
+    }
+    OK(spar_aero_solve(aero, 1.2, wind[0], 1.0));
+    OK(spar_aero_get_flags(aero, flags, NULL));
+    OK(spar_aero_get_sections(aero, NULL, lift, NULL, NULL, NULL));
+    assert_true(flags[0] == 0 && flags[1] == SPAR_AERO_FLAG_BEYOND_POLAR && flags[2] == 0);
+    assert_true(lift[0] == 0.8 && lift[1] == 0.5);
     spar_aero_destroy(&aero);
     spar_session_destroy(&session);
 }
