@@ -36,6 +36,9 @@ endif()
 # The static library: tests may call what the shared one hides.
 list(APPEND spar_test_libraries spar_static spar_test_base)
 
+set(SPAR_TEST_LAUNCHER "" CACHE STRING "Program (a list) that runs the serial tests, such as valgrind")
+mark_as_advanced(SPAR_TEST_LAUNCHER)
+
 function(spar_set_test name label timeout)
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT ${timeout} ENVIRONMENT "${spar_test_environment}")
 endfunction()
@@ -46,7 +49,7 @@ function(spar_add_test file label timeout)
   add_executable(${name} "${file}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${spar_test_libraries})
-  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  add_test(NAME ${name} COMMAND ${SPAR_TEST_LAUNCHER} $<TARGET_FILE:${name}> WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   spar_set_test(${name} ${label} ${timeout})
 endfunction()
 

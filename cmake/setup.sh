@@ -1,0 +1,64 @@
+# Shared by tests/run, examples/run and the checks beside them; to be sourced. Defines say, spar_packages, spar_build.
+# shellcheck shell=sh
+
+say() {
+    printf '== %s\n' "$*"
+}
+
+# spar_packages <package>...: installs those of the Debian packages that are missing; needs root (or sudo without a password)
+# only then. Names the command where it cannot.
+spar_packages() {
+    if ! command -v dpkg-query >/dev/null 2>&1; then
+        say "no dpkg here: taking for granted that there are $*"
+        return 0
+    fi
+    missing=
+    for package in "$@"; do
+        case "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" in
+        *"ok installed") ;;
+        *) missing="$missing $package" ;;
+        esac
+    done
+    if [ -z "$missing" ]; then
+        say "packages: all there"
+        return 0
+    fi
+    if [ "$(id -u)" = 0 ]; then
+        as_root=
+    elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+        as_root=sudo
+    else
+        say "missing packages:$missing"
+        say "run this as root, then again: apt-get update && apt-get install -y --no-install-recommends$missing"
+        return 1
+    fi
+    say "installing packages:$missing"
+    # shellcheck disable=SC2086
+    { $as_root apt-get -o Acquire::Retries=3 update -qq &&
+        DEBIAN_FRONTEND=noninteractive $as_root apt-get -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends $missing; } >/dev/null
+}
+
+# What the build needs; the tests and the plots come on top.
+spar_build_packages="gcc g++ gfortran cmake ninja-build pkg-config libc6-dev libgsl-dev libopenblas-serial-dev libopenmpi-dev openmpi-bin"
+
+# Ranks as root, on fewer cores than ranks, without ssh (Open MPI).
+spar_mpi_environment() {
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+    export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_plm_rsh_agent=true OMPI_MCA_btl_vader_single_copy_mechanism=none
+}
+
+# spar_jobs: as many compilers at a time as there are processors
+spar_jobs() {
+    nproc 2>/dev/null || echo 2
+}
+
+# spar_build <source> <build> [cmake options]: configures and builds
+spar_build() {
+    source_dir=$1
+    build_dir=$2
+    shift 2
+    say "configuring $build_dir"
+    cmake -S "$source_dir" -B "$build_dir" -G Ninja "$@" || return 1
+    say "building $build_dir"
+    cmake --build "$build_dir" -j "$(spar_jobs)"
+}
