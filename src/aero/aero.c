@@ -137,7 +137,9 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     if (status != SPAR_OK) {
         spari_fail(session, status, "spar_aero_create: no memory for %d blades of %lld sections", blades, (long long)n);
     } else {
-        memcpy(made->fluid, sections, (size_t)blades * sizeof *sections);
+        for (int b = 0; b < blades; b++) {
+            made->fluid[b] = sections[b];
+        }
         status = measure(made);
     }
     if (status != SPAR_OK) {
