@@ -304,6 +304,39 @@ static void test_spread(void **state) {
     end(&s);
 }
 
+/* A host of its own loop whose wind is broken on this rank: the step's check says so, the step can be gone back on and
+ * done anew. */
+static void test_broken_step(void **state) {
+    (void)state;
+    scene s;
+    int done;
+    double thrust[2];
+    begin(&s, 8.0, 9.16);
+    build(&s, 0, 1);
+    for (int broken = 1; broken >= 0; broken--) {
+        for (int b = 0; b < BLADES; b++) {
+            double q[7], v[6], a[6];
+            nrel5mw_root_motion(&s.data, &s.rotor, b, 0.05 * s.speed, s.speed, 0.0, q, v, a);
+            OK(spar_member_drive_root(s.blade[b], q, v, a));
+        }
+        OK(spar_step_begin(s.session, 0.05));
+        OK(spar_step_solve(s.session));
+        s.wind[N + 2][0] = broken ? NAN : 8.0;
+        assert_int_equal(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), broken ? SPAR_ERR_ARGUMENT : SPAR_OK);
+        assert_non_null(strstr(spar_session_message(s.session), "section 2"));
+        assert_int_equal(spar_step_check(s.session, &done), broken ? SPAR_ERR_ARGUMENT : SPAR_OK);
+        OK(broken ? spar_step_reject(s.session) : spar_step_accept(s.session));
+    }
+    OK(spar_aero_get_rotor(s.aero, &thrust[0], NULL, NULL));
+    end(&s);
+    begin(&s, 8.0, 9.16);
+    build(&s, 0, 1);
+    step(&s, 0.05 * s.speed, 0.05);
+    OK(spar_aero_get_rotor(s.aero, &thrust[1], NULL, NULL));
+    assert_true(thrust[0] == thrust[1]);
+    end(&s);
+}
+
 #define REFUSED(expected, call, text)                                                                                  \
     do {                                                                                                               \
         assert_int_equal(call, expected);                                                                              \
@@ -433,7 +466,7 @@ static void test_wing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
                                        cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),
-                                       cmocka_unit_test(test_spread),        cmocka_unit_test(test_refused),
-                                       cmocka_unit_test(test_wing)};
+                                       cmocka_unit_test(test_spread),        cmocka_unit_test(test_broken_step),
+                                       cmocka_unit_test(test_refused),       cmocka_unit_test(test_wing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "../fluid/fluid.h"
 #include "../math/rotation.h"
 #include "element.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -317,8 +318,7 @@ static void sum_rotor(spar_aero *aero) {
     }
 }
 
-int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
-    REQUIRE_HANDLE(aero);
+static int solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_TRY(check_solve(aero, density, inflow));
     SPARI_TRY(pull(aero, theta));
     aero->solved = 0;
@@ -341,6 +341,28 @@ int spar_aero_solve(spar_aero *aero, double density, const double *inflow, doubl
     }
     aero->solved = 1;
     return SPAR_OK;
+}
+
+/* A solve that fails pushes nothing, and the step under way must not go on as if it had: a push that is refused tells
+   the session, whose next check then fails on all ranks. The message stays the solve's own. */
+static void refuse_step(spar_aero *aero, int status) {
+    char text[SPARI_MESSAGE_SIZE];
+    double *nothing = aero->v; /* pulled anew before every use */
+    snprintf(text, sizeof text, "%s", spar_session_message(aero->session));
+    for (int64_t i = 0; i < 3 * aero->n; i++) {
+        nothing[i] = NAN;
+    }
+    spar_fluid_push_forces(aero->fluid[0], nothing, NULL);
+    spari_fail(aero->session, status, "%s", text);
+}
+
+int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
+    REQUIRE_HANDLE(aero);
+    int status = solve(aero, density, inflow, theta);
+    if (status != SPAR_OK && aero->blades > 0) {
+        refuse_step(aero, status);
+    }
+    return status;
 }
 
 /* ---- results ---- */
