@@ -1,10 +1,11 @@
 /* The discretised member: forces against the energy they come from, the tangent against finite differences of the
    forces, invariance under rigid motion. Oracles: central differences (error h^2 + eps/h, so 1e-7 of the largest entry
    at h = 1e-5) and exact identities (1e-12). */
-#include <cmocka.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+
+#include <cmocka.h>
 
 #include "math/basis.h"
 #include "math/rotation.h"

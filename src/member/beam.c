@@ -477,6 +477,9 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     b->length += b->weight[k];
     section_at(beam, beam->stiffness, eta, section);
     turn_section(R, section, b->C + 36 * (int64_t)k);
+    for (int i = 0; i < 6; i++) {
+        b->stiffest = fmax(b->stiffest, section[7 * i]);
+    }
     if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite whatever the coupling, mu_i C_ii on the diagonal */
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++) {

@@ -24,7 +24,9 @@ typedef struct spari_body {
     double *mass;    /* [points][10]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
     double gravity[3];
     int gyroscopic;
-    double length;     /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
+    double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
+    double
+        stiffest; /* size of a force that rounding in the places makes: largest stiffness, and moments over this size */
     double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; else NULL */
     double *weights;   /* linear members: forces [unique][6] of gravity at the reference */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */

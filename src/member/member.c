@@ -437,6 +437,9 @@ void spari_member_reject(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     m->motion_given = 0;
     m->dissipated_step = 0;
+    if (m->solver && m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
+        spari_solver_restart(m->solver, m);
+    }
 }
 
 int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]) {

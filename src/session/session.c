@@ -9,8 +9,9 @@
 
 /* ---- create and destroy ---- */
 
-/* Default tolerance of Newton: increments to a billionth, and the last digits of a place. */
-static const double default_atol = 1e-12, default_rtol = 1e-9;
+/* Default tolerances of Newton: what turning the axes or another number of ranks must not change (1e-11) stays below.
+ */
+static const double default_atol = 1e-15, default_rtol = 1e-12;
 
 static int session_create(spari_comm *comm, spar_session **session) {
     spar_session *s = spari_zalloc(1, sizeof *s);

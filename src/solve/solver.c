@@ -67,12 +67,14 @@ void spari_solver_restart(spari_solver *s, const spar_member *member) {
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     s->started = 0;
+    s->h_begin = 0;
 }
 
 void spari_solver_accept(spari_solver *s) {
     spari_state t = s->begin;
     s->begin = s->to;
     s->to = t;
+    s->h_begin = s->h_solved;
 }
 
 void spari_solver_fixed(const spar_member *member, int *first, int *end) {

@@ -27,6 +27,7 @@ struct spari_solver {
     /* the factored tangent, kept while it contracts */
     int factored;
     double kept_cm, kept_cv, kept_q[4]; /* coefficients, and how the root was turned when it was formed */
+    double h_begin, h_solved;           /* the (sub)steps that led to t^n and to t^{n+1}; 0: none yet */
     int started;                        /* accelerations at t^0 are known */
     int64_t newton, factors;            /* totals: iterations, factorisations */
 };

@@ -1,0 +1,103 @@
+/* What several tests build: sessions, beams of one section, rigid bodies, steps without a fluid. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <spar/spar.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/rotation.h"
+
+/* The call must succeed; else the message says why. */
+#define OK(session, call)                                                                                              \
+    do {                                                                                                               \
+        int status_ = (call);                                                                                          \
+        if (status_ != SPAR_OK) {                                                                                      \
+            fail_msg("%s: %s: %s", #call, spar_status_text(status_), spar_session_message(session));                   \
+        }                                                                                                              \
+    } while (0)
+
+/* |got - expected| <= tolerance, with both printed when not */
+#define NEAR(got, expected, tolerance)                                                                                 \
+    do {                                                                                                               \
+        double got_ = (got), expected_ = (expected), tolerance_ = (tolerance);                                         \
+        if (!(fabs(got_ - expected_) <= tolerance_)) {                                                                 \
+            fail_msg("%s is %.17g, expected %.17g within %g (off by %g)", #got, got_, expected_, tolerance_,           \
+                     got_ - expected_);                                                                                \
+        }                                                                                                              \
+    } while (0)
+
+static inline void scene_diagonal(double *m, double a, double b, double c, double d, double e, double f) {
+    const double x[6] = {a, b, c, d, e, f};
+    memset(m, 0, 36 * sizeof *m);
+    for (int i = 0; i < 6; i++) {
+        m[7 * i] = x[i];
+    }
+}
+
+/* mass matrix of a body of mass m, centre of mass c, inertia J (diagonal, about the centre of mass), about its node */
+static inline void scene_mass(double *M, double m, const double c[3], const double J[3]) {
+    double s[3][3] = {{0, -c[2], c[1]}, {c[2], 0, -c[0]}, {-c[1], c[0], 0}},
+           cc = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+    scene_diagonal(M, m, m, m, J[0], J[1], J[2]);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            M[6 * (3 + i) + j] = M[6 * j + 3 + i] = m * s[i][j];
+            M[6 * (3 + i) + 3 + j] += m * ((i == j ? cc : 0) - c[i] * c[j]);
+        }
+    }
+}
+
+static inline spar_session *scene_session(void) {
+    spar_session *s = NULL;
+    OK(NULL, spar_session_create(&s));
+    return s;
+}
+
+/* a straight beam of one section from the origin along x, not yet committed */
+static inline spar_member *scene_beam(spar_session *s, const char *name, int elements, int nodes, double length,
+                                      const double *K, const double *M) {
+    const double eta[2] = {0, 1}, xyz[6] = {0, 0, 0, length, 0, 0};
+    spar_member *b = NULL;
+    OK(s, spar_beam_create(s, name, elements, nodes, &b));
+    OK(s, spar_beam_set_axis(b, 2, eta, xyz, NULL));
+    OK(s, spar_beam_set_sections(b, 1, eta, K, M));
+    return b;
+}
+
+/* The composite box section of Wang et al., Wind Energy 20 (2017), we.2101: bending and torsion coupled */
+static inline void scene_box(double *K, double *M) {
+    scene_diagonal(K, 1368.17e3, 88.56e3, 38.78e3, 16.96e3, 59.12e3, 141.47e3);
+    K[6 * 3 + 4] = K[6 * 4 + 3] = 17.61e3;
+    K[6 * 3 + 5] = K[6 * 5 + 3] = -0.351e3;
+    K[6 * 4 + 5] = K[6 * 5 + 4] = -0.370e3;
+    scene_diagonal(M, 8.538e-2, 8.538e-2, 8.538e-2, 1.4433e-2, 0.4097e-2, 1.0336e-2);
+}
+
+/* n steps without a fluid */
+static inline void scene_run(spar_session *s, double dt, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        OK(s, spar_step_begin(s, dt));
+        OK(s, spar_step_solve(s));
+        OK(s, spar_step_accept(s));
+    }
+}
+
+/* motion of the last node */
+static inline void scene_tip(const spar_member *m, double q[7]) {
+    int64_t n;
+    assert_int_equal(spar_member_get_count(m, &n), SPAR_OK);
+    double *all = malloc((size_t)n * 7 * sizeof *all);
+    assert_int_equal(spar_member_get_motion(m, all, NULL, NULL), SPAR_OK);
+    memcpy(q, all + 7 * (n - 1), 7 * sizeof *q);
+    free(all);
+}
+
+#endif
