@@ -1,0 +1,532 @@
+#include "accelerate.h"
+
+#include "status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a column is: memory for one, in use, or out of use until the step ends (and then gone, or back after reject). */
+typedef enum column_state { FREE, LIVE, RESTING, DROPPED } column_state;
+
+typedef struct column {
+    column_state state;
+    int64_t step;   /* of the accelerator's own count: in which it was made */
+    int64_t serial; /* the larger the newer */
+    double dt;
+} column;
+
+struct spari_accelerator {
+    spari_accelerator_settings set;
+    int64_t n;
+    int period, split;
+
+    int64_t step, serial;
+    int iteration, dropped;
+    double dt, ratio;
+    double omega, omega_accepted; /* of Aitken: in use, and at the end of the last accepted step (0: none) */
+
+    double size[2], weight[2]; /* of forces and moments */
+    double *x, *g;             /* of the iteration before */
+
+    int slots;      /* twice the columns: those at rest or dropped come back when the step is rejected */
+    column *column; /* [slots] */
+    double *v, *w;  /* [slots][n] differences of the residual g - x, and of g */
+    double *q, *r;  /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
+    double *alpha;  /* [columns] */
+    int *order;     /* slot of each column of q */
+    int used;       /* columns of q */
+};
+
+/* ---- memory ---- */
+
+spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
+                                            const spari_accelerator_settings *settings) {
+    spari_accelerator *a = spari_zalloc(1, sizeof *a);
+    if (!a) {
+        return NULL;
+    }
+    a->set = *settings;
+    a->n = n;
+    a->period = period;
+    a->split = split;
+    a->omega = settings->omega;
+    int quasi_newton = settings->scheme == SPAR_COUPLING_IQN_ILS;
+    int64_t m = quasi_newton ? settings->columns : 0;
+    a->slots = (int)(2 * m);
+    int ok = (a->x = spari_zalloc(n, sizeof *a->x)) && (a->g = spari_zalloc(n, sizeof *a->g)) &&
+             (a->column = spari_zalloc(2 * m, sizeof *a->column)) && (a->v = spari_zalloc(2 * m * n, sizeof *a->v)) &&
+             (a->w = spari_zalloc(2 * m * n, sizeof *a->w)) && (a->q = spari_zalloc(m * n, sizeof *a->q)) &&
+             (a->r = spari_zalloc(m * m, sizeof *a->r)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
+             (a->order = spari_zalloc(m, sizeof *a->order));
+    if (!ok) {
+        spari_accelerator_free(&a);
+    }
+    return a;
+}
+
+void spari_accelerator_free(spari_accelerator **accelerator) {
+    spari_accelerator *a = accelerator ? *accelerator : NULL;
+    if (!a) {
+        return;
+    }
+    free(a->x);
+    free(a->g);
+    free(a->column);
+    free(a->v);
+    free(a->w);
+    free(a->q);
+    free(a->r);
+    free(a->alpha);
+    free(a->order);
+    free(a);
+    *accelerator = NULL;
+}
+
+/* ---- vectors: plain sums in a fixed order, so that all ranks get the same bits whatever their processors ---- */
+
+static double dot(const double *a, const double *b, int64_t n) {
+    double s[4] = {0, 0, 0, 0};
+    int64_t i = 0;
+    for (; i + 4 <= n; i += 4) {
+        for (int k = 0; k < 4; k++) {
+            s[k] += a[i + k] * b[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        s[0] += a[i] * b[i];
+    }
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+static void axpy(double f, const double *a, double *b, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        b[i] += f * a[i];
+    }
+}
+
+static double *slot_v(const spari_accelerator *a, int slot) {
+    return a->v + slot * a->n;
+}
+
+static double *slot_w(const spari_accelerator *a, int slot) {
+    return a->w + slot * a->n;
+}
+
+/* ---- weights ---- */
+
+/* Sizes of forces and moments, as the root of the sum of squares of loads used and loads that came back. */
+static void measure(const spari_accelerator *a, const double *x, const double *g, double size[2]) {
+    double s[2] = {0, 0};
+    for (int64_t i = 0; i < a->n; i += a->period) {
+        for (int k = 0; k < a->period && i + k < a->n; k++) {
+            s[k >= a->split] += x[i + k] * x[i + k] + g[i + k] * g[i + k];
+        }
+    }
+    /* what is less than that of the other kind is not worth more: it may be the rounding of what should be zero */
+    double large = 1e-8 * sqrt(fmax(s[0], s[1]));
+    for (int k = 0; k < 2; k++) {
+        size[k] = fmax(sqrt(s[k]), large);
+        size[k] = size[k] > 0 ? size[k] : 1;
+    }
+}
+
+/* The step's first loads give the weights; loads that outgrow them tenfold give new ones. Returns whether they changed.
+ */
+static int weigh(spari_accelerator *a, const double *x, const double *g) {
+    double size[2];
+    measure(a, x, g, size);
+    if (a->iteration > 1 && size[0] <= 10 * a->size[0] && size[1] <= 10 * a->size[1]) {
+        return 0;
+    }
+    for (int k = 0; k < 2; k++) {
+        a->size[k] = size[k];
+        a->weight[k] = 1 / size[k];
+    }
+    return 1;
+}
+
+/* out = in, each entry over the size of its kind */
+static void scale(const spari_accelerator *a, const double *in, double *out) {
+    for (int64_t i = 0; i < a->n; i += a->period) {
+        for (int k = 0; k < a->period && i + k < a->n; k++) {
+            out[i + k] = a->weight[k >= a->split] * in[i + k];
+        }
+    }
+}
+
+/* ---- columns ---- */
+
+/* Adds a column to the factorisation, by Gram-Schmidt done twice (Giraud et al. 2005: orthogonal to rounding). Returns
+   0, and adds nothing, where too little of it is new. */
+static int append(spari_accelerator *a, int slot) {
+    int k = a->used;
+    if (k == a->set.columns) {
+        return 0;
+    }
+    double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns;
+    scale(a, slot_v(a, slot), q);
+    double whole = sqrt(dot(q, q, a->n));
+    for (int j = 0; j < k; j++) {
+        r[j] = 0;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < k; j++) {
+            double c = dot(a->q + j * a->n, q, a->n);
+            r[j] += c;
+            axpy(-c, a->q + j * a->n, q, a->n);
+        }
+    }
+    r[k] = sqrt(dot(q, q, a->n));
+    if (!(r[k] > a->set.filter * whole) || !isfinite(r[k])) {
+        return 0;
+    }
+    for (int64_t i = 0; i < a->n; i++) {
+        q[i] /= r[k];
+    }
+    a->order[k] = slot;
+    a->used++;
+    return 1;
+}
+
+static int newest_before(const spari_accelerator *a, int64_t serial) {
+    int found = -1;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == LIVE && a->column[s].serial < serial &&
+            (found < 0 || a->column[s].serial > a->column[found].serial)) {
+            found = s;
+        }
+    }
+    return found;
+}
+
+/* Out of use: a column of this step for good, an older one until it is known whether the step is accepted. */
+static void drop(spari_accelerator *a, int slot) {
+    a->column[slot].state = a->column[slot].step == a->step ? FREE : DROPPED;
+}
+
+/* Factors anew, the newest columns first, so that the filter and the limit on their number take out old ones. */
+static void factor(spari_accelerator *a) {
+    int64_t serial = a->serial + 1;
+    a->used = 0;
+    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        serial = a->column[s].serial;
+        int full = a->used == a->set.columns;
+        if (!append(a, s)) {
+            drop(a, s);
+            a->dropped += !full;
+        }
+    }
+}
+
+static int free_slot(const spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == FREE) {
+            return s;
+        }
+    }
+    return -1; /* does not happen: at most `columns` are of this step, at most `columns` are older */
+}
+
+/* The columns of this step, at most all but one: the oldest goes. */
+static void make_room(spari_accelerator *a) {
+    int count = 0, oldest = -1;
+    for (int s = 0; s < a->slots; s++) {
+        const column *c = a->column + s;
+        if (c->state == LIVE && c->step == a->step) {
+            count++;
+            oldest = oldest < 0 || c->serial < a->column[oldest].serial ? s : oldest;
+        }
+    }
+    if (count == a->set.columns) {
+        drop(a, oldest);
+        factor(a);
+    }
+}
+
+/* The column of the last two iterations. */
+static void add_column(spari_accelerator *a, const double *x, const double *g) {
+    make_room(a);
+    int s = free_slot(a), moved = 0;
+    double *v = slot_v(a, s), *w = slot_w(a, s);
+    for (int64_t i = 0; i < a->n; i++) {
+        w[i] = g[i] - a->g[i];
+        v[i] = w[i] - (x[i] - a->x[i]);
+        moved |= v[i] != 0;
+    }
+    if (!moved) { /* the residual stalls: the column says nothing */
+        a->dropped++;
+        return;
+    }
+    a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt};
+    if (!append(a, s)) {
+        factor(a);
+    }
+}
+
+/* next = g + W alpha, alpha the least squares of V alpha = -(g - x): the loads whose residual is as small as the
+   columns know how. `next` may be x. Returns 0 where that gives no numbers. */
+static int quasi_newton(spari_accelerator *a, const double *x, const double *g, double *next) {
+    int m = a->used;
+    for (int j = 0; j < m; j++) {
+        const double *q = a->q + j * a->n;
+        double s[2] = {0, 0};
+        for (int64_t i = 0; i < a->n; i += a->period) {
+            for (int k = 0; k < a->period && i + k < a->n; k++) {
+                s[k >= a->split] += q[i + k] * (g[i + k] - x[i + k]);
+            }
+        }
+        a->alpha[j] = -(s[0] * a->weight[0] + s[1] * a->weight[1]);
+    }
+    for (int j = m - 1; j >= 0; j--) {
+        const double *r = a->r + (int64_t)j * a->set.columns;
+        a->alpha[j] /= r[j];
+        for (int i = 0; i < j; i++) {
+            a->alpha[i] -= r[i] * a->alpha[j];
+        }
+    }
+    if (spari_first_nonfinite(a->alpha, m) >= 0) {
+        return 0;
+    }
+    memcpy(next, g, (size_t)a->n * sizeof *next);
+    for (int j = 0; j < m; j++) {
+        axpy(a->alpha[j], slot_w(a, a->order[j]), next, a->n);
+    }
+    return 1;
+}
+
+/* ---- Aitken ---- */
+
+/* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; where the residual stalls omega stays. */
+static void aitken(spari_accelerator *a, const double *x, const double *g) {
+    double product[2] = {0, 0}, square[2] = {0, 0};
+    for (int64_t i = 0; i < a->n; i += a->period) {
+        for (int k = 0; k < a->period && i + k < a->n; k++) {
+            int kind = k >= a->split;
+            double before = a->g[i + k] - a->x[i + k], change = (g[i + k] - x[i + k]) - before;
+            product[kind] += before * change;
+            square[kind] += change * change;
+        }
+    }
+    double w[2] = {a->weight[0] * a->weight[0], a->weight[1] * a->weight[1]};
+    double omega = -a->omega * (product[0] * w[0] + product[1] * w[1]) / (square[0] * w[0] + square[1] * w[1]);
+    if (isfinite(omega) && omega != 0) {
+        a->omega = omega;
+    }
+}
+
+/* ---- the step ---- */
+
+void spari_accelerator_begin(spari_accelerator *a, double dt) {
+    a->dt = dt;
+    a->iteration = 0;
+    a->dropped = 0;
+    a->used = 0;
+    a->ratio = 0;
+    /* Kuettler & Wall (2008): the last factor, as far as the user's allows */
+    a->omega = a->set.scheme == SPAR_COUPLING_AITKEN && a->omega_accepted > 0 ? fmin(a->omega_accepted, a->set.omega)
+                                                                              : a->set.omega;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == LIVE && fabs(a->column[s].dt - dt) > 0.1 * dt) {
+            a->column[s].state = RESTING;
+        }
+    }
+}
+
+/* -dx.dg / dx.dx of the last two iterations */
+static void estimate_ratio(spari_accelerator *a, const double *x, const double *g) {
+    double product = 0, square = 0;
+    for (int64_t i = 0; i < a->n; i++) {
+        double w = a->weight[i % a->period >= a->split], dx = w * (x[i] - a->x[i]);
+        product -= dx * w * (g[i] - a->g[i]);
+        square += dx * dx;
+    }
+    double ratio = product / square;
+    if (isfinite(ratio) && fabs(ratio) > fabs(a->ratio)) {
+        a->ratio = ratio;
+    }
+}
+
+static void compute_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+    if (a->used > 0 && quasi_newton(a, x, g, next)) {
+        return;
+    }
+    for (int64_t i = 0; i < a->n; i++) {
+        next[i] = x[i] + a->omega * (g[i] - x[i]);
+    }
+}
+
+void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+    a->iteration++;
+    int reweighed = weigh(a, x, g);
+    if (reweighed && a->slots > 0) {
+        factor(a);
+    }
+    if (a->iteration > 1) {
+        estimate_ratio(a, x, g);
+        if (a->set.scheme == SPAR_COUPLING_AITKEN) {
+            aitken(a, x, g);
+        } else if (a->set.scheme == SPAR_COUPLING_IQN_ILS) {
+            add_column(a, x, g);
+        }
+    }
+    if (a->n == 0) {
+        return;
+    }
+    memcpy(a->x, x, (size_t)a->n * sizeof *x);
+    memcpy(a->g, g, (size_t)a->n * sizeof *g);
+    compute_next(a, a->x, a->g, next);
+}
+
+static int oldest_live(const spari_accelerator *a, int *count) {
+    int oldest = -1;
+    *count = 0;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == LIVE) {
+            *count += 1;
+            oldest = oldest < 0 || a->column[s].serial < a->column[oldest].serial ? s : oldest;
+        }
+    }
+    return oldest;
+}
+
+void spari_accelerator_accept(spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        column *c = a->column + s;
+        if (c->state == DROPPED || a->step - c->step >= a->set.reuse) {
+            c->state = FREE;
+        }
+        c->state = c->state == RESTING ? LIVE : c->state;
+    }
+    int count, oldest = oldest_live(a, &count);
+    for (; count > a->set.columns; oldest = oldest_live(a, &count)) {
+        a->column[oldest].state = FREE;
+    }
+    if (a->iteration > 1) {
+        a->omega_accepted = a->omega;
+    }
+    a->used = 0;
+    a->step++;
+}
+
+void spari_accelerator_reject(spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        column *c = a->column + s;
+        if (c->state != FREE) {
+            c->state = c->step == a->step ? FREE : LIVE;
+        }
+    }
+    a->used = 0;
+    a->iteration = 0;
+}
+
+int spari_accelerator_columns(const spari_accelerator *a) {
+    return a->used;
+}
+
+int spari_accelerator_dropped(const spari_accelerator *a) {
+    return a->dropped;
+}
+
+double spari_accelerator_ratio(const spari_accelerator *a) {
+    return a->ratio;
+}
+
+/* ---- save and load ---- */
+
+enum { HEAD = 15, COLUMN_HEAD = 5 };
+
+static int occupied(const spari_accelerator *a) {
+    int count = 0;
+    for (int s = 0; s < a->slots; s++) {
+        count += a->column[s].state != FREE;
+    }
+    return count;
+}
+
+int64_t spari_accelerator_state_size(const spari_accelerator *a) {
+    return HEAD + 2 * a->n + occupied(a) * (COLUMN_HEAD + 2 * a->n) + a->used;
+}
+
+void spari_accelerator_save(const spari_accelerator *a, double *state) {
+    const double head[HEAD] = {(double)a->n, (double)a->step, (double)a->serial, a->iteration,      a->dropped,
+                               a->dt,        a->ratio,        a->omega,          a->omega_accepted, a->size[0],
+                               a->size[1],   a->weight[0],    a->weight[1],      occupied(a),       a->used};
+    size_t bytes = (size_t)a->n * sizeof *state;
+    memcpy(state, head, sizeof head);
+    memcpy(state += HEAD, a->x, bytes);
+    memcpy(state += a->n, a->g, bytes);
+    state += a->n;
+    for (int s = 0; s < a->slots; s++) {
+        const column *c = a->column + s;
+        if (c->state != FREE) {
+            const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt};
+            memcpy(state, what, sizeof what);
+            memcpy(state += COLUMN_HEAD, slot_v(a, s), bytes);
+            memcpy(state += a->n, slot_w(a, s), bytes);
+            state += a->n;
+        }
+    }
+    for (int j = 0; j < a->used; j++) {
+        state[j] = a->order[j];
+    }
+}
+
+static int whole_below(double x, double end) {
+    return x >= 0 && x < end && x == floor(x);
+}
+
+/* Whether the numbers are a state that save could have written. */
+static int is_state(const spari_accelerator *a, const double *state, int64_t count) {
+    if (count < HEAD || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
+        !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
+        return 0;
+    }
+    int64_t occupied = (int64_t)state[13], used = (int64_t)state[14];
+    if (count != HEAD + 2 * a->n + occupied * (COLUMN_HEAD + 2 * a->n) + used) {
+        return 0;
+    }
+    for (int64_t k = 0; k < occupied; k++) {
+        const double *c = state + HEAD + 2 * a->n + k * (COLUMN_HEAD + 2 * a->n);
+        if (!whole_below(c[0], a->slots) || !(c[1] == LIVE || c[1] == RESTING || c[1] == DROPPED)) {
+            return 0;
+        }
+    }
+    for (int64_t j = count - used; j < count; j++) {
+        if (!whole_below(state[j], a->slots)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
+    if (!is_state(a, state, count)) {
+        return 0;
+    }
+    int occupied = (int)state[13], used = (int)state[14];
+    size_t bytes = (size_t)a->n * sizeof *state;
+    a->step = (int64_t)state[1], a->serial = (int64_t)state[2];
+    a->iteration = (int)state[3], a->dropped = (int)state[4];
+    a->dt = state[5], a->ratio = state[6], a->omega = state[7], a->omega_accepted = state[8];
+    memcpy(a->size, state + 9, sizeof a->size);
+    memcpy(a->weight, state + 11, sizeof a->weight);
+    memcpy(a->x, state += HEAD, bytes);
+    memcpy(a->g, state += a->n, bytes);
+    state += a->n;
+    for (int s = 0; s < a->slots; s++) {
+        a->column[s].state = FREE;
+    }
+    for (int k = 0; k < occupied; k++) {
+        int s = (int)state[0];
+        a->column[s] = (column){(column_state)(int)state[1], (int64_t)state[2], (int64_t)state[3], state[4]};
+        memcpy(slot_v(a, s), state += COLUMN_HEAD, bytes);
+        memcpy(slot_w(a, s), state += a->n, bytes);
+        state += a->n;
+    }
+    a->used = 0;
+    for (int j = 0; j < used; j++) { /* in the order of the first time: the same bits */
+        (void)append(a, (int)state[j]);
+    }
+    return 1;
+}

@@ -1,0 +1,54 @@
+/* The accelerators of the coupling iteration x = G(x), over one stacked vector: x are the loads the structure was
+   solved with, g = G(x) those that came back from the fluids. They know no session, no member and no rank: every rank
+   runs the same instructions on the same bits.
+
+   Schemes: constant relaxation; Aitken's dynamic relaxation (Irons & Tuck 1969; Kuettler & Wall 2008); interface
+   quasi-Newton with least squares, IQN-ILS (Degroote, Bathe & Vierendeels 2009), with the filter QR2 of Haelterman et
+   al. (2016): the newest columns first, each kept only if enough of it is independent of those before.
+
+   Entries i with i % period < split are forces, the others moments (already divided by a length). Each of the two is
+   measured by its own size, so that the choice of units changes no iterate. */
+#ifndef SPARI_ACCELERATE_H
+#define SPARI_ACCELERATE_H
+
+#include <stdint.h>
+
+typedef struct spari_accelerator spari_accelerator;
+
+typedef struct spari_accelerator_settings {
+    int scheme;    /* SPAR_COUPLING_FIXED_POINT, _AITKEN, _IQN_ILS */
+    double omega;  /* relaxation: constant, or of the first iterations and the most that Aitken begins a step with */
+    int columns;   /* IQN-ILS: the most difference columns in use, >= 1 */
+    int reuse;     /* IQN-ILS: accepted steps whose columns are used again, >= 0 */
+    double filter; /* IQN-ILS: a column stays if more than this part of it is independent of newer ones; 0: any */
+} spari_accelerator_settings;
+
+/* Takes all memory there will be need of; NULL: there is none. */
+spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
+                                            const spari_accelerator_settings *settings);
+void spari_accelerator_free(spari_accelerator **accelerator);
+
+/* A step begins. Columns of steps with another dt (by more than a tenth) rest while it lasts: dt is in the map. */
+void spari_accelerator_begin(spari_accelerator *a, double dt);
+/* From x and g the next x; next may be x. The caller has found x not converged: g - x is not zero. */
+void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, double *next);
+/* The step is accepted: its columns may serve the next ones. */
+void spari_accelerator_accept(spari_accelerator *a);
+/* The step is given up: all is as before it began. Its columns go, for what made the host reject the step (a failed
+   solution, wild iterates) is in them. */
+void spari_accelerator_reject(spari_accelerator *a);
+
+/* What the step under way has shown. */
+int spari_accelerator_columns(const spari_accelerator *a); /* in the last least-squares problem */
+int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered out in this step */
+/* The largest -dx.dg / dx.dx of the step: what takes the place of (added mass)/(mass) in the piston model, whose map
+   has the derivative minus that ratio. 0 before the second iteration. */
+double spari_accelerator_ratio(const spari_accelerator *a);
+
+/* The whole state as doubles, for save and load into an accelerator of the same n and settings; load answers 0, and
+   changes nothing, where `count` doubles cannot be such a state. */
+int64_t spari_accelerator_state_size(const spari_accelerator *a);
+void spari_accelerator_save(const spari_accelerator *a, double *state);
+int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count);
+
+#endif
