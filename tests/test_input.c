@@ -1,0 +1,252 @@
+/* Bad input: each has its status and a message that names the member; the session goes on as if the call had not been
+ * made. */
+#include "scene.h"
+
+static double K[36], M[36];
+
+/* The call is refused with `expected`, and the message says `word`. */
+#define REFUSED(session, expected, word, call)                                                                         \
+    do {                                                                                                               \
+        int got_ = (call);                                                                                             \
+        if (got_ != (expected)) {                                                                                      \
+            fail_msg("%s: status %d (%s), expected %d", #call, got_, spar_status_text(got_), (expected));              \
+        }                                                                                                              \
+        if (!strstr(spar_session_message(session), (word))) {                                                          \
+            fail_msg("%s: the message '%s' does not say '%s'", #call, spar_session_message(session), (word));          \
+        }                                                                                                              \
+    } while (0)
+
+/* A small run with known answer: after any refusal the session must still do it. */
+static void still_works(spar_session *s, const char *name) {
+    double load[6] = {0, 0, 150, 0, 0, 0}, q[7];
+    spar_member *b = scene_beam(s, name, 1, 12, 10, K, M);
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_add_load(b, 11, load));
+    OK(s, spar_member_solve_static(b, 1));
+    scene_tip(b, q);
+    NEAR(q[2], 1.2297364829237, 1e-10); /* composite box, see test_static.c */
+}
+
+static void test_null_handles(void **state) {
+    (void)state;
+    double x[3] = {0}, q[7] = {0};
+    int done;
+    int64_t n;
+    spar_member *m = NULL;
+    assert_int_equal(spar_session_create(NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_set_gravity(NULL, x), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_set_integrator(NULL, 1, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_set_option(NULL, "a", "b"), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_get_time(NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_point_create(NULL, "p", x, NULL, &m), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_create(NULL, "b", 1, 4, &m), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_rigid_create(NULL, "r", x, NULL, M, &m), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_axis(NULL, 0, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_commit(NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_count(NULL, &n), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_motion(NULL, q, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_solve_static(NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step_begin(NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step_solve(NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step_check(NULL, &done), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step_accept(NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step_reject(NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_step(NULL, 1, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_null(m);
+    spar_session_destroy(NULL);
+    spar_session *none = NULL;
+    spar_session_destroy(&none);
+}
+
+static void test_session_settings(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    double g[3] = {0, 0, NAN};
+    REFUSED(s, SPAR_ERR_ARGUMENT, "gravity", spar_session_set_gravity(s, g));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "gravity", spar_session_set_gravity(s, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "rho_inf", spar_session_set_integrator(s, 1.1, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "rho_inf", spar_session_set_integrator(s, NAN, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "substeps", spar_session_set_integrator(s, 1, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "tolerances", spar_session_set_newton(s, -1, 0, 10));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "iterations", spar_session_set_newton(s, 0, 0, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "order", spar_session_set_predictor(s, 3));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "scheme", spar_session_set_coupling(s, 9, 0, 0, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "tolerances", spar_session_set_coupling(s, 1, NAN, 0, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "cannot be", spar_session_set_option(s, "fluid.theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
+    still_works(s, "after");
+    spar_session_destroy(&s);
+}
+
+static void test_members(void **state) {
+    (void)state;
+    double x[3] = {0, 0, 0}, bad[3] = {0, INFINITY, 0}, q[4] = {1, 1, 0, 0}, mass[36], nan4[4] = {NAN, 0, 0, 0};
+    spar_session *s = scene_session();
+    spar_member *m = NULL, *b;
+    scene_diagonal(mass, 1, 1, 1, 1, 1, 1);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "name", spar_point_create(s, NULL, x, NULL, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "name", spar_point_create(s, "", x, NULL, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_point_create(s, "p", x, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_point_create(s, "p", bad, NULL, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_point_create(s, "p", x, q, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_point_create(s, "p", x, nan4, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_rigid_create(s, "r", x, NULL, NULL, &m));
+    mass[0] = mass[7] = mass[14] = -1;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "negative", spar_rigid_create(s, "r", x, NULL, mass, &m));
+    scene_diagonal(mass, 1, 2, 1, 1, 1, 1);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "identity", spar_rigid_create(s, "r", x, NULL, mass, &m));
+    scene_diagonal(mass, 1, 1, 1, 1, -1, 1);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "inertia", spar_rigid_create(s, "r", x, NULL, mass, &m));
+    scene_diagonal(mass, 1, 1, 1, 1, 1, 1);
+    mass[1] = 0.5;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "symmetric", spar_rigid_create(s, "r", x, NULL, mass, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "elements", spar_beam_create(s, "b", 0, 4, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "nodes", spar_beam_create(s, "b", 1, 1, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "nodes", spar_beam_create(s, "b", 1, 25, &m));
+    assert_null(m);
+    OK(s, spar_beam_create(s, "b", 1, 4, &b));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'b'", spar_beam_create(s, "b", 1, 4, &m));
+    REFUSED(s, SPAR_ERR_STATE, "no line", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, -1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_member_set_placement(b, x, q));
+    OK(s, spar_point_create(s, "point", x, NULL, &m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "not a beam", spar_beam_set_damping(m, K));
+    spar_session_destroy(&s);
+    s = scene_session();
+    still_works(s, "after");
+    spar_session_destroy(&s);
+}
+
+static void test_beam_description(void **state) {
+    (void)state;
+    double eta[3] = {0, 0.5, 1}, xyz[9] = {0, 0, 0, 5, 0, 0, 10, 0, 0}, twist[3] = {0, NAN, 0},
+           mu[6] = {0, 0, -1, 0, 0, 0}, C[36], m[36];
+    double back[3] = {0, 1, 0.5}, late[2] = {0.1, 1}, same[9] = {0},
+           q[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    double x[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0};
+    spar_session *s = scene_session();
+    spar_member *b;
+    OK(s, spar_beam_create(s, "b", 1, 4, &b));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "at least 2", spar_beam_set_axis(b, 1, eta, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "at least 2", spar_beam_set_axis(b, -3, eta, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, NULL, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, eta, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "increase", spar_beam_set_axis(b, 3, back, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "eta 0", spar_beam_set_axis(b, 2, late, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "twist", spar_beam_set_axis(b, 3, eta, xyz, twist));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give 4", spar_beam_set_nodes(b, 3, x, NULL));
+    q[4] = 0.9;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_beam_set_nodes(b, 4, x, q));
+    memcpy(C, K, sizeof C);
+    C[1] = 1e6;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "not symmetric", spar_beam_set_sections(b, 1, eta, C, M));
+    scene_diagonal(C, 1, 1, 1, 1, 0, 1);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "positive definite", spar_beam_set_sections(b, 1, eta, C, M));
+    scene_diagonal(C, 1, 1, 1, 1, 1, 1);
+    C[1] = C[6] = 1.5;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "positive definite", spar_beam_set_sections(b, 1, eta, C, M));
+    memcpy(m, M, sizeof m);
+    m[0] = m[7] = m[14] = -1;
+    REFUSED(s, SPAR_ERR_ARGUMENT, "negative", spar_beam_set_sections(b, 1, eta, K, m));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "at least 1", spar_beam_set_sections(b, 0, eta, K, M));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "negative", spar_beam_set_damping(b, mu));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "rule", spar_beam_set_quadrature(b, 5, 3));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "points", spar_beam_set_quadrature(b, SPAR_QUADRATURE_LOBATTO, 1));
+    OK(s, spar_beam_set_axis(b, 3, eta, xyz, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "no sections", spar_member_commit(b));
+    OK(s, spar_beam_set_sections(b, 1, eta, K, M));
+    OK(s, spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 2));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "singular", spar_member_commit(b));
+    OK(s, spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 4));
+    OK(s, spar_beam_set_axis(b, 3, eta, same, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "coincide", spar_member_commit(b));
+    OK(s, spar_beam_set_axis(b, 3, eta, xyz, NULL));
+    OK(s, spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_beam_set_axis(b, 3, eta, xyz, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_member_set_root(b, SPAR_ROOT_FREE));
+    /* sections whose x axis does not run along the line */
+    double z[16] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5};
+    spar_member *across;
+    OK(s, spar_beam_create(s, "across", 1, 4, &across));
+    OK(s, spar_beam_set_nodes(across, 4, x, z));
+    OK(s, spar_beam_set_sections(across, 1, eta, K, M));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "90 degrees", spar_member_commit(across));
+    spar_session_destroy(&s);
+}
+
+static void test_use_before_commit_and_loads(void **state) {
+    (void)state;
+    double q[7] = {0, 0, 0, 1, 0, 0, 0}, load[6] = {0, 0, NAN, 0, 0, 0}, e[4], f[1];
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "b", 1, 4, 10, K, M);
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_motion(b, q, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_energy(b, e));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_add_load(b, 0, load));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_solve_static(b, 1));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_modes(b, 1, f, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_step_begin(s, 0.1));
+    OK(s, spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no node 4", spar_member_add_load(b, 4, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no node -1", spar_member_add_load(b, -1, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_member_add_load(b, 3, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_add_load(b, 3, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "external", spar_member_set_motion(b, q, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "driven", spar_member_drive_root(b, q, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "modes", spar_member_get_modes(b, 100, f, NULL));
+    still_works(s, "after");
+    spar_session_destroy(&s);
+}
+
+static void test_steps(void **state) {
+    (void)state;
+    int done;
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "b", 1, 4, 10, K, M), *late;
+    OK(s, spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, -1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, NAN));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, INFINITY));
+    REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_solve(s));
+    REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_accept(s));
+    REFUSED(s, SPAR_ERR_STATE, "nothing to reject", spar_step_reject(s));
+    REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
+    OK(s, spar_step_begin(s, 0.1));
+    REFUSED(s, SPAR_ERR_STATE, "accept or reject", spar_step_begin(s, 0.1));
+    REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
+    REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_accept(s));
+    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_session_set_integrator(s, 1, 1));
+    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_member_solve_static(b, 1));
+    OK(s, spar_step_solve(s));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "done", spar_step_check(s, NULL));
+    OK(s, spar_step_check(s, &done));
+    assert_int_equal(done, 1);
+    OK(s, spar_step_accept(s));
+    REFUSED(s, SPAR_ERR_STATE, "clock has started", spar_beam_create(s, "late", 1, 4, &late));
+    REFUSED(s, SPAR_ERR_STATE, "clock has started", spar_member_set_velocity(b, NULL, NULL, NULL));
+    double t;
+    int64_t step;
+    OK(s, spar_session_get_time(s, &t, &step, NULL));
+    NEAR(t, 0.1, 0);
+    assert_int_equal(step, 1);
+    spar_session_destroy(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_null_handles),
+        cmocka_unit_test(test_session_settings),
+        cmocka_unit_test(test_members),
+        cmocka_unit_test(test_beam_description),
+        cmocka_unit_test(test_use_before_commit_and_loads),
+        cmocka_unit_test(test_steps),
+    };
+    scene_box(K, M);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
