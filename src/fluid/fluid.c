@@ -727,6 +727,32 @@ static void emit_orientation(const spar_fluid *fluid, const spari_nodes *s, int6
     }
 }
 
+int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q) {
+    const char *caller = "spar_fluid_write_vtk";
+    const spari_nodes *s;
+    SPARI_TRY(mapped(fluid, which, caller, &s));
+    if (!s || s->n == 0) {
+        return SPAR_OK;
+    }
+    double a[SPARI_ROWS][SPARI_ROW], (*buf[2])[SPARI_ROW] = {a, a}, share[2], least = HUGE_VAL;
+    fill_states(fluid, 1, SPARI_UPTO_ACCEL, share);
+    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
+        least = fmin(least, spari_tile_motion(s, first, fluid->field[0], fluid->consistent, SPARI_UPTO_ACCEL, a));
+        emit(s, first, 1, share, buf, SPARI_R_PLACE, x);
+        emit(s, first, 1, share, buf, SPARI_R_RATE, v);
+        emit_orientation(fluid, s, first, 1, share, buf, q);
+    }
+    return check_rotation(fluid, least, caller);
+}
+
+int spari_fluid_has_sections(const spar_fluid *fluid) {
+    return fluid->shared;
+}
+
+const double *spari_fluid_forces(const spar_fluid *fluid) {
+    return fluid->history->on ? fluid->history->after : NULL;
+}
+
 int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
     REQUIRE_HANDLE(fluid);
     SPARI_TRY(check_theta(fluid, theta, __func__));

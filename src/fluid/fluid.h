@@ -20,4 +20,12 @@ spar_member *spari_fluid_member(const spar_fluid *fluid);
 spar_session *spari_fluid_session(const spar_fluid *fluid); /* for the messages of what is built on a fluid */
 const char *spari_fluid_name(const spar_fluid *fluid);
 
+/* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
+   set; any NULL. */
+int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q);
+/* Whether the nodes are sections: one set, in the order along the member that the host gave. */
+int spari_fluid_has_sections(const spar_fluid *fluid);
+/* The node forces pushed last, [n][3]; NULL where they are not kept. */
+const double *spari_fluid_forces(const spar_fluid *fluid);
+
 #endif
