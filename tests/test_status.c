@@ -76,7 +76,7 @@ static void test_messages(void **state) {
     assert_int_equal(spari_fail(session, SPAR_ERR_PEER, "rank 1: %s", session->message), SPAR_ERR_PEER);
     assert_string_equal(spar_session_message(session), "rank 1: no file, 7");
     assert_int_equal(heard.calls, 1);
-    assert_int_equal(heard.level, SPARI_LOG_ERROR);
+    assert_int_equal(heard.level, SPAR_LOG_ERROR);
     assert_ptr_equal(heard.session, session);
     assert_string_equal(heard.text, "rank 1: no file, 7");
 

@@ -1,4 +1,67 @@
-/* spar: structures coupled with fluids. The public interface. */
+/* spar.h: structures coupled with fluids. This header is the specification; what is not here is not the interface.
+
+   spar advances structural members (a geometrically exact beam, a rigid body, a massless point, or the host's own
+   structure) and ties fluid models to them: it gives the fluid the motion of its nodes and takes the loads on them. A
+   host's loop is
+
+       spar_step_begin(s, dt);                      predicts the loads at t^{n+1}
+       do {
+           spar_step_solve(s);                      structure to t^{n+1}
+           spar_fluid_pull_motion(f, 1.0, x, v);    where the fluid's nodes are, and how fast
+           ...                                      the host advances its fluid and finds its loads
+           spar_fluid_push_forces(f, force, 0);     loads at t^{n+1}
+           spar_step_check(s, &done);               gathers them; again, or enough?
+       } while (!done);
+       spar_step_accept(s);                         or spar_step_reject(s)
+
+   and spar_step runs it with a callback. "The spec" below is the theory document of the coupling, whose steps 1 to 8
+   these are.
+
+   Conventions
+   - Units are SI; any consistent set works, gravity included. Angles are in radians.
+   - One right-handed inertial frame, "global"; every vector is in it unless a line says "own frame" or "section
+     frame".
+   - Vectors stand in contiguous triples: x[n][3] is the double array of 3 n entries x[3 i + component], Fortran's
+     x(3,n).
+   - Quaternions are unit, scalar first, [w,x,y,z], the rotation R(q) that takes local components to global ones. q
+     and -q are the same rotation; either may be given.
+   - Node motion q[7] is displacement u from the reference place and the quaternion of the rotation *relative to the
+     reference configuration*, in global axes: the orientation now is R(q) R(q_ref). Velocity v[6] is u-dot and the
+     angular velocity, acceleration a[6] their rates, load[6] force and moment, all global.
+   - 6x6 matrices are row-major, 36 doubles, in the order axial force N, shear y, shear z, torsion x, bending y,
+     bending z (mass: the velocities in the same order), in the section frame: x is the tangent of the reference line.
+     At no twist and no placement, y = unit(z_global x tangent), which a line along global x has in the global x-y
+     plane.
+   - eta in [0,1] and xi = 2 eta - 1 in [-1,1] run along the whole beam; element e of E covers eta in [e/E, (e+1)/E]
+     and is linear in its own xi. A beam's nodes are the Gauss-Lobatto-Legendre points of its elements, numbered from
+     0, element by element: E*P nodes for P nodes per element. The joint of two elements stands twice; both copies
+     carry the same motion, and their loads add.
+   - Counts and indices are int64_t, flags and enums int. n = 0 with NULL arrays is legal everywhere.
+   - Outputs marked "NULL: not wanted" may be NULL; any other pointer may not, unless its line says so.
+
+   Ownership. Every array is the caller's and is copied before the call returns; the library keeps no pointer of the
+   host's except a callback and its context. Handles made by create are released by destroy; destroy takes NULL or a
+   handle that is NULL already, and sets the handle to NULL. create writes the handle only when it succeeds.
+
+   Ranks. "Collective" means: called on every rank of the session, in the same order. Members are described on every
+   rank with the same arguments; each rank's fluids are its own, and a rank may have none. "Local" calls send and wait
+   for nothing.
+
+   Errors. Every function answers a status (SPAR_OK is 0) except the destroys and the getters of text; nothing aborts,
+   exits or prints. spar_session_message says what went wrong, where, and the cure; where there is no session to ask
+   (NULL handle, failed create), spar_session_message(NULL) has it. A refused call leaves everything as it was. In a
+   collective call a failure on one rank is a failure on all: that rank answers its own status, the others
+   SPAR_ERR_PEER with its message. Common to all calls and not repeated below: SPAR_ERR_ARGUMENT for a NULL handle or
+   array, a number that is not finite, a negative count, a value out of its range; SPAR_ERR_STATE for a call out of
+   order; SPAR_ERR_MEMORY.
+
+   Threads. A session and all that is made from it is used by one thread at a time; different sessions may be used by
+   different threads at once. The library has no state besides the message of each thread's failed creates, so that
+   sessions never meet; but the members and fluids of one session share its clock, its work arrays and its message.
+   Sessions over several ranks need of MPI the thread level that the host's own use of it implies.
+
+   ABI. Structs are opaque, enumerators and codes never change their numbers, a function never changes its arguments:
+   what must behave differently is a new function. The shared library's soname changes only if that rule is broken. */
 #ifndef SPAR_SPAR_H
 #define SPAR_SPAR_H
 
@@ -14,114 +77,322 @@
 extern "C" {
 #endif
 
-typedef struct spar_session spar_session;
-typedef struct spar_member spar_member;
-typedef struct spar_fluid spar_fluid;
+typedef struct spar_session spar_session; /* one clock, its members, one communicator */
+typedef struct spar_member spar_member;   /* a structure; belongs to its session */
+typedef struct spar_fluid
+    spar_fluid; /* a fluid model's nodes on this rank, tied to one member; belongs to the session */
 
-/* status: fixed for ever */
-enum { SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5,
-       SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10 };
-/* coupling schemes, root conditions, quadrature rules, projection methods, interpolations, node sets, map flags */
-enum { SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, SPAR_COUPLING_IQN_ILS = 3 };
-enum { SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3 };
-enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
-enum { SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1 };
-enum { SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1 };
-enum { SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1 };
-enum { SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4 };
+/* ---- status ------------------------------------------------------------------------------------------------------ */
+
+/* Fixed for ever. */
 enum {
-    SPAR_EFFECT_INERTIA = 1,
-    SPAR_EFFECT_GYROSCOPIC = 2,
-    SPAR_EFFECT_GRAVITY = 4,
-    SPAR_EFFECT_DAMPING = 8,
-    SPAR_EFFECT_LARGE_ROTATION = 16,
-    SPAR_EFFECT_FLUID_MOMENT = 32,
-    SPAR_EFFECT_FLUID_HISTORY = 64
+    SPAR_OK = 0,
+    SPAR_ERR_ARGUMENT = 1,    /* a value is not allowed */
+    SPAR_ERR_STATE = 2,       /* the call is out of order */
+    SPAR_ERR_MEMORY = 3,      /* no memory */
+    SPAR_ERR_NUMERIC = 4,     /* not converged, or singular */
+    SPAR_ERR_MAPPING = 5,     /* a fluid node cannot be mapped */
+    SPAR_ERR_COMM = 6,        /* the communication failed, or the ranks disagree about what they do */
+    SPAR_ERR_PEER = 7,        /* another rank failed; the message is that rank's */
+    SPAR_ERR_IO = 8,          /* a file */
+    SPAR_ERR_UNSUPPORTED = 9, /* not in this build, or not there yet */
+    SPAR_ERR_USER = 10        /* the host's callback failed */
 };
 
+/* Name and text of a status, for any int; static storage, never NULL. */
 SPAR_API const char *spar_status_text(int status);
+/* Release, "major.minor.patch"; static storage. */
 SPAR_API const char *spar_version(void);
-SPAR_API int spar_has(const char *feature); /* "mpi", ... */
+/* 1 if this build has the feature, else 0 (also for NULL and unknown names): "mpi", "fortran", "openblas", "lapack",
+   "gsl". */
+SPAR_API int spar_has(const char *feature);
 
-/* session: one clock, its members, one communicator */
-SPAR_API int spar_session_create(spar_session **session); /* this process alone */
-SPAR_API int spar_session_create_fcomm(int comm, spar_session **session); /* Fortran integer communicator; every build has it */
-SPAR_API void spar_session_destroy(spar_session **session); /* members and fluids go with it */
-SPAR_API const char *spar_session_message(const spar_session *session); /* what went wrong last, where, and the cure */
+/* ---- session ----------------------------------------------------------------------------------------------------- */
+
+/* Coupling schemes. */
+enum {
+    SPAR_COUPLING_EXPLICIT = 0,    /* one solution per step with predicted loads */
+    SPAR_COUPLING_FIXED_POINT = 1, /* iterates on the nodal loads, with a constant relaxation */
+    SPAR_COUPLING_AITKEN = 2,      /* the same, relaxation by Aitken's rule */
+    SPAR_COUPLING_IQN_ILS = 3      /* interface quasi-Newton by least squares (Degroote, Bathe, Vierendeels 2009) */
+};
+
+/* A session of this process alone. session: out. Local. */
+SPAR_API int spar_session_create(spar_session **session);
+/* A session over a communicator, which is duplicated and stays the caller's. comm: in, the Fortran integer of it (C:
+   see spar_mpi.h). Every build has this call; one without MPI answers SPAR_ERR_UNSUPPORTED. MPI must be initialised
+   and not yet finalised. Collective over comm. SPAR_ERR_COMM: not a communicator, or MPI failed. */
+SPAR_API int spar_session_create_fcomm(int comm, spar_session **session);
+/* Releases the session with its members and fluids; their handles are dead then. Collective: before MPI_Finalize. */
+SPAR_API void spar_session_destroy(spar_session **session);
+/* What went wrong last in this session, where, and the cure; "" if nothing ever did. Stands until the next failure;
+   the text belongs to the session. NULL: the last failure in this thread that had no session. Local. */
+SPAR_API const char *spar_session_message(const spar_session *session);
+
+/* The setters below are local, made alike on every rank, and allowed between steps only (SPAR_ERR_STATE during one). */
+
+/* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
+/* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). rho_inf: in, spectral radius at infinite
+   frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9. substeps: in, structural steps per coupling step, >=
+   1, with loads interpolated linearly between t^n and t^{n+1}; default 1. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
+/* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
+   rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-12, 1e-9,
+   50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
-SPAR_API int spar_session_set_predictor(spar_session *session, int order); /* 0, 1 (default), 2 */
+/* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2.
+   A young clock has too few loads: the first step uses 0, the second 1 at most. */
+SPAR_API int spar_session_set_predictor(spar_session *session, int order);
+/* How a step is iterated. scheme: in, SPAR_COUPLING_*. Done when the change of the fluid's nodal loads is below atol
+   + rtol |loads|, in newtons, moments by the member's length; max_iterations >= 1, past which spar_step_check answers
+   SPAR_ERR_NUMERIC (or accepts, see the option coupling.unconverged). Defaults: explicit, 1e-9, 1e-6, 50. */
 SPAR_API int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
-     /* scheme: SPAR_COUPLING_EXPLICIT, SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS */
+/* omega: in, part of the change of loads that is taken in an iteration, in (0,2]; default 1. */
 SPAR_API int spar_session_set_relaxation(spar_session *session, double omega);
-SPAR_API int spar_session_set_reproducible(spar_session *session, int on); /* same bits on any number of ranks */
-SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value); /* the long tail */
+/* on: in, 1: nodal loads come out the same to the last bit however the fluid nodes are spread over the ranks; 0
+   (default): to rounding. SPAR_ERR_UNSUPPORTED: on several ranks in this release. */
+SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
+/* The long tail, by words. key, value: in.
+     coupling.unconverged  error (default) | accept        what spar_step_check does after max_iterations
+     fluid.theta           average (default) | group       pull at 0 < theta < 1: the spec's average of the two states,
+   or the node motion interpolated on the group (does not cut corners) fluid.far             take (default) | refuse
+   fluid nodes beyond max_distance: flagged, or SPAR_ERR_MAPPING fluid.audit           on (default) | off whether push
+   keeps the figures of spar_fluid_get_audit */
+SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
+/* t: out, t^n in s, the time of the last accepted step, from 0; step: out, steps accepted; iteration: out, coupling
+   iterations of the step under way or just ended. Each NULL: not wanted. Local. */
 SPAR_API int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration);
 
-/* members */
-SPAR_API int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4], spar_member **member);
-SPAR_API int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4], const double mass[36], spar_member **member);
-SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element, spar_member **member);
-SPAR_API int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist); /* rad about the tangent, right-handed, linear between points; NULL: 0 */
-SPAR_API int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q); /* instead of an axis: n = elements*nodes_per_element, element by
-     element; a joint stands twice, same place, and its two orientations may differ (a kink) */
-SPAR_API int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness, const double *mass); /* n x 36 each */
-SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points); /* SPAR_QUADRATURE_GAUSS, _LOBATTO, _SECTIONS (points per section interval) */
-SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]); /* stiffness-proportional, per strain component */
-SPAR_API int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]); /* from its own frame to the reference place */
-SPAR_API int spar_member_set_root(spar_member *member, int kind); /* SPAR_ROOT_FREE, _FIXED, _PINNED (turns freely about a fixed place), _DRIVEN */
-SPAR_API int spar_member_set_external(spar_member *member, int on); /* the host solves it: set_motion in, get_loads out */
-SPAR_API int spar_member_set_effects(spar_member *member, int effects); /* SPAR_EFFECT_* or-ed; see Effects */
-SPAR_API int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]); /* initial rigid-body field */
-SPAR_API int spar_member_set_owner(spar_member *member, int rank); /* default: spread over the ranks */
-SPAR_API int spar_member_commit(spar_member *member); /* collective: checks everything, allocates everything */
+/* Levels of the log. */
+enum { SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2 };
+/* Called with every message of the session, on the rank and in the thread where it arises; it must not call the
+   session. */
+typedef void (*spar_log)(const spar_session *session, int level, const char *text, void *context);
+/* log: in, NULL: silent (default). context: in, handed to log; must live as long as the session uses it. Local, at
+   any time. */
+SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+/* Root conditions; the root is node 0. */
+enum {
+    SPAR_ROOT_FREE = 0,
+    SPAR_ROOT_FIXED = 1,  /* stands still */
+    SPAR_ROOT_PINNED = 2, /* turns freely about a fixed place */
+    SPAR_ROOT_DRIVEN = 3  /* follows spar_member_drive_root */
+};
+enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
+/* Effects: what is off is not computed, stored or sent. */
+enum {
+    SPAR_EFFECT_INERTIA = 1,         /* off: each step is a static equilibrium */
+    SPAR_EFFECT_GYROSCOPIC = 2,      /* forces quadratic in the angular velocity */
+    SPAR_EFFECT_GRAVITY = 4,         /* weight */
+    SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping */
+    SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference configuration */
+    SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
+    SPAR_EFFECT_FLUID_HISTORY = 64   /* node forces kept for spar_fluid_pull_forces */
+};
+
+/* The creates: name in, unique in the session, not empty, copied. Before the first step. Members go with their
+   session. Local, but made on every rank alike and in the same order. member: out. */
+
+/* A massless node with 6 degrees of freedom that follows spar_member_set_motion or spar_member_drive_root. x: in,
+   reference place, NULL: the origin; q: in, reference orientation, NULL: none. */
+SPAR_API int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
+                               spar_member **member);
+/* A rigid body of one node. x, q: as for a point. mass: in, 36, about the node and in the frame q: m I, m c~ and J as
+   of a rigid body with its centre of mass at c; any other form is refused. Default root: free. */
+SPAR_API int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
+                               const double mass[36], spar_member **member);
+/* A geometrically exact (Simo-Reissner) beam of Legendre spectral elements. elements: in, >= 1; nodes_per_element:
+   in, 2 to 24. Needs a line (axis or nodes) and sections before the commit. Default root: fixed. */
+SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
+                              spar_member **member);
+/* The reference line by points, in the beam's own frame; the nodes are a least-squares fit, exact at both ends. n:
+   in, >= 2; eta[n]: in, strictly increasing, the first 0, the last 1; xyz[n][3]: in, m; twist[n]: in, rad about the
+   tangent, right-handed, linear between the points, NULL: 0. Replaces an earlier line. Local. */
+SPAR_API int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz,
+                                const double *twist);
+/* The nodes themselves, instead of an axis, in the beam's own frame. n: in, elements*nodes_per_element, element by
+   element (a joint stands twice, at the same place; its two orientations may differ: a kink). x[n][3]: in, m;
+   q[n][4]: in, section frames, NULL: tangent and the rule of the conventions. Local. */
+SPAR_API int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q);
+/* Sections, linear in eta between their stations and constant beyond the first and last. n: in, >= 1; eta[n]: in,
+   strictly increasing in [0,1]; stiffness[n][36]: in, N, N m, N m^2, symmetric and positive definite; mass[n][36]:
+   in, per length, kg/m, kg, kg m, of the form of a rigid section, NULL: massless. Local. */
+SPAR_API int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
+                                    const double *mass);
+/* Integration along an element. rule: in, _GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points`
+   Gauss points in each piece between section stations. points: in, 1 (Lobatto 2) to 512. Default: sections if there
+   are more than two stations, else Gauss with as many points as nodes. Commit refuses a rule too coarse for the
+   element. Local. */
+SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points);
+/* Stiffness-proportional damping: stress = C (strain + mu strain rate), per strain component in the order of the
+   stiffness. mu[6]: in, s, >= 0. Local. */
+SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
+/* Takes the member from its own frame to its reference place: x -> R(q) x + x. x: in, m, NULL: unchanged; q: in,
+   NULL: unchanged. For a point or a rigid body instead of those given to create. Local. */
+SPAR_API int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]);
+/* kind: in, SPAR_ROOT_*. Local. */
+SPAR_API int spar_member_set_root(spar_member *member, int kind);
+/* on: in, 1: the host solves this member: motion by spar_member_set_motion, loads by spar_member_get_loads; a beam
+   then needs no sections. Local. */
+SPAR_API int spar_member_set_external(spar_member *member, int on);
+/* effects: in, SPAR_EFFECT_* or-ed. Default: what the description implies (no damping given, none computed). Asking
+   for what the description has nothing for is legal and has no effect. Local. */
+SPAR_API int spar_member_set_effects(spar_member *member, int effects);
+/* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
+   step, before or after commit. Local. */
+SPAR_API int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3],
+                                      const double omega[3]);
+/* rank: in, who solves the member. Default: spread over the ranks in order of creation. Local. */
+SPAR_API int spar_member_set_owner(spar_member *member, int rank);
+/* Checks the description, that it is the same on every rank (SPAR_ERR_COMM if not), and takes all memory; nothing of
+   it can be changed afterwards. Needed before anything below. Collective. */
+SPAR_API int spar_member_commit(spar_member *member);
+
+/* State. The getters are local and answer on every rank; n is the number of nodes. During a step they give the latest
+   iterate at t^{n+1}, between steps the state at t^n. */
+
+/* nodes: out. Before commit too. */
 SPAR_API int spar_member_get_count(const spar_member *member, int64_t *nodes);
+/* Reference configuration, placed. x[n][3]: out, m; q[n][4]: out, section frames. NULL: not wanted. */
 SPAR_API int spar_member_get_reference(const spar_member *member, double *x, double *q);
-SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a); /* [n][7], [n][6], [n][6]; any may be NULL */
-SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a); /* external members and points */
-SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]); /* root motion at the end of the step begun next */
-SPAR_API int spar_member_add_load(spar_member *member, int64_t node, const double load[6]); /* dead load, kept until changed */
-SPAR_API int spar_member_get_loads(const spar_member *member, double *load); /* [n][6] nodal loads in use */
-SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]); /* what the root gives the member */
-SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]); /* kinetic, strain, gravity potential, dissipated */
+/* q[n][7], v[n][6], a[n][6]: out. NULL: not wanted. */
+SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a);
+/* For external members and points. q[n][7], v[n][6], a[n][6]: in, NULL: unchanged. During a step: the motion at
+   t^{n+1}, may be given again in every iteration; before the first step: the initial motion. Local, the same on every
+   rank. */
+SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a);
+/* Motion of a driven root, or of a point, at the end of the step begun next; within it the motion is interpolated.
+   q[7], v[6], a[6]: in; v, a NULL: 0. Between steps only; not driven anew, the root stays where it is. Local, the
+   same on every rank. */
+SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]);
+/* A dead load (global axes, does not turn) on a node, which replaces the node's earlier one and is kept. node: in, 0
+   to n-1; load[6]: in, N, N m. Local, the same on every rank. */
+SPAR_API int spar_member_add_load(spar_member *member, int64_t node, const double load[6]);
+/* load[n][6]: out, dead and fluid loads in use: those the structure is solved with; after spar_step_check those just
+   pushed. */
+SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
+/* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */
+SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);
+/* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
+   since t = 0 (up to t^n). Members spar does not solve for give zeros. */
+SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);
+/* Static equilibrium under gravity, the dead loads and the fluid loads in use, from the present state. load_steps:
+   in, >= 1, in how many parts the loads come on. Velocities become 0. Between steps. Collective. SPAR_ERR_NUMERIC:
+   not found, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
+   it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
-SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes); /* about the present state; shapes [n][nodes][6] or NULL */
+/* The n lowest modes about the present state (geometric stiffness of the stress included), the root held as it is. n:
+   in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where the stiffness is;
+   shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, NULL: not wanted. Local. */
+SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 
-/* fluids: a fluid model tied to one member on this rank; a member can have many */
+/* ---- fluids ------------------------------------------------------------------------------------------------------ */
+
+enum {
+    SPAR_PROJECT_BOUNDED = 0, /* nearest point by bounds on the squared distance: always the global one */
+    SPAR_PROJECT_RPOLY = 1    /* the spec's: all roots of the derivative of the squared distance */
+};
+/* How rotations are interpolated between the nodes of an element. Force, moment and power are conserved in both. */
+enum {
+    SPAR_INTERPOLATE_NODAL = 0,     /* the spec's: normalised sum of quaternions, sums of velocities */
+    SPAR_INTERPOLATE_CONSISTENT = 1 /* the same places; velocities are their exact derivative, moments the transpose */
+};
+enum { SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1 };
+/* Flags of a mapped node. */
+enum {
+    SPAR_MAP_END = 1,       /* its foot is an end of the line */
+    SPAR_MAP_AMBIGUOUS = 2, /* two places are equally near: smallest xi taken */
+    SPAR_MAP_FAR = 4        /* farther than max_distance */
+};
+
+/* All calls on fluids are local: a fluid is this rank's. A member can have many, from any of its ranks. n is the
+   number of nodes of the set in question. Nodes and maps change between steps only. */
+
+/* name: in, not empty, for the messages. fluid: out. */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
-SPAR_API void spar_fluid_destroy(spar_fluid **fluid); /* polars, aero objects and fluids can go before the session */
-SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x); /* reference places, [n][3] */
+/* A fluid may go before its session; its loads go with it. */
+SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
+/* Nodes that are moved, by their places in the reference configuration. n: in; x[n][3]: in, m. To be mapped. */
+SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x);
+/* Nodes that loads come from. As above. */
 SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x);
+/* Sections of a blade element model, instead: motion nodes and force nodes at given places of the line. n: in; xi[n]:
+   in, in [-1,1] over the whole beam; offset[n][3]: in, m, from the line to the node in the section frame (x tangent,
+   y, z), NULL: 0. Keeps the node forces (SPAR_EFFECT_FLUID_HISTORY) from the first pull_forces on. To be mapped. */
 SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
-     /* BE/BEMT: motion nodes = force nodes; offset [n][3] in the local section frame (x tangent, y, z), NULL: 0 */
-SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance); /* SPAR_PROJECT_BOUNDED (default), SPAR_PROJECT_RPOLY; <= 0: no limit */
-SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind); /* SPAR_INTERPOLATE_NODAL (spec), SPAR_INTERPOLATE_CONSISTENT */
-SPAR_API int spar_fluid_map(spar_fluid *fluid); /* local */
-SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n); /* local; how many nodes of SPAR_NODES_MOTION / _FORCE this fluid has on this rank */
-SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags); /* SPAR_NODES_MOTION / _FORCE; SPAR_MAP_END, _AMBIGUOUS, _FAR */
-SPAR_API int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con); /* reference foot [n][3], its orientation [n][4], foot-to-node vector [n][3] (the
-     spec's motion-con; force-con is its negative); any NULL */
-SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi); /* node the P basis values [n][P] of each fluid node begin at */
-SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v); /* at t^n + theta dt, theta in [0,1]; [n][3] each, any may be NULL */
-SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel); /* orientation now [n][4], omega [n][3], linear acceleration [n][3] */
-SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force); /* the fluid's own node forces at theta (actuator line) */
-SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment); /* at t^{n+1}; moment NULL: none */
-SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]); /* force, moment, power in; their relative errors after transfer; |x| scale; n */
+/* method: in, SPAR_PROJECT_*, default bounded; max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and
+   refused under the option fluid.far = refuse); <= 0: no limit (default). For the next spar_fluid_map. */
+SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
+/* kind: in, SPAR_INTERPOLATE_*, default nodal. */
+SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind);
+/* Finds the foot of every node on the reference line (the spec's map). The member must be committed. A joint belongs
+   to the lower element. SPAR_ERR_MAPPING: see fluid.far; the earlier map stays. */
+SPAR_API int spar_fluid_map(spar_fluid *fluid);
+/* which: in, SPAR_NODES_*; n: out, its nodes on this rank. */
+SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);
+/* xi[n]: out, of the foot, over the whole beam; distance[n]: out, m; flags[n]: out, SPAR_MAP_* or-ed. NULL: not
+   wanted. */
+SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags);
+/* x_map[n][3]: out, foot in the reference configuration, m; q_map[n][4]: out, its section frame; con[n][3]: out, from
+   the foot to the node (the spec's motion-con; its force-con is the negative). NULL: not wanted. */
+SPAR_API int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
+/* The interpolation behind the map. first_node[n]: out, node of the member the P = nodes_per_element basis values
+   begin at; phi[n][P]: out. NULL: not wanted. */
+SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi);
+/* Motion nodes at t^n + theta dt (the spec's steps 3 and 4). theta: in, in [0,1]: 1 backward Euler, 1/2
+   Crank-Nicolson, 0 explicit. x[n][3]: out, places, m; v[n][3]: out, m/s. NULL: not wanted. Before the first step:
+   the initial state. SPAR_ERR_NUMERIC: the rotations of an element's nodes cancel. */
+SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
+/* At the same nodes and time. q[n][4]: out, orientation of the section now, scalar part >= 0; omega[n][3]: out,
+   rad/s; accel[n][3]: out, acceleration of the node, m/s^2. NULL: not wanted. */
+SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
+/* The fluid's own node forces at t^n + theta dt, for an actuator line: pushed at t^n; at t^{n+1} pushed, or predicted
+   as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: asked for
+   the first time after a push without SPAR_EFFECT_FLUID_HISTORY. */
+SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
+/* Loads at t^{n+1} on the force nodes where they are now (the spec's step 7); before the first step those at t = 0.
+   Replaces what the fluid pushed before. force[n][3]: in, N; moment[n][3]: in, N m, about each node, NULL: none. A
+   refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
+   follows. */
+SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
+/* Of the last push. audit[8]: out, |force| N, |moment| about the origin N m and power W that came in from the nodes;
+   their errors after the transfer, relative to the sum of their parts' sizes; largest |x| of a node, m; n. */
+SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]);
 
-/* one coupling step; all collective over the session */
-SPAR_API int spar_step_begin(spar_session *session, double dt); /* predict the loads at t^{n+1} */
-SPAR_API int spar_step_solve(spar_session *session); /* structure to t^{n+1}, in substeps, from t^n every time it is called */
-SPAR_API int spar_step_check(spar_session *session, int *done); /* loads pushed -> nodes -> residual -> next loads */
+/* ---- one coupling step ------------------------------------------------------------------------------------------- */
+
+/* All collective. A step is begun, solved, checked, as often as it takes, and accepted or rejected; a call out of
+   this order is SPAR_ERR_STATE. After a failure the state at t^n is untouched: reject, and begin anew if you will. */
+
+/* Step 1: predicts the loads at t^{n+1} = t^n + dt. dt: in, s, > 0, the same on every rank; may differ from step to
+   step. */
+SPAR_API int spar_step_begin(spar_session *session, double dt);
+/* Step 2: the structure from t^n to t^{n+1} under the loads in use, in substeps; from t^n every time it is called.
+   SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. */
+SPAR_API int spar_step_solve(spar_session *session);
+/* Step 8: gathers the loads pushed on all ranks, forms the residual and the next loads. done: out, 1: accept, 0:
+   solve again. SPAR_ERR_NUMERIC: no convergence in max_iterations; SPAR_ERR_UNSUPPORTED: a scheme that is not there
+   yet. */
+SPAR_API int spar_step_check(spar_session *session, int *done);
+/* The clock moves to t^{n+1}. */
 SPAR_API int spar_step_accept(spar_session *session);
-SPAR_API int spar_step_reject(spar_session *session); /* back to t^n, as if the step had not begun */
+/* Back to t^n, as if the step had not begun. */
+SPAR_API int spar_step_reject(spar_session *session);
+/* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
+   success; anything else ends the step with SPAR_ERR_USER. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
+/* The whole step. dt: in, s; solve: in, NULL: no fluid; context: in, handed to solve; iterations: out, how many it
+   took, NULL: not wanted. Accepts, or after a failure of any part rejects and answers that part's status. */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
+
+/* State between steps to and from a file. path: in. load: into a session with the same members, committed.
+   Collective. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
-/* log: silent by default */
-typedef void (*spar_log)(const spar_session *session, int level, const char *text, void *context);
-SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
 
 #ifdef __cplusplus
 }

@@ -1,13 +1,15 @@
 /* spar_aero.h: blade element with momentum theory, the fluid that comes with the library.
 
-   Quasi-steady: lift, drag and pitching moment from polars and the wind relative to the moving section, with or without the
-   induced velocity of momentum theory (Ning 2014, doi 10.1002/we.1636). It is made on the calls of spar.h alone.
+   Quasi-steady: lift, drag and pitching moment from polars and the wind relative to the moving section, with or
+   without the induced velocity of momentum theory (Ning 2014, doi 10.1002/we.1636). It is made on the calls of spar.h
+   alone.
 
-   A section is a place of a fluid (spar_fluid_set_sections); its aerodynamic centre is the fluid's node. Its frame is the one
-   spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x cross y. A twist given
-   here is measured from that frame: where the beam's own frames already carry the blade's twist, give the difference (or 0).
-   All calls are local to the rank: an object holds the blades whose fluids live on this rank, which may be none. An object is used by
-   one thread at a time. Angles are in radians; blades and sections are counted from 0. */
+   A section is a place of a fluid (spar_fluid_set_sections); its aerodynamic centre is the fluid's node. Its frame is
+   the one spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x
+   cross y. A twist given here is measured from that frame: where the beam's own frames already carry the blade's
+   twist, give the difference (or 0). All calls are local to the rank: an object holds the blades whose fluids live on
+   this rank, which may be none. An object is used by one thread at a time. Angles are in radians; blades and sections
+   are counted from 0. */
 #ifndef SPAR_AERO_H
 #define SPAR_AERO_H
 
@@ -22,7 +24,7 @@ typedef struct spar_aero spar_aero;
 
 /* Effects. What is off costs nothing. */
 enum {
-    SPAR_AERO_INDUCTION = 1, /* momentum theory; needs spar_aero_set_rotor. The four below it are without meaning when it is off. */
+    SPAR_AERO_INDUCTION = 1, /* momentum theory; needs spar_aero_set_rotor. Without it the next three mean nothing. */
     SPAR_AERO_TIP_LOSS = 2,  /* Prandtl's factor of the tip */
     SPAR_AERO_HUB_LOSS = 4,  /* Prandtl's factor of the hub; none where hub_radius is 0 */
     SPAR_AERO_SWIRL = 8,     /* tangential induction */
@@ -33,57 +35,69 @@ enum {
 enum { SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2 };
 /* Flags of a section in the last solve. */
 enum {
-    SPAR_AERO_FLAG_END = 1,         /* at the radius of tip or hub, where the loss factor is 0: axial induction 1, no swirl */
-    SPAR_AERO_FLAG_NO_ROOT = 2,     /* no inflow angle balances the momentum (or none is defined): solved without induction */
+    SPAR_AERO_FLAG_END = 1, /* at the radius of tip or hub, where the loss factor is 0: axial induction 1, no swirl */
+    SPAR_AERO_FLAG_NO_ROOT = 2,     /* no inflow angle balances the momentum: solved without induction */
     SPAR_AERO_FLAG_BEYOND_POLAR = 4 /* angle of attack outside the rows of the polar: the nearer end is used */
 };
 
-/* A polar: n >= 2 rows, alpha strictly increasing, over a full turn at most. cm NULL: 0. The arrays are copied. A table over the
-   full turn has the same coefficients in its first and last row and goes round; an angle that a shorter one does not cover takes the
-   nearer end's values and flags the section. Refused tables name the row (spar_session_message(NULL)). */
-SPAR_API int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm, spar_polar **polar);
-/* SPAR_POLAR_LINEAR (default), _AKIMA or _CUBIC; periodic for a table over the full turn. Sections set before keep what they had. */
+/* A polar: n >= 2 rows, alpha strictly increasing, over a full turn at most. cm NULL: 0. The arrays are copied. A
+   table over the full turn has the same coefficients in its first and last row and goes round; an angle that a
+   shorter one does not cover takes the nearer end's values and flags the section. Refused tables name the row
+   (spar_session_message(NULL)). */
+SPAR_API int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm,
+                               spar_polar **polar);
+/* SPAR_POLAR_LINEAR (default), _AKIMA or _CUBIC; periodic for a table over the full turn. Sections set before keep
+   what they had. */
 SPAR_API int spar_polar_set_interpolation(spar_polar *polar, int kind);
 /* The coefficients at one angle; any output NULL. */
 SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm);
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
-/* A rotor or wing: one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with the same number
-   n >= 2 of sections, in order from root to tip at different places. blades 0 with NULL: a rank without blades. The fluids
-   stay the caller's and must outlive the object's last solve; map them anew and the object must be made anew. */
-SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero); /* fluids made with set_sections, one per blade */
+/* A rotor or wing: one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with the
+   same number n >= 2 of sections, in order from root to tip at different places. blades 0 with NULL: a rank without
+   blades. The fluids stay the caller's and must outlive the object's last solve; map them anew and the object must be
+   made anew. */
+SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero);
 SPAR_API void spar_aero_destroy(spar_aero **aero);
-/* Section i of every blade: chord >= 0, twist, polar. */
-SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar); /* same for every blade; twist rad, the spec's tau:
-     positive turns the leading edge into the wind and lowers the angle of attack, i.e. minus a right-handed turn about the section's x */
-/* The shaft: a point of its axis, its direction (any length but 0), the radii, measured from the axis, where the blades begin and
-   end. The first call also takes the sections' distances from the axis in the reference configuration, which the tip and hub losses
-   are computed with (a bent blade's tip is still its tip); later calls move the shaft. */
-SPAR_API int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius, double tip_radius); /* axis: shaft, pointing downwind */
-/* How the blades are made: 1 (default) for a rotor that turns right-handed about the downwind axis (clockwise for who looks
-   downwind), z towards the pressure side; -1 for its mirror image, whose sections have z towards the suction side and whose
-   positive twist is a right-handed turn about x. Either may be turned backwards: the sections then meet the flow with the trailing edge. */
+/* Section i of every blade: chord >= 0 in m, twist in rad, polar. The twist is the spec's tau: positive turns the
+   leading edge into the wind and lowers the angle of attack, i.e. minus a right-handed turn about the section's x. */
+SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
+/* The shaft: a point of its axis in m, its direction (any length but 0), pointing downwind, the radii in m, measured
+   from the axis, where the blades begin and end. The first call also takes the sections' distances from the axis in
+   the reference configuration, which the tip and hub losses are computed with (a bent blade's tip is still its tip);
+   later calls move the shaft. */
+SPAR_API int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius,
+                                 double tip_radius);
+/* How the blades are made: 1 (default) for a rotor that turns right-handed about the downwind axis (clockwise for who
+   looks downwind), z towards the pressure side; -1 for its mirror image, whose sections have z towards the suction
+   side and whose positive twist is a right-handed turn about x. Either may be turned backwards: the sections then
+   meet the flow with the trailing edge. */
 SPAR_API int spar_aero_set_turn(spar_aero *aero, int turn);
 /* Blades of the whole rotor, for the solidity, where other ranks hold some of them; default: those given to create. */
 SPAR_API int spar_aero_set_blades(spar_aero *aero, int total);
 /* SPAR_AERO_* or-ed. Default: drag; moments where a polar has any; all of momentum theory once the rotor is set. */
-SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects); /* SPAR_AERO_INDUCTION, _TIP_LOSS, _HUB_LOSS, _SWIRL, _DRAG, _MOMENT */
-/* Pulls the motion at theta, finds the loads in the wind inflow [blades][n][3] (global axes, undisturbed by the rotor), and
-   pushes them. Loads per length are linear between the sections and nothing lies beyond the first and the last; each interval (as
-   long as its ends are apart in the reference configuration) gives its ends the consistent shares L/6 (2 f1 + f2), L/6 (f1 + 2 f2).
-   Same input, same result: nothing is remembered from the solve before. No memory is taken. After a failure the loads are as they
-   were, and the check of a step under way fails on all ranks unless a later solve succeeds. */
-SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta); /* wind at all sections [blades][n][3]; pulls motion, pushes forces */
-/* Of the blades on this rank in the last solve, needs set_rotor: force along the axis, moment about the axis (right-handed),
-   moment times rotor speed, which is the mean of the blades' first sections' angular velocity about the axis. Any NULL. */
+SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
+/* Pulls the motion at theta, finds the loads in the wind inflow [blades][n][3] (m/s, global axes, undisturbed by the
+   rotor), and pushes them. Loads per length are linear between the sections and nothing lies beyond the first and the
+   last; each interval (as long as its ends are apart in the reference configuration) gives its ends the consistent
+   shares L/6 (2 f1 + f2), L/6 (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before. No
+   memory is taken. After a failure the loads are as they were, and the check of a step under way fails on all ranks
+   unless a later solve succeeds. */
+SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta);
+/* Of the blades on this rank in the last solve, needs set_rotor: force along the axis, moment about the axis
+   (right-handed), moment times rotor speed, which is the mean of the blades' first sections' angular velocity about
+   the axis. Any NULL. */
 SPAR_API int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power);
-/* Angle of attack, coefficients, inductions: the flow is (1 - a) of the free flow across the disc and (1 + a_tangential) of that
-   along it, both taken in the section's plane; 0 where that free flow is 0. */
-SPAR_API int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a, double *a_tangential); /* [blades][n], any NULL */
+/* In the last solve, [blades][n] each, any NULL: angle of attack, coefficients, inductions: the flow is (1 - a) of
+   the free flow across the disc and (1 + a_tangential) of that along it, both taken in the section's plane; 0 where
+   that free flow is 0. */
+SPAR_API int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
+                                    double *a_tangential);
 /* SPAR_AERO_FLAG_* or-ed [blades][n], and how many sections had no root; any NULL. */
 SPAR_API int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root);
-/* Loads, global axes: per unit of span [blades][n][6] (force, moment), and as pushed, force and moment [blades][n][3]; any NULL. */
+/* Loads, global axes: per unit of span [blades][n][6] (force, moment), and as pushed, force and moment
+   [blades][n][3]; any NULL. */
 SPAR_API int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment);
 
 #ifdef __cplusplus

@@ -84,7 +84,7 @@ int spari_fail(spar_session *session, int status, const char *format, ...) {
     va_end(arguments);
     memcpy(session ? session->message : thread_message, text, sizeof text);
     if (session && session->log) {
-        session->log(session, SPARI_LOG_ERROR, session->message, session->log_context);
+        session->log(session, SPAR_LOG_ERROR, session->message, session->log_context);
     }
     return status;
 }

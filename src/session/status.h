@@ -13,9 +13,6 @@
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
 
-/* levels of the log callback */
-enum { SPARI_LOG_ERROR = 0, SPARI_LOG_WARNING = 1, SPARI_LOG_INFO = 2, SPARI_LOG_DEBUG = 3 };
-
 /* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
    thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
 int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
