@@ -147,29 +147,27 @@ static void test_glauert(void **state) {
 }
 
 /* Both balances with velocities: what the flow found by the solver gives the blade, and what the annulus then takes up.
-   Axial: 4 F a(1 - a) up to a = 0.4, Buhl's parabola 8/9 + (4F - 40/9) a + (50/9 - 4F) a^2 up to a = 1, 4 F a(a - 1) in
-   the brake. Returns the larger error, relative to the terms. */
+   Axial: 4 F a(1 - a) up to a = 0.4, Buhl's parabola 8/9 + (4F - 40/9) a + (50/9 - 4F) a^2 up to a = 1, beyond the
+   larger of 4 F a(a - 1) and the parabola's tangent at a = 1. Swirl: 4 F v times the mass flow |wx|, by half a degree
+   of phi more than that. Returns the larger error, relative to the terms. */
 static double imbalance(const spari_annulus *ring, double wx, double wy) {
-    double side = ring->vx < 0.0 ? -1.0 : 1.0, vx = fabs(ring->vx), flow = side * wx, speed2 = wx * wx + wy * wy;
-    double cl = bumpy_lift(remainder(atan2(wx, wy) - ring->twist, 2.0 * PI)), s = fabs(wx) / sqrt(speed2);
-    double loss = 1.0;
+    double side = ring->vx < 0.0 ? -1.0 : 1.0, vx = fabs(ring->vx), flow = side * wx, speed = hypot(wx, wy);
+    double cl = bumpy_lift(remainder(atan2(wx, wy) - ring->twist, 2.0 * PI)), s = fabs(wx) / speed, disc, loss = 1.0;
     loss *= ring->tip < 0.0 ? 1.0 : 2.0 / PI * acos(exp(-ring->tip / s));
     loss *= ring->hub < 0.0 ? 1.0 : 2.0 / PI * acos(exp(-ring->hub / s));
-    double blade_axial = side * ring->sigma * sqrt(speed2) * cl * wy, a = 1.0 - flow / vx, disc;
-    if (vx == 0.0) {
-        disc = -4.0 * loss * flow * flow; /* hover: a vx = -flow */
-        disc = copysign(disc, -flow);
-    } else if (a > 1.0) {
-        disc = 4.0 * loss * a * (a - 1.0) * vx * vx;
-    } else if (a <= 0.4) {
-        disc = 4.0 * loss * a * (1.0 - a) * vx * vx;
-    } else {
+    if (flow >= 0.6 * vx) { /* a vx = vx - flow; so written, vx may be 0 */
+        disc = 4.0 * loss * (vx - flow) * flow;
+    } else if (flow >= 0.0) {
+        double a = 1.0 - flow / vx;
         disc = (8.0 / 9.0 + (4.0 * loss - 40.0 / 9.0) * a + (50.0 / 9.0 - 4.0 * loss) * a * a) * vx * vx;
+    } else {
+        disc = fmax(4.0 * loss * (vx - flow) * -flow, 2.0 * vx * vx + (20.0 / 3.0 - 4.0 * loss) * -flow * vx);
     }
-    double axial = fabs(blade_axial - disc) / fmax(fabs(blade_axial) + fabs(disc), 1e-6 * speed2);
-    double blade_swirl = ring->sigma * sqrt(speed2) * cl * wx, wake = 4.0 * loss * (wy - ring->vy) * fabs(wx);
-    double swirl = fabs(blade_swirl - wake) /
-                   fmax(fabs(blade_swirl) + 4.0 * loss * fabs(wx) * (fabs(wy) + fabs(ring->vy)), 1e-6 * speed2);
+    double axial_force = side * ring->sigma * speed * cl * wy, torque = ring->sigma * speed * cl * wx;
+    double axial = fabs(axial_force - disc) / fmax(fabs(axial_force) + fabs(disc), 1e-6 * speed * speed);
+    double mass = s < 0.01 ? fabs(wx) / spari_swirl_sign(s) : fabs(wx), wake = 4.0 * loss * (wy - ring->vy) * mass;
+    double size = fabs(torque) + 4.0 * loss * mass * (fabs(wy) + fabs(ring->vy));
+    double swirl = fabs(torque - wake) / fmax(size, 1e-6 * speed * speed);
     return fmax(axial, ring->swirl ? swirl : fabs(wy - ring->vy) / fmax(1e-3, fabs(ring->vy)));
 }
 
@@ -318,18 +316,55 @@ static void test_continuous(void **state) {
     for (double phi = 0.02; phi < 3.1; phi += 1e-4) {
         spari_balance x = spari_momentum_balance(&ring, phi), y = spari_momentum_balance(&ring, phi + 1e-7);
         assert_true(isfinite(x.residual) && fabs(x.residual - y.residual) < 1e-3);
-        seen_empirical |= x.k > 25.0 / 18.0;
-        seen_momentum |= x.k < 2.0 / 3.0;
+        double a = 1.0 - sin(phi) / x.g;
+        seen_empirical |= a > 0.6;
+        seen_momentum |= a < 0.4;
     }
     assert_true(seen_empirical && seen_momentum);
     bench_free(&b);
 }
 
+/* The flow found follows the free flow without a jump, through windmill, empirical state, brake, calm air and wind from
+   behind: a coupling iteration can meet them all. Attached lift 2 pi sin alpha; in steps of 1e-4 of the speed the
+   induced flow moves by less than 1e-2 of it (a slope of 100, that of sqrt at the edge of calm air aside, which is why
+   the limit is not 1e-3). */
+static void test_no_jump(void **state) {
+    (void)state;
+    double alpha[721], cl[721];
+    for (int i = 0; i < 721; i++) {
+        alpha[i] = (0.5 * i - 180.0) * PI / 180.0;
+        cl[i] = 2.0 * PI * sin(alpha[i]);
+    }
+    static const double cd[721];
+    bench b = {NULL, NULL, {0, 0, 0}, gsl_root_fsolver_alloc(gsl_root_fsolver_brent)};
+    assert_int_equal(spar_polar_create(721, alpha, cl, cd, NULL, &b.polar), SPAR_OK);
+    b.table = spari_polar_share(b.polar);
+    double worst = 0.0;
+    for (int k = 0; k < 12; k++) {
+        double vy = 50.0, last[2] = {NAN, NAN};
+        spari_annulus ring = annulus_of(&b, 0.0, vy, k % 2 ? 0.03 : 0.1);
+        ring.tip = k % 3 ? 0.05 * k : -1.0;
+        ring.twist = 0.05 * (k / 2 - 1);
+        for (double vx = 20.0; vx > -20.0; vx -= 1e-4 * vy) {
+            double wx, wy;
+            ring.vx = vx;
+            assert_int_equal(spari_momentum_solve(&ring, b.solver, &wx, &wy), 0);
+            if (isfinite(last[0])) {
+                worst = fmax(worst, hypot(wx - last[0], wy - last[1]) / vy);
+            }
+            last[0] = wx, last[1] = wy;
+        }
+    }
+    print_message("largest step of the flow %.1e\n", worst);
+    assert_true(worst < 1e-2);
+    bench_free(&b);
+}
+
 int main(void) {
     spari_gsl_quiet();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_prandtl), cmocka_unit_test(test_betz),
-                                       cmocka_unit_test(test_glauert), cmocka_unit_test(test_random),
-                                       cmocka_unit_test(test_region),  cmocka_unit_test(test_mirror),
-                                       cmocka_unit_test(test_corners), cmocka_unit_test(test_continuous)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_prandtl), cmocka_unit_test(test_betz),       cmocka_unit_test(test_glauert),
+        cmocka_unit_test(test_random),  cmocka_unit_test(test_region),     cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_corners), cmocka_unit_test(test_continuous), cmocka_unit_test(test_no_jump)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

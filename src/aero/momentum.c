@@ -3,22 +3,33 @@
 #include <gsl/gsl_math.h>
 #include <math.h>
 
-/* The equation is not defined at phi = 0, where it may jump; brackets keep this distance from 0 and from +-pi. */
+/* Where cl < 0 the equation has a pole at phi = 0; brackets begin this far from it. */
 #define SPARI_PHI_MIN 1e-8
+/* sin phi below which the swirl fades towards that of the other side. */
+#define SPARI_SWIRL_SINE 0.01
 enum { SPARI_SCAN = 32, SPARI_BRENT_MAX = 100 };
 
 double spari_prandtl(double f, double sin_phi) {
     return f < 0.0 ? 1.0 : M_2_PI * acos(exp(-f / fabs(sin_phi)));
 }
 
-static double axial(double sin_phi, double k, double loss) {
-    if (sin_phi < 0.0) {
-        return sin_phi * (1.0 - k);
+double spari_swirl_sign(double sin_phi) {
+    double x = fmax(-1.0, fmin(1.0, sin_phi / SPARI_SWIRL_SINE));
+    return x * (1.5 - 0.5 * x * x);
+}
+
+/* g of sin phi = s, F and K = k s^2, which stays finite where s is 0. */
+static double axial(double s, double big_k, double loss) {
+    double s2 = s * s;
+    if (s < 0.0) {
+        double slope = 20.0 / 3.0 - 4.0 * loss, brake = s - big_k / s;
+        double tangent = 0.25 * (sqrt(fmax(0.0, slope * slope * s2 + 32.0 * loss * big_k)) + slope * s);
+        return fmin(brake, tangent);
     }
-    if (k <= 2.0 / 3.0) {
-        return sin_phi * (1.0 + k);
+    if (big_k <= 2.0 / 3.0 * s2) {
+        return big_k == 0.0 ? s : s + big_k / s;
     }
-    return sin_phi * (5.0 / 3.0 - loss + sqrt(loss * (2.0 * k - 4.0 / 3.0 + loss)));
+    return s * (5.0 / 3.0 - loss) + sqrt(loss * (2.0 * big_k - (4.0 / 3.0 - loss) * s2));
 }
 
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi) {
@@ -29,9 +40,9 @@ spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi) {
     double lift = side * annulus->sigma * spari_table_lift(annulus->table, place, annulus->accel);
     spari_balance b;
     b.loss = spari_prandtl(annulus->tip, s) * spari_prandtl(annulus->hub, s);
-    b.k = lift * c / (4.0 * b.loss * s * s);
-    b.g = axial(s, b.k, b.loss);
-    b.h = annulus->swirl ? c - (s < 0.0 ? -lift : lift) / (4.0 * b.loss) : c;
+    double share = lift / (4.0 * b.loss);
+    b.g = axial(s, share * c, b.loss);
+    b.h = annulus->swirl ? c - spari_swirl_sign(s) * share : c;
     b.residual = annulus->vy * b.g - fabs(annulus->vx) * b.h;
     return b;
 }
@@ -93,22 +104,22 @@ static int is_free(const spari_annulus *annulus) {
 }
 
 int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy) {
-    /* Quadrants in the order of likelihood for vy >= 0 (Ning's: windmill, brake, tangential flow reversed); the other
-       way round for vy < 0. Each begins at the end where the equation changes fastest. */
-    static const double quadrant[4][2] = {{SPARI_PHI_MIN, M_PI_2},
-                                          {-SPARI_PHI_MIN, -M_PI_2},
-                                          {M_PI - SPARI_PHI_MIN, M_PI_2},
-                                          {SPARI_PHI_MIN - M_PI, -M_PI_2}};
+    /* Quadrants in the order of likelihood for vy >= 0 (Ning's: windmill, brake, then tangential flow reversed); the
+       halves change places for vy < 0. Each begins at the end where the equation changes fastest; the short pieces are
+       what lies between two. */
+    static const double range[6][2] = {{SPARI_PHI_MIN, M_PI_2},         {-SPARI_PHI_MIN, -M_PI_2},
+                                       {-SPARI_PHI_MIN, SPARI_PHI_MIN}, {M_PI - SPARI_PHI_MIN, M_PI_2},
+                                       {SPARI_PHI_MIN - M_PI, -M_PI_2}, {M_PI - SPARI_PHI_MIN, M_PI + SPARI_PHI_MIN}};
     double phi, speed;
     *wx = annulus->vx;
     *wy = annulus->vy;
     if (is_free(annulus)) {
         return 0;
     }
-    int first = annulus->vy < 0.0 ? 2 : 0;
+    int first = annulus->vy < 0.0 ? 3 : 0;
     for (int parts = 1; parts <= SPARI_SCAN; parts += SPARI_SCAN - 1) {
-        for (int i = 0; i < 4; i++) {
-            if (search(annulus, solver, quadrant[(first + i) % 4], parts, &phi, &speed)) {
+        for (int i = 0; i < 6; i++) {
+            if (search(annulus, solver, range[(first + i) % 6], parts, &phi, &speed)) {
                 *wx = (annulus->vx < 0.0 ? -speed : speed) * sin(phi);
                 *wy = speed * cos(phi);
                 return 0;

@@ -3,16 +3,19 @@
 
    In the plane of the section, p is the direction of the shaft axis (downwind) and s that of the flow a turning blade
    meets. The free flow is vx p + vy s, the flow with induction W (sin phi p + cos phi s). With solidity sigma = B c /
-   (2 pi r), loss factor F, lift alone (drag takes no part in either induction) and S = sign(vx), balance of axial and
-   of angular momentum give |vx| / W = g(phi),   vy / W = h(phi) = cos phi - S sign(phi) sigma cl / (4 F), where, with k
-   = S sigma cl cos phi / (4 F sin^2 phi), g = sin phi (1 + k)                                              k <= 2/3,
-   phi > 0: momentum theory g = sin phi (5/3 - F + sqrt(2 F k - F (4/3 - F)))                k > 2/3, phi > 0: Buhl's
-   empirical curve g = sin phi (1 - k)                                              phi < 0: propeller brake, sound for
-   k > 1 (angles turned so that vx counts as positive). The residual vy g - |vx| h has no pole and no singular place in
-   (-pi, 0) and in (0, pi), for any vx >= 0 and any vy: it is Ning's with the denominators cleared, and Buhl's root
-   written so that its removable singularity is gone. The swirl goes with the mass flow's size, so the brake's torque
-   keeps its sign. In the brake Ning takes the signed flow; the sign here follows from the torque the wake must carry.
- */
+   (2 pi r), loss factor F and lift alone (drag takes no part in either induction), angles turned so that vx counts as
+   positive and k = sigma cl cos phi / (4 F sin^2 phi), balance of axial and of angular momentum give vx / W = g(phi),
+   vy / W = h(phi) = cos phi - sign(phi) sigma cl / (4 F), where g = sin phi / (1 - a) follows from the thrust
+   coefficient CT = 4 F k (1 - a)^2 of the annulus, which is 4 F a (1 - a)                                     k <= 2/3,
+   phi > 0 (a <= 0.4): momentum theory 8/9 + (4F - 40/9) a + (50/9 - 4F) a^2             k > 2/3, phi > 0 (a < 1):
+   Buhl's empirical curve max(4 F a (a - 1), 2 + (20/3 - 4F) (a - 1))       phi < 0 (a > 1): propeller brake, k > 1
+   Ning's brake is the first of the two alone. It leaves a jump from a = 1 to where 4 F a (a - 1) = 2, which the flow of
+   a blade that gives way downwind would leap over to and fro for ever; Buhl's curve continued by its tangent bridges
+   it. So that the swirl does not jump at phi = 0 either, sign(phi) rises smoothly from -1 to 1 within half a degree.
+
+   The residual vy g - vx h is Ning's with the denominators cleared, and Buhl's root written without its removable
+   singularity. For cl > 0 it is continuous across phi = 0, and it has no pole anywhere else, for any vx >= 0 and any
+   vy. */
 #ifndef SPARI_MOMENTUM_H
 #define SPARI_MOMENTUM_H
 
@@ -31,13 +34,15 @@ typedef struct spari_annulus {
 
 /* What the equation says at an inflow angle, angles and flow turned so that vx >= 0. */
 typedef struct spari_balance {
-    double residual; /* vy g - |vx| h */
-    double g, h;     /* |vx| / W and vy / W if phi were the root */
-    double k, loss;  /* Ning's k and the factor F */
+    double residual; /* vy g - vx h */
+    double g, h;     /* vx / W and vy / W if phi were the root */
+    double loss;     /* the factor F */
 } spari_balance;
 
 /* Prandtl's factor 2/pi acos(exp(-f / |sin phi|)); f < 0: 1. */
 double spari_prandtl(double f, double sin_phi);
+/* Smooth sign of sin phi: -1 or 1 but near 0. */
+double spari_swirl_sign(double sin_phi);
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi);
 
 /* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 when no inflow angle balances: then the flow is the
