@@ -335,72 +335,61 @@ static int write_span(const rotor_report *r, const figures *f) {
     return finish(file, "span.csv");
 }
 
-static int write_script(const rotor_report *r, const figures *f) {
-    FILE *file = create(r, "plots.gp");
-    if (!file) {
-        return 1;
-    }
-    char scene[128];
-    snprintf(scene, sizeof scene, "NREL 5-MW, %g m/s, %.4g rev/min, %s blades", r->options->wind, r->speed * 30 / pi,
-             r->options->rigid ? "rigid" : "flexible");
-    fprintf(file, "set terminal pngcairo size 1200,720 font 'sans,13' linewidth 1.6\n"
-                  "set datafile separator ','\nset grid linecolor rgb '#dddddd'\nset border 3 linecolor rgb '#555555'\n"
-                  "set tics nomirror\nset key outside top center horizontal samplen 2 font ',12'\n"
-                  "blade = '#0b5fa5 #d1603d #3c8d5a'\nset lmargin 12\nset rmargin 4\n");
-    /* two panels over time, one line per blade */
-    static const struct {
-        const char *name, *title, *label[2];
-        int column;
-        double scale;
-    } pair[] = {{"tip", "Tip deflection", {"flap, downwind (m)", "edge, to the trailing edge (m)"}, ROTOR_FLAP, 1},
-                {"root",
-                 "Bending moment at the root",
-                 {"flap, downwind (MN m)", "edge, to the trailing edge (MN m)"},
-                 ROTOR_FLAP_MOMENT,
-                 1e-6}};
-    for (int p = 0; p < 2; p++) {
-        fprintf(file, "\nset output '%s.png'\nset multiplot layout 2,1 title '%s: %s' font ',15'\n", pair[p].name,
-                pair[p].title, scene);
-        for (int k = 0; k < 2; k++) {
-            fprintf(file, "set xlabel '%s'\nset ylabel '%s'\nplot [0:%g] \\\n", k == 1 ? "time (s)" : "",
-                    pair[p].label[k], r->options->seconds);
-            for (int b = 0; b < r->rotor->blades; b++) {
-                fprintf(file,
-                        "  'history.csv' using 1:($%d*%g) with lines linecolor rgb word(blade,%d) title 'blade %d'%s\n",
-                        ROTOR_BLADES + b * ROTOR_PER_BLADE + pair[p].column + k + 1, pair[p].scale, b % 3 + 1, b + 1,
-                        b + 1 < r->rotor->blades ? ", \\" : "");
-            }
+/* One of two panels over time. */
+static void put_panel(const rotor_report *r, FILE *file, int lower, const char *label) {
+    fprintf(file, "set xlabel '%s'\nset ylabel '%s'\n%s\nplot [0:%g] \\\n", lower ? "time (s)" : "", label,
+            lower ? "unset key" : "set key outside top right horizontal samplen 2 font ',12'", r->options->seconds);
+}
+
+/* A column of each blade, and the one after it, over time. */
+static void put_blades(const rotor_report *r, FILE *file, const char *name, const char *title, int column, double scale,
+                       const char *unit) {
+    static const char *const direction[] = {"flap, downwind", "edge, to the trailing edge"};
+    fprintf(file, "\nset output '%s.png'\nset multiplot layout 2,1 title '%s: '.scene font ',15'\n", name, title);
+    for (int k = 0; k < 2; k++) {
+        char label[64];
+        snprintf(label, sizeof label, "%s (%s)", direction[k], unit);
+        put_panel(r, file, k, label);
+        for (int b = 0; b < r->rotor->blades; b++) {
+            fprintf(file,
+                    "  'history.csv' using 1:($%d*%g) with lines linecolor rgb word(shade,%d) title 'blade %d'%s\n",
+                    ROTOR_BLADES + b * ROTOR_PER_BLADE + column + k + 1, scale, b % 3 + 1, b + 1,
+                    b + 1 < r->rotor->blades ? ", \\" : "");
         }
-        fprintf(file, "unset multiplot\n");
     }
+    fprintf(file, "unset multiplot\n");
+}
+
+static void put_power(const rotor_report *r, FILE *file) {
+    fprintf(file, "\nset output 'power.png'\nset multiplot layout 2,1 title 'Thrust and power: '.scene font ',15'\n");
+    put_panel(r, file, 0, "thrust (kN)");
+    fprintf(file, "  'history.csv' using 1:($%d*1e-3) with lines linecolor rgb word(shade,1) notitle\n",
+            ROTOR_THRUST + 1);
+    put_panel(r, file, 1, "power (MW)");
     fprintf(file,
-            "\nset output 'power.png'\nset multiplot layout 2,1 title 'Thrust and power: %s' font ',15'\nunset key\n",
-            scene);
-    fprintf(
-        file,
-        "set xlabel ''\nset ylabel 'thrust (kN)'\nplot [0:%g] 'history.csv' using 1:($%d*1e-3) with lines linecolor "
-        "rgb word(blade,1)\n",
-        r->options->seconds, ROTOR_THRUST + 1);
+            "  'history.csv' using 1:($%d*1e-6) with lines linecolor rgb word(shade,2) notitle\nunset multiplot\n",
+            ROTOR_POWER + 1);
+}
+
+/* Mean of a span load over the radius and the band between least and most. */
+static void put_band(FILE *file, int load, int shade, const char *pale, const char *title) {
+    int column = 2 + 3 * load;
     fprintf(file,
-            "set xlabel 'time (s)'\nset ylabel 'power (MW)'\nplot [0:%g] 'history.csv' using 1:($%d*1e-6) with lines "
-            "linecolor rgb word(blade,2)\nunset multiplot\n",
-            r->options->seconds, ROTOR_POWER + 1);
+            "  'span.csv' using 1:($%d*1e-3):($%d*1e-3) with filledcurves fillcolor rgb '%s' notitle, \\\n"
+            "  'span.csv' using 1:($%d*1e-3) with linespoints pointtype 7 pointsize 0.8 linecolor rgb word(shade,%d) "
+            "title '%s (mean; band: range)'",
+            column + 1, column + 2, pale, column, shade, title);
+}
+
+static void put_span(const rotor_report *r, FILE *file, const figures *f) {
     fprintf(file,
-            "\nset output 'span.png'\nset key inside top left vertical reverse Left font ',12'\n"
-            "set title 'Loads along the span of blade 1: %s' font ',15'\nset xlabel 'radius (m)'\n"
-            "set ylabel 'force per length (kN/m)'\nset yrange [*:*]\nset offsets 0,0,graph 0.05,0\n"
-            "plot [0:%g] \\\n",
-            scene, r->turbine->tip_radius);
-    fprintf(file,
-            "  'span.csv' using 1:($%d*1e-3):($%d*1e-3) with filledcurves fillcolor rgb '#c6dbef' notitle, \\\n"
-            "  'span.csv' using 1:($%d*1e-3):($%d*1e-3) with filledcurves fillcolor rgb '#f6d5c9' notitle, \\\n",
-            3 + 3 * ROTOR_AXIAL, 4 + 3 * ROTOR_AXIAL, 3 + 3 * ROTOR_TANGENTIAL, 4 + 3 * ROTOR_TANGENTIAL);
-    fprintf(file,
-            "  'span.csv' using 1:($%d*1e-3) with linespoints pointtype 7 pointsize 0.8 linecolor rgb word(blade,1) "
-            "title 'along the shaft, downwind (mean; band: range)', \\\n"
-            "  'span.csv' using 1:($%d*1e-3) with linespoints pointtype 7 pointsize 0.8 linecolor rgb word(blade,2) "
-            "title 'in the disc, driving (mean; band: range)'",
-            2 + 3 * ROTOR_AXIAL, 2 + 3 * ROTOR_TANGENTIAL);
+            "\nset output 'span.png'\nset title 'Loads along the span of blade 1: '.scene font ',15'\n"
+            "set key inside top left vertical reverse Left font ',12'\nset xlabel 'radius (m)'\n"
+            "set ylabel 'force per length (kN/m)'\nset offsets 0,0,graph 0.05,0\nplot [0:%g] \\\n",
+            r->turbine->tip_radius);
+    put_band(file, ROTOR_AXIAL, 1, "#c6dbef", "along the shaft, downwind");
+    fprintf(file, ", \\\n");
+    put_band(file, ROTOR_TANGENTIAL, 2, "#f6d5c9", "in the disc, driving");
     if (f->axial > 0) {
         fprintf(file,
                 ", \\\n  'span.csv' using 1:($%d*1e-3) with points pointtype 6 pointsize 1.8 linecolor rgb '#222222' "
@@ -408,6 +397,23 @@ static int write_script(const rotor_report *r, const figures *f) {
                 2 + 3 * ROTOR_SPAN, f->same ? "" : " (rigid, no tilt, no precone)");
     }
     fputc('\n', file);
+}
+
+static int write_script(const rotor_report *r, const figures *f) {
+    FILE *file = create(r, "plots.gp");
+    if (!file) {
+        return 1;
+    }
+    fprintf(file,
+            "set terminal pngcairo size 1200,720 font 'sans,13' linewidth 1.6\nset datafile separator ','\n"
+            "set grid linecolor rgb '#cccccc' linewidth 0.6\nset border 3 linecolor rgb '#555555'\nset tics nomirror\n"
+            "set lmargin 12\nset rmargin 4\nshade = '#0b5fa5 #d1603d #3c8d5a'\n"
+            "scene = 'NREL 5-MW, %g m/s, %.4g rev/min, %s blades'\n",
+            r->options->wind, r->speed * 30 / pi, r->options->rigid ? "rigid" : "flexible");
+    put_blades(r, file, "tip", "Tip deflection", ROTOR_FLAP, 1, "m");
+    put_blades(r, file, "root", "Bending moment at the root", ROTOR_FLAP_MOMENT, 1e-6, "MN m");
+    put_power(r, file);
+    put_span(r, file, f);
     return finish(file, "plots.gp");
 }
 
