@@ -1,3 +1,48 @@
-install(TARGETS spar spar_static
-  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+# What is installed: libraries, headers, the CMake package, the pkg-config files, the Fortran modules (by compiler) and their
+# source (for any other compiler).
+include(CMakePackageConfigHelpers)
+set(spar_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/spar")
+
+install(TARGETS spar EXPORT spar-targets LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS spar_static EXPORT spar-static-targets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(FILES ${spar_headers} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/spar")
+install(EXPORT spar-targets NAMESPACE spar:: DESTINATION "${spar_package_dir}")
+install(EXPORT spar-static-targets NAMESPACE spar:: DESTINATION "${spar_package_dir}")
+install(FILES cmake/spar-dependencies.cmake DESTINATION "${spar_package_dir}")
+
+if(TARGET spar_fortran)
+  install(TARGETS spar_fortran EXPORT spar-fortran-targets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT spar-fortran-targets NAMESPACE spar:: DESTINATION "${spar_package_dir}")
+  install(DIRECTORY "${PROJECT_BINARY_DIR}/fortran/${spar_fortran_tag}/" DESTINATION "${SPAR_FORTRAN_MODULE_DIR}"
+    FILES_MATCHING PATTERN "*.mod")
+  set(spar_fortran_files)
+  foreach(file IN LISTS spar_fortran_sources)
+    get_filename_component(name "${file}" NAME)
+    list(APPEND spar_fortran_files "${name}")
+  endforeach()
+endif()
+install(FILES ${spar_fortran_sources} DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/fortran")
+
+configure_package_config_file(cmake/spar-config.cmake.in "${PROJECT_BINARY_DIR}/spar-config.cmake"
+  INSTALL_DESTINATION "${spar_package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_LIBDIR)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/spar-config-version.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/spar-config.cmake" "${PROJECT_BINARY_DIR}/spar-config-version.cmake"
+  DESTINATION "${spar_package_dir}")
+
+# pkg-config; the files find the prefix from where they lie
+file(RELATIVE_PATH spar_up "/p/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/p")
+string(REGEX REPLACE "/$" "" spar_up "${spar_up}")
+set(spar_private_libs "-lm -pthread")
+if(SPAR_OPENBLAS)
+  string(PREPEND spar_private_libs "-lopenblas ")
+endif()
+set(spar_private_packages "gsl")
+if(SPAR_MPI)
+  string(APPEND spar_private_packages " ompi-c")
+endif()
+configure_file(cmake/spar.pc.in "${PROJECT_BINARY_DIR}/spar.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/spar.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+if(TARGET spar_fortran)
+  configure_file(cmake/spar_fortran.pc.in "${PROJECT_BINARY_DIR}/spar_fortran.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/spar_fortran.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()

@@ -1,0 +1,65 @@
+# An installed copy, seen by strangers; and the binary interface.
+set(prefix "${PROJECT_BINARY_DIR}/tests/package/prefix")
+set(work "${PROJECT_BINARY_DIR}/tests/package")
+set(here "${PROJECT_SOURCE_DIR}/tests/package")
+
+# spar_package_test(<name> <command>...): run after the install
+function(spar_package_test name)
+  add_test(NAME package_${name} COMMAND ${ARGN})
+  spar_set_test(package_${name} package 180)
+  set_tests_properties(package_${name} PROPERTIES FIXTURES_REQUIRED spar_installed)
+endfunction()
+
+add_test(NAME package_install COMMAND "${CMAKE_COMMAND}" --install "${PROJECT_BINARY_DIR}" --prefix "${prefix}")
+spar_set_test(package_install package 60)
+set_tests_properties(package_install PROPERTIES FIXTURES_SETUP spar_installed)
+
+spar_package_test(symbols sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so")
+spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so" "${PROJECT_VERSION}")
+spar_package_test(contract "${CMAKE_C_COMPILER}" -std=c11 -Wall -Wextra -Werror "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" -c
+  "${PROJECT_SOURCE_DIR}/tests/contract.c" -o "${work}/contract.o")
+
+# the same symbols without MPI
+if(SPAR_MPI)
+  spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
+    --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF
+    -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
+    "-DCMAKE_C_FLAGS=-O0 -g0"
+    --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
+endif()
+
+function(spar_consumer name folder)
+  spar_package_test(${name} "${CMAKE_CTEST_COMMAND}" --build-and-test "${here}/${folder}" "${work}/${name}"
+    --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_PREFIX_PATH=${prefix}"
+    --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure --no-tests=error)
+endfunction()
+
+spar_consumer(c_cmake c)
+find_program(SPAR_PKG_CONFIG NAMES pkg-config)
+mark_as_advanced(SPAR_PKG_CONFIG)
+if(SPAR_PKG_CONFIG)
+  spar_package_test(c_pkgconfig sh "${here}/pkgconfig.sh" "${prefix}" "${work}/c_pkgconfig" "${CMAKE_C_COMPILER}"
+    "${here}/c/main.c" spar)
+  spar_package_test(c_pkgconfig_static sh "${here}/pkgconfig.sh" "${prefix}" "${work}/c_pkgconfig_static"
+    "${CMAKE_C_COMPILER}" "${here}/c/main.c" spar --static)
+endif()
+
+if(TARGET spar_fortran AND EXISTS "${here}/fortran/main.f90")
+  spar_consumer(fortran_cmake fortran)
+  if(SPAR_PKG_CONFIG)
+    spar_package_test(fortran_pkgconfig sh "${here}/pkgconfig.sh" "${prefix}" "${work}/fortran_pkgconfig"
+      "${CMAKE_Fortran_COMPILER}" "${here}/fortran/main.f90" spar_fortran)
+  endif()
+endif()
+
+check_language(CXX)
+if(CMAKE_CXX_COMPILER)
+  set(mpi_flags)
+  if(SPAR_MPI)
+    list(TRANSFORM MPI_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE mpi_flags)
+    list(APPEND mpi_flags -DSPAR_TEST_MPI -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX ${MPI_C_LIBRARIES})
+  endif()
+  spar_package_test(cxx "${CMAKE_CXX_COMPILER}" -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror
+    "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" "${here}/headers.cpp" -o "${work}/headers_cxx"
+    "-L${prefix}/${CMAKE_INSTALL_LIBDIR}" "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar ${mpi_flags})
+endif()

@@ -1,0 +1,19 @@
+#!/bin/sh
+# symbols.sh <source> <library>...: the functions of the public headers, the version script and what each library exports are
+# one list, in one version node.
+set -eu
+source=$1
+shift
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export LC_ALL=C
+cat "$source"/include/spar/*.h | sed 's,/\*.*\*/,,' | tr '\n' ' ' | grep -oE 'SPAR_API [^;()]*spar_[a-z0-9_]+ *\(' |
+    grep -oE 'spar_[a-z0-9_]+ *\($' | tr -d ' (' | sort -u >"$work/headers"
+sed -n '/global:/,/local:/p' "$source/cmake/spar.map" | grep -oE 'spar_[a-z0-9_]+' | sort -u >"$work/map"
+diff "$work/headers" "$work/map" || { echo "the headers (<) and cmake/spar.map (>) differ: run cmake/make-map.sh"; exit 1; }
+for library in "$@"; do
+    nm -D --defined-only "$library" | awk '$2 != "A" {print $3}' | sort -u >"$work/exported"
+    sed 's/$/@@SPAR_1/' "$work/headers" | diff - "$work/exported" ||
+        { echo "the headers (<) and what $library exports (>) differ"; exit 1; }
+done
+echo "$(wc -l <"$work/headers") functions, the same in the headers, the version script and $#  libraries"
