@@ -16,4 +16,4 @@ for library in "$@"; do
     sed 's/$/@@SPAR_1/' "$work/headers" | diff - "$work/exported" ||
         { echo "the headers (<) and what $library exports (>) differ"; exit 1; }
 done
-echo "$(wc -l <"$work/headers") functions, the same in the headers, the version script and $#  libraries"
+echo "$(wc -l <"$work/headers") functions, the same in the headers, the version script and $# libraries"
