@@ -127,20 +127,29 @@ static double balance(spar_member *member, const scheme *c, const spari_state *s
     return scale;
 }
 
-/* Solves with the kept tangent: it was formed in axes that the root has since carried along. */
-static int correct(const spar_member *member, const double *q, double *r, double *dx) {
+/* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
+   node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
+   of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
+   in fixed axes. */
+static int correct(const spar_member *member, const double *q, const double *r, double *dx) {
     spari_solver *s = member->solver;
-    double c[4], turn[4];
-    spari_quat_conj(s->kept_q, c);
-    spari_quat_mul(q + 3, c, turn);
-    for (int i = 0; i < 6 * s->n; i += 3) {
-        spari_rotate_back(turn, r + i, dx + i);
+    if (member->body->linear[0]) {
+        memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
+        return spari_linear_solve(s->linear, dx);
+    }
+    for (int i = 0; i < s->n; i++) {
+        double back[4], *turn = s->turn + 4 * i;
+        spari_quat_conj(s->kept_q + 4 * i, back);
+        spari_quat_mul(q + 7 * i + 3, back, turn);
+        spari_rotate_back(turn, r + 6 * i, dx + 6 * i);
+        spari_rotate_back(turn, r + 6 * i + 3, dx + 6 * i + 3);
     }
     if (spari_linear_solve(s->linear, dx)) {
         return 1;
     }
-    for (int i = 0; i < 6 * s->n; i += 3) {
-        spari_rotate(turn, dx + i, dx + i);
+    for (int i = 0; i < s->n; i++) {
+        spari_rotate(s->turn + 4 * i, dx + 6 * i, dx + 6 * i);
+        spari_rotate(s->turn + 4 * i, dx + 6 * i + 3, dx + 6 * i + 3);
     }
     return 0;
 }
@@ -214,6 +223,9 @@ static double infinity_norm(const double *r, int n) {
     return big;
 }
 
+static const double SLOW = 0.5;
+enum { PATIENCE = 8 };
+
 /* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
 typedef enum effort { KEPT, FRESH, FULL } effort;
 
@@ -223,8 +235,8 @@ static int form_tangent(spar_member *member, const scheme *c, const spari_state 
 }
 
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
-   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than 1/4 is formed anew.
-   Returns NULL, or what went wrong. */
+   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW, or that has not
+   done its work in PATIENCE iterations, is formed anew. Returns NULL, or what went wrong. */
 static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how,
                            const spari_state *from, spari_state *to, double *x, int *iterations) {
     const spar_session *session = member->session;
@@ -259,7 +271,7 @@ static const char *attempt(spar_member *member, const scheme *c, const double *r
         if (theta > 2 && how != FULL) {
             return "diverges";
         }
-        if (how == FULL || theta > 0.25 || (it > 3 && !fresh)) {
+        if (how == FULL || theta > SLOW || (it > PATIENCE && !fresh)) {
             s->factored = 0;
             fresh = 1;
         }

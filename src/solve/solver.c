@@ -28,6 +28,7 @@ spari_solver *spari_solver_create(const spar_member *member) {
         ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
     }
     ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) && (s->element = spari_zalloc(m * m, sizeof(double)));
+    ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
     ok = ok && (s->linear = spari_linear_create(member->elements, (int)m, 6));
     if (!ok) {
@@ -54,6 +55,8 @@ void spari_solver_free(spari_solver *s) {
     free(s->r);
     free(s->dx);
     free(s->tinv);
+    free(s->kept_q);
+    free(s->turn);
     free(s->element);
     free(s->best);
     spari_linear_free(s->linear);
@@ -113,7 +116,9 @@ int spari_solver_factor(spar_member *member, const double *q, const double *v, c
     }
     s->factored = 1;
     s->kept_cm = cm, s->kept_cv = cv;
-    memcpy(s->kept_q, q + 3, sizeof s->kept_q);
+    for (int i = 0; i < s->n; i++) {
+        memcpy(s->kept_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
+    }
     return 0;
 }
 
