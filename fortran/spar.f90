@@ -1,0 +1,1833 @@
+! spar: the interface of spar in Fortran. The headers under include/spar say what each call does; here is what is different.
+!
+!   use spar
+!   type(spar_session) :: session
+!   type(spar_member) :: blade
+!   type(spar_fluid) :: sections
+!   call session%create(comm) ! an integer communicator (mpi_f08: comm%MPI_VAL); left out: this process alone
+!   call blade%create_beam(session, 'blade1', elements, nodes)
+!   ...
+!   call blade%commit()
+!   call sections%create(blade, 'sections1')
+!
+! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
+! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
+! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam. spar_status_text,
+! spar_version and spar_has keep their names.
+!
+! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
+! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
+! A refused call leaves its results as they were, so these are intent(inout); what C takes as NULL is optional.
+!
+! Arrays. Places x(3,n), orientations q(4,n), node motion q(7,n), v(6,n), a(6,n), loads (6,n), matrices (6,6,n), sections of
+! blades (3,n,blades). n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
+! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Kinds are those of C, c_double and c_int; a count may also
+! be a 64-bit integer. Nodes and sections are counted from 1 in arguments; the library's own messages count from 0.
+!
+! Life. A session, a polar and an aero object are owned by their variables: destroyed by `destroy`, or at the latest when the
+! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
+! To destroy twice, or what was never created, does nothing. Members and fluids belong to their session and go with it: their
+! variables are views, are not finalised, and must not be used when the session is gone; fluid%destroy takes a fluid out of
+! a living session. The variable of a member may be copied. To assign any of the others stops the program, since two owners
+! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
+! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
+module spar
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_int, c_int64_t, &
+      c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
+  use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has
+  implicit none
+  private
+
+  public :: spar_session, spar_member, spar_fluid, spar_polar, spar_aero
+  public :: spar_fluid_solver, spar_log
+  public :: spar_status_text, spar_version, spar_has
+
+  public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING
+  public :: SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER, SPAR_COUPLING_EXPLICIT
+  public :: SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS, SPAR_ROOT_FREE, SPAR_ROOT_FIXED
+  public :: SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN, SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO
+  public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
+  public :: SPAR_INTERPOLATE_CONSISTENT, SPAR_NODES_MOTION, SPAR_NODES_FORCE, SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
+  public :: SPAR_MAP_FAR, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING
+  public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
+  public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
+  public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
+  public :: SPAR_AERO_FLAG_BEYOND_POLAR
+
+  type :: spar_session
+    private
+    type(c_ptr) :: handle = c_null_ptr
+    type(log_record), pointer :: log => null()
+  contains
+    procedure :: create => session_create
+    procedure :: destroy => session_destroy
+    procedure :: exists => session_exists
+    procedure :: c_handle => session_handle
+    procedure :: message => session_message
+    procedure :: set_gravity => session_set_gravity
+    procedure :: set_integrator => session_set_integrator
+    procedure :: set_newton => session_set_newton
+    procedure :: set_predictor => session_set_predictor
+    procedure :: set_coupling => session_set_coupling
+    procedure :: set_relaxation => session_set_relaxation
+    procedure :: set_reproducible => session_set_reproducible
+    procedure :: set_option => session_set_option
+    procedure :: set_log => session_set_log
+    procedure :: get_time => session_get_time
+    procedure :: save => session_save
+    procedure :: load => session_load
+    procedure :: step_begin => session_step_begin
+    procedure :: step_solve => session_step_solve
+    procedure :: step_check => session_step_check
+    procedure :: step_accept => session_step_accept
+    procedure :: step_reject => session_step_reject
+    procedure :: step => session_step
+    procedure, private :: session_assign
+    generic :: assignment(=) => session_assign
+    final :: session_final
+  end type spar_session
+
+  type :: spar_member
+    private
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
+    integer(c_int64_t) :: per_element = 0
+    character(:), allocatable :: name
+  contains
+    procedure :: create_point => member_create_point
+    procedure :: create_rigid => member_create_rigid
+    procedure :: create_beam => member_create_beam
+    procedure :: exists => member_exists
+    procedure :: c_handle => member_handle
+    procedure :: set_axis => member_set_axis
+    procedure :: set_nodes => member_set_nodes
+    procedure :: set_sections => member_set_sections
+    procedure :: set_quadrature => member_set_quadrature
+    procedure :: set_damping => member_set_damping
+    procedure :: set_placement => member_set_placement
+    procedure :: set_root => member_set_root
+    procedure :: set_external => member_set_external
+    procedure :: set_effects => member_set_effects
+    procedure :: set_velocity => member_set_velocity
+    procedure :: set_owner => member_set_owner
+    procedure :: commit => member_commit
+    procedure, private :: member_get_count_64, member_get_count_32
+    generic :: get_count => member_get_count_64, member_get_count_32
+    procedure :: get_reference => member_get_reference
+    procedure :: get_motion => member_get_motion
+    procedure :: set_motion => member_set_motion
+    procedure :: drive_root => member_drive_root
+    procedure, private :: member_add_load_64, member_add_load_32
+    generic :: add_load => member_add_load_64, member_add_load_32
+    procedure :: get_loads => member_get_loads
+    procedure :: get_reaction => member_get_reaction
+    procedure :: get_energy => member_get_energy
+    procedure :: solve_static => member_solve_static
+    procedure :: get_modes => member_get_modes
+    procedure :: write_vtk => member_write_vtk
+    procedure, private :: place => member_place
+  end type spar_member
+
+  type :: spar_fluid
+    private
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
+    integer(c_int64_t) :: per_element = 0
+    character(:), allocatable :: name
+  contains
+    procedure :: create => fluid_create
+    procedure :: destroy => fluid_destroy
+    procedure :: exists => fluid_exists
+    procedure :: c_handle => fluid_handle
+    procedure :: set_motion_nodes => fluid_set_motion_nodes
+    procedure :: set_force_nodes => fluid_set_force_nodes
+    procedure :: set_sections => fluid_set_sections
+    procedure :: set_projection => fluid_set_projection
+    procedure :: set_interpolation => fluid_set_interpolation
+    procedure :: map => fluid_map
+    procedure, private :: fluid_get_count_64, fluid_get_count_32
+    generic :: get_count => fluid_get_count_64, fluid_get_count_32
+    procedure :: get_map => fluid_get_map
+    procedure :: get_feet => fluid_get_feet
+    procedure :: get_basis => fluid_get_basis
+    procedure :: pull_motion => fluid_pull_motion
+    procedure :: pull_sections => fluid_pull_sections
+    procedure :: pull_forces => fluid_pull_forces
+    procedure :: push_forces => fluid_push_forces
+    procedure :: get_audit => fluid_get_audit
+    procedure :: write_vtk => fluid_write_vtk
+    procedure, private :: place => fluid_place
+    procedure, private :: fluid_assign
+    generic :: assignment(=) => fluid_assign
+  end type spar_fluid
+
+  type :: spar_polar
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  contains
+    procedure :: create => polar_create
+    procedure :: destroy => polar_destroy
+    procedure :: exists => polar_exists
+    procedure :: c_handle => polar_handle
+    procedure :: set_interpolation => polar_set_interpolation
+    procedure :: evaluate => polar_evaluate
+    procedure, private :: polar_assign
+    generic :: assignment(=) => polar_assign
+    final :: polar_final
+  end type spar_polar
+
+  type :: spar_aero
+    private
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
+    integer(c_int64_t) :: blades = 0, sections = 0
+  contains
+    procedure :: create => aero_create
+    procedure :: destroy => aero_destroy
+    procedure :: exists => aero_exists
+    procedure :: c_handle => aero_handle
+    procedure, private :: aero_set_section_64, aero_set_section_32
+    generic :: set_section => aero_set_section_64, aero_set_section_32
+    procedure :: set_rotor => aero_set_rotor
+    procedure :: set_turn => aero_set_turn
+    procedure :: set_blades => aero_set_blades
+    procedure :: set_effects => aero_set_effects
+    procedure :: solve => aero_solve
+    procedure :: get_rotor => aero_get_rotor
+    procedure :: get_sections => aero_get_sections
+    procedure :: get_flags => aero_get_flags
+    procedure :: get_loads => aero_get_loads
+    procedure, private :: place => aero_place
+    procedure, private :: aero_assign
+    generic :: assignment(=) => aero_assign
+    final :: aero_final
+  end type spar_aero
+
+  abstract interface
+    ! The host's fluid in session%step, once per iteration: pulls the motion, finds its loads at t + dt, pushes them. context:
+    ! what session%step was given. stat is 0 on entry; any other value fails the step with SPAR_ERR_USER.
+    subroutine spar_fluid_solver(session, t, dt, iteration, context, stat)
+      import :: c_double, c_int, spar_session
+      class(spar_session), intent(inout) :: session
+      real(c_double), intent(in) :: t, dt
+      integer(c_int), intent(in) :: iteration
+      class(*), intent(inout), optional :: context
+      integer(c_int), intent(inout) :: stat
+    end subroutine spar_fluid_solver
+
+    ! Takes the library's messages, see session%set_log.
+    subroutine spar_log(level, text, context)
+      import :: c_int
+      integer(c_int), intent(in) :: level
+      character(*), intent(in) :: text
+      class(*), intent(inout), optional :: context
+    end subroutine spar_log
+  end interface
+
+  ! What C carries for a call back into Fortran.
+  type :: step_record
+    class(spar_session), pointer :: session => null()
+    procedure(spar_fluid_solver), pointer, nopass :: solve => null()
+    class(*), pointer :: context => null()
+  end type step_record
+
+  type :: log_record
+    procedure(spar_log), pointer, nopass :: log => null()
+    class(*), pointer :: context => null()
+  end type log_record
+
+  interface spar_status_text
+    procedure :: status_text
+  end interface spar_status_text
+
+  interface spar_version
+    procedure :: version
+  end interface spar_version
+
+  interface spar_has
+    procedure :: has_feature
+  end interface spar_has
+
+  interface
+    pure function strlen(text) bind(c) result(n)
+      import :: c_ptr, c_int64_t
+      type(c_ptr), value :: text
+      integer(c_int64_t) :: n
+    end function strlen
+  end interface
+
+contains
+
+  ! ---- session ----
+
+  subroutine session_create(self, comm, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(in), optional :: comm
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (c_associated(self%handle)) then
+      call occupied('session%create', stat, errmsg)
+    else if (present(comm)) then
+      call finish(spar_session_create_fcomm(comm, self%handle), c_null_ptr, stat, errmsg)
+    else
+      call finish(spar_session_create(self%handle), c_null_ptr, stat, errmsg)
+    end if
+  end subroutine session_create
+
+  subroutine session_destroy(self)
+    class(spar_session), intent(inout) :: self
+
+    call spar_session_destroy(self%handle)
+    if (associated(self%log)) deallocate (self%log)
+  end subroutine session_destroy
+
+  impure elemental subroutine session_final(self)
+    type(spar_session), intent(inout) :: self
+
+    call self%destroy()
+  end subroutine session_final
+
+  impure elemental subroutine session_assign(left, right)
+    class(spar_session), intent(inout) :: left
+    type(spar_session), intent(in) :: right
+
+    call forbid_copy('session', left%handle, right%handle)
+  end subroutine session_assign
+
+  logical function session_exists(self) result(there)
+    class(spar_session), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function session_exists
+
+  ! For calls of spar_c, while the session lives.
+  type(c_ptr) function session_handle(self) result(handle)
+    class(spar_session), intent(in) :: self
+
+    handle = self%handle
+  end function session_handle
+
+  ! What went wrong last, where, and the cure.
+  function session_message(self) result(text)
+    class(spar_session), intent(in) :: self
+    character(:), allocatable :: text
+
+    text = f_text(spar_session_message(self%handle))
+  end function session_message
+
+  subroutine session_set_gravity(self, g, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: g(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_gravity(self%handle, g), self%handle, stat, errmsg)
+  end subroutine session_set_gravity
+
+  subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: rho_inf
+    integer(c_int), intent(in) :: substeps
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_integrator(self%handle, rho_inf, substeps), self%handle, stat, errmsg)
+  end subroutine session_set_integrator
+
+  subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: atol, rtol
+    integer(c_int), intent(in) :: max_iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_newton(self%handle, atol, rtol, max_iterations), self%handle, stat, errmsg)
+  end subroutine session_set_newton
+
+  subroutine session_set_predictor(self, order, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(in) :: order
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_predictor(self%handle, order), self%handle, stat, errmsg)
+  end subroutine session_set_predictor
+
+  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(in) :: scheme
+    real(c_double), intent(in) :: atol, rtol
+    integer(c_int), intent(in) :: max_iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_coupling(self%handle, scheme, atol, rtol, max_iterations), self%handle, &
+        stat, errmsg)
+  end subroutine session_set_coupling
+
+  subroutine session_set_relaxation(self, omega, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: omega
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_relaxation(self%handle, omega), self%handle, stat, errmsg)
+  end subroutine session_set_relaxation
+
+  subroutine session_set_reproducible(self, on, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    logical, intent(in) :: on
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_reproducible(self%handle, flag(on)), self%handle, stat, errmsg)
+  end subroutine session_set_reproducible
+
+  subroutine session_set_option(self, key, value, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
+  end subroutine session_set_option
+
+  ! The library's messages go to log from now on; without log it is silent, as at first. Unlike the other calls this one keeps
+  ! what it is given: log must be a module procedure or an external one, and context must live as long as the session, or until
+  ! the next set_log.
+  subroutine session_set_log(self, log, context, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    procedure(spar_log), optional :: log
+    class(*), pointer, intent(in), optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(log_record), pointer :: record
+    integer(c_int) :: status
+
+    nullify (record)
+    if (present(log)) then
+      allocate (record)
+      record%log => log
+      if (present(context)) record%context => context
+      status = spar_session_set_log(self%handle, c_funloc(call_log), c_loc(record))
+    else
+      status = spar_session_set_log(self%handle, c_null_funptr, c_null_ptr)
+    end if
+    if (status /= SPAR_OK) then
+      if (associated(record)) deallocate (record)
+    else
+      if (associated(self%log)) deallocate (self%log)
+      self%log => record
+    end if
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_set_log
+
+  subroutine call_log(session, level, text, context) bind(c, name='')
+    type(c_ptr), value :: session, text, context
+    integer(c_int), value :: level
+    type(log_record), pointer :: record
+
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    if (associated(record%context)) then
+      call record%log(level, f_text(text), record%context)
+    else
+      call record%log(level, f_text(text))
+    end if
+  end subroutine call_log
+
+  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: t
+    integer(c_int64_t), intent(inout), optional :: step
+    integer(c_int), intent(inout), optional :: iteration
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
+  end subroutine session_get_time
+
+  subroutine session_save(self, path, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    character(*), intent(in) :: path
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_save
+
+  subroutine session_load(self, path, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: path
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_load
+
+  ! ---- one coupling step ----
+
+  subroutine session_step_begin(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin
+
+  subroutine session_step_solve(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_solve
+
+  ! done is .true. after a failure too, so that a loop that waits for it ends.
+  subroutine session_step_check(self, done, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    logical, intent(out) :: done
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, ended
+
+    done = .true.
+    status = spar_step_check(self%handle, ended)
+    if (status == SPAR_OK) done = ended /= 0
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_step_check
+
+  subroutine session_step_accept(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_accept
+
+  subroutine session_step_reject(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_reject
+
+  ! A whole step; solve is called in every iteration (none: the structure alone moves). solve may be an internal procedure, and
+  ! context anything of the host's: both are used during this call only. After a failure the session is at t^n again.
+  subroutine session_step(self, dt, solve, context, iterations, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(inout), optional :: iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    integer(c_int) :: status
+
+    if (present(solve)) then
+      record%session => self
+      record%solve => solve
+      if (present(context)) record%context => context
+      status = spar_step(self%handle, dt, c_funloc(call_solver), c_loc(record), iterations)
+    else
+      status = spar_step(self%handle, dt, c_null_funptr, c_null_ptr, iterations)
+    end if
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_step
+
+  function call_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: t, dt
+    integer(c_int), value :: iteration
+    integer(c_int) :: answer
+    type(step_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    answer = SPAR_OK
+    if (associated(record%context)) then
+      call record%solve(record%session, t, dt, iteration, record%context, stat=answer)
+    else
+      call record%solve(record%session, t, dt, iteration, stat=answer)
+    end if
+  end function call_solver
+
+  ! ---- members ----
+
+  subroutine member_create_point(self, session, name, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    real(c_double), intent(in) :: x(3), q(4)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    status = spar_point_create(session%handle, c_text(name), x, q, made)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1_c_int)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine member_create_point
+
+  subroutine member_create_rigid(self, session, name, x, q, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    real(c_double), intent(in) :: x(3), q(4), mass(6,6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    status = spar_rigid_create(session%handle, c_text(name), x, q, mass, made)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1_c_int)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine member_create_rigid
+
+  subroutine member_create_beam(self, session, name, elements, nodes_per_element, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    integer(c_int), intent(in) :: elements, nodes_per_element
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    status = spar_beam_create(session%handle, c_text(name), elements, nodes_per_element, made)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, nodes_per_element)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine member_create_beam
+
+  ! A view of the new member: whatever the variable viewed before stays where it is, in its session.
+  subroutine member_take(self, handle, session, name, per_element)
+    class(spar_member), intent(inout) :: self
+    type(c_ptr), intent(in) :: handle, session
+    character(*), intent(in) :: name
+    integer(c_int), intent(in) :: per_element
+
+    self%handle = handle
+    self%session = session
+    self%name = trim(name)
+    self%per_element = per_element
+  end subroutine member_take
+
+  logical function member_exists(self) result(there)
+    class(spar_member), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function member_exists
+
+  type(c_ptr) function member_handle(self) result(handle)
+    class(spar_member), intent(in) :: self
+
+    handle = self%handle
+  end function member_handle
+
+  function member_place(self, verb) result(text)
+    class(spar_member), intent(in) :: self
+    character(*), intent(in) :: verb
+    character(:), allocatable :: text
+
+    text = 'member%' // verb // ': member ''' // name_of(self%name) // ''''
+  end function member_place
+
+  subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(in) :: xyz(:,:)
+    real(c_double), contiguous, intent(in), optional :: twist(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_axis'), 'xyz', shape(xyz, kind=c_int64_t), [3_c_int64_t, size(eta, &
+        kind=c_int64_t)])
+    if (present(twist)) call need(fault, self%place('set_axis'), 'twist', shape(twist, kind=c_int64_t), &
+        [size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, &
+        stat, errmsg)
+  end subroutine member_set_axis
+
+  subroutine member_set_nodes(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    real(c_double), contiguous, intent(in), optional :: q(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
+        kind=c_int64_t)])
+    if (present(q)) call need(fault, self%place('set_nodes'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, &
+        size(x, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
+  end subroutine member_set_nodes
+
+  subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(in) :: stiffness(:,:,:)
+    real(c_double), contiguous, intent(in), optional :: mass(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_sections'), 'stiffness', shape(stiffness, kind=c_int64_t), [6_c_int64_t, &
+        6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (present(mass)) call need(fault, self%place('set_sections'), 'mass', shape(mass, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), &
+        self%session, stat, errmsg)
+  end subroutine member_set_sections
+
+  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: rule, points
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_quadrature(self%handle, rule, points), self%session, stat, errmsg)
+  end subroutine member_set_quadrature
+
+  subroutine member_set_damping(self, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: mu(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
+  end subroutine member_set_damping
+
+  subroutine member_set_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: x(3), q(4)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_set_placement
+
+  subroutine member_set_root(self, kind, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_root(self%handle, kind), self%session, stat, errmsg)
+  end subroutine member_set_root
+
+  subroutine member_set_external(self, on, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    logical, intent(in) :: on
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
+  end subroutine member_set_external
+
+  subroutine member_set_effects(self, effects, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: effects
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_effects(self%handle, effects), self%session, stat, errmsg)
+  end subroutine member_set_effects
+
+  subroutine member_set_velocity(self, x0, v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
+  end subroutine member_set_velocity
+
+  subroutine member_set_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: rank
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_owner(self%handle, rank), self%session, stat, errmsg)
+  end subroutine member_set_owner
+
+  subroutine member_commit(self, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
+  end subroutine member_commit
+
+  subroutine member_get_count_64(self, nodes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout) :: nodes
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_count(self%handle, nodes), self%session, stat, errmsg)
+  end subroutine member_get_count_64
+
+  subroutine member_get_count_32(self, nodes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout) :: nodes
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    call narrow(status, n, nodes, self%place('get_count'), self%session, stat, errmsg)
+  end subroutine member_get_count_32
+
+  subroutine member_get_reference(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, self%place('get_reference'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, self%place('get_reference'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_reference
+
+  subroutine member_get_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, self%place('get_motion'), 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, self%place('get_motion'), 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, self%place('get_motion'), 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_get_motion
+
+  subroutine member_set_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, self%place('set_motion'), 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, self%place('set_motion'), 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, self%place('set_motion'), 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_set_motion
+
+  subroutine member_drive_root(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: q(7)
+    real(c_double), intent(in), optional :: v(6), a(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_drive_root
+
+  subroutine member_add_load_64(self, node, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: node
+    real(c_double), intent(in) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int64_t) :: n
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (node < 1 .or. node > n) then
+      fault = self%place('add_load') // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_add_load(self%handle, node - 1, load), self%session, stat, errmsg)
+  end subroutine member_add_load_64
+
+  subroutine member_add_load_32(self, node, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: node
+    real(c_double), intent(in) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%add_load(int(node, c_int64_t), load, stat, errmsg)
+  end subroutine member_add_load_32
+
+  subroutine member_get_loads(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: load(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('get_loads'), 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
+  end subroutine member_get_loads
+
+  subroutine member_get_reaction(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
+  end subroutine member_get_reaction
+
+  subroutine member_get_energy(self, energy, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: energy(4)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_energy(self%handle, energy), self%session, stat, errmsg)
+  end subroutine member_get_energy
+
+  subroutine member_solve_static(self, load_steps, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: load_steps
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_solve_static(self%handle, load_steps), self%session, stat, errmsg)
+  end subroutine member_solve_static
+
+  subroutine member_get_modes(self, frequency_hz, shapes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: frequency_hz(:)
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(shapes)) call need(fault, self%place('get_modes'), 'shapes', shape(shapes, kind=c_int64_t), &
+        [6_c_int64_t, n, size(frequency_hz, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_get_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
+        shapes), self%session, stat, errmsg)
+  end subroutine member_get_modes
+
+  subroutine member_write_vtk(self, path, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    character(*), intent(in) :: path
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
+  end subroutine member_write_vtk
+
+  ! ---- fluids ----
+
+  subroutine fluid_create(self, member, name, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    character(*), intent(in) :: name
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    status = spar_fluid_create(member%handle, c_text(name), made)
+    if (status == SPAR_OK) then
+      self%handle = made
+      self%session = member%session
+      self%per_element = member%per_element
+      self%name = trim(name)
+    end if
+    call finish(status, member%session, stat, errmsg)
+  end subroutine fluid_create
+
+  ! Takes the fluid out of its session, which must still be there.
+  subroutine fluid_destroy(self)
+    class(spar_fluid), intent(inout) :: self
+
+    call spar_fluid_destroy(self%handle)
+    self%session = c_null_ptr
+  end subroutine fluid_destroy
+
+  impure elemental subroutine fluid_assign(left, right)
+    class(spar_fluid), intent(inout) :: left
+    type(spar_fluid), intent(in) :: right
+
+    call forbid_copy('fluid', left%handle, right%handle)
+  end subroutine fluid_assign
+
+  logical function fluid_exists(self) result(there)
+    class(spar_fluid), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function fluid_exists
+
+  type(c_ptr) function fluid_handle(self) result(handle)
+    class(spar_fluid), intent(in) :: self
+
+    handle = self%handle
+  end function fluid_handle
+
+  function fluid_place(self, verb) result(text)
+    class(spar_fluid), intent(in) :: self
+    character(*), intent(in) :: verb
+    character(:), allocatable :: text
+
+    text = 'fluid%' // verb // ': fluid ''' // name_of(self%name) // ''''
+  end function fluid_place
+
+  subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_motion_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
+  end subroutine fluid_set_motion_nodes
+
+  subroutine fluid_set_force_nodes(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_force_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
+  end subroutine fluid_set_force_nodes
+
+  subroutine fluid_set_sections(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in), optional :: offset(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(offset)) call need(fault, self%place('set_sections'), 'offset', shape(offset, kind=c_int64_t), &
+        [3_c_int64_t, size(xi, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_set_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
+        stat, errmsg)
+  end subroutine fluid_set_sections
+
+  subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int), intent(in) :: method
+    real(c_double), intent(in) :: max_distance
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_projection(self%handle, method, max_distance), self%session, stat, errmsg)
+  end subroutine fluid_set_projection
+
+  subroutine fluid_set_interpolation(self, kind, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int), intent(in) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_interpolation(self%handle, kind), self%session, stat, errmsg)
+  end subroutine fluid_set_interpolation
+
+  subroutine fluid_map(self, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
+  end subroutine fluid_map
+
+  subroutine fluid_get_count_64(self, which, n, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int64_t), intent(inout) :: n
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_count(self%handle, which, n), self%session, stat, errmsg)
+  end subroutine fluid_get_count_64
+
+  subroutine fluid_get_count_32(self, which, n, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int), intent(inout) :: n
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: long
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, which, long)
+    call narrow(status, long, n, self%place('get_count'), self%session, stat, errmsg)
+  end subroutine fluid_get_count_32
+
+  subroutine fluid_get_map(self, which, xi, distance, flags, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    real(c_double), contiguous, intent(inout), optional :: xi(:), distance(:)
+    integer(c_int), contiguous, intent(inout), optional :: flags(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, which, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(xi)) call need(fault, self%place('get_map'), 'xi', shape(xi, kind=c_int64_t), [n])
+    if (present(distance)) call need(fault, self%place('get_map'), 'distance', shape(distance, kind=c_int64_t), [n])
+    if (present(flags)) call need(fault, self%place('get_map'), 'flags', shape(flags, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_get_map(self%handle, which, xi, distance, flags), self%session, stat, errmsg)
+  end subroutine fluid_get_map
+
+  subroutine fluid_get_feet(self, which, x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, which, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x_map)) call need(fault, self%place('get_feet'), 'x_map', shape(x_map, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(q_map)) call need(fault, self%place('get_feet'), 'q_map', shape(q_map, kind=c_int64_t), &
+        [4_c_int64_t, n])
+    if (present(con)) call need(fault, self%place('get_feet'), 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_get_feet(self%handle, which, x_map, q_map, con), self%session, stat, errmsg)
+  end subroutine fluid_get_feet
+
+  ! first_node(n) counts from 1; phi(p,n), p nodes per element.
+  subroutine fluid_get_basis(self, which, first_node, phi, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int64_t), contiguous, intent(inout), optional :: first_node(:)
+    real(c_double), contiguous, intent(inout), optional :: phi(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, which, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(first_node)) call need(fault, self%place('get_basis'), 'first_node', shape(first_node, kind=c_int64_t), [n])
+    if (present(phi)) call need(fault, self%place('get_basis'), 'phi', shape(phi, kind=c_int64_t), [self%per_element, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    status = spar_fluid_get_basis(self%handle, which, first_node, phi)
+    if (status == SPAR_OK .and. present(first_node)) first_node = first_node + 1
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_basis
+
+  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, self%place('pull_motion'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, self%place('pull_motion'), 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion
+
+  subroutine fluid_pull_sections(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, self%place('pull_sections'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(omega)) call need(fault, self%place('pull_sections'), 'omega', shape(omega, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(accel)) call need(fault, self%place('pull_sections'), 'accel', shape(accel, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
+  end subroutine fluid_pull_sections
+
+  subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout) :: force(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('pull_forces'), 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_forces(self%handle, theta, force), self%session, stat, errmsg)
+  end subroutine fluid_pull_forces
+
+  subroutine fluid_push_forces(self, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: force(:,:)
+    real(c_double), contiguous, intent(in), optional :: moment(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('push_forces'), 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(moment)) call need(fault, self%place('push_forces'), 'moment', shape(moment, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      status = spar_fluid_push_forces(self%handle) ! no forces: the step must not go on with those of the push before
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_push_forces(self%handle, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_push_forces
+
+  subroutine fluid_get_audit(self, audit, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(inout) :: audit(8)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_audit(self%handle, audit), self%session, stat, errmsg)
+  end subroutine fluid_get_audit
+
+  subroutine fluid_write_vtk(self, path, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    character(*), intent(in) :: path
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
+  end subroutine fluid_write_vtk
+
+  ! ---- polars ----
+
+  ! cm left out: 0.
+  subroutine polar_create(self, alpha_rad, cl, cd, cm, stat, errmsg)
+    class(spar_polar), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: alpha_rad(:), cl(:), cd(:)
+    real(c_double), contiguous, intent(in), optional :: cm(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int64_t) :: n
+
+    n = size(alpha_rad, kind=c_int64_t)
+    if (c_associated(self%handle)) then
+      call occupied('polar%create', stat, errmsg)
+      return
+    end if
+    call need(fault, 'polar%create', 'cl', shape(cl, kind=c_int64_t), [n])
+    call need(fault, 'polar%create', 'cd', shape(cd, kind=c_int64_t), [n])
+    if (present(cm)) call need(fault, 'polar%create', 'cm', shape(cm, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_polar_create(n, alpha_rad, cl, cd, cm, self%handle), c_null_ptr, stat, errmsg)
+  end subroutine polar_create
+
+  ! Sections that use the polar keep its table.
+  subroutine polar_destroy(self)
+    class(spar_polar), intent(inout) :: self
+
+    call spar_polar_destroy(self%handle)
+  end subroutine polar_destroy
+
+  impure elemental subroutine polar_final(self)
+    type(spar_polar), intent(inout) :: self
+
+    call self%destroy()
+  end subroutine polar_final
+
+  impure elemental subroutine polar_assign(left, right)
+    class(spar_polar), intent(inout) :: left
+    type(spar_polar), intent(in) :: right
+
+    call forbid_copy('polar', left%handle, right%handle)
+  end subroutine polar_assign
+
+  logical function polar_exists(self) result(there)
+    class(spar_polar), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function polar_exists
+
+  type(c_ptr) function polar_handle(self) result(handle)
+    class(spar_polar), intent(in) :: self
+
+    handle = self%handle
+  end function polar_handle
+
+  subroutine polar_set_interpolation(self, kind, stat, errmsg)
+    class(spar_polar), intent(inout) :: self
+    integer(c_int), intent(in) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_polar_set_interpolation(self%handle, kind), c_null_ptr, stat, errmsg)
+  end subroutine polar_set_interpolation
+
+  subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
+    class(spar_polar), intent(in) :: self
+    real(c_double), intent(in) :: alpha
+    real(c_double), intent(inout), optional :: cl, cd, cm
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_polar_evaluate(self%handle, alpha, cl, cd, cm), c_null_ptr, stat, errmsg)
+  end subroutine polar_evaluate
+
+  ! ---- blade element with momentum theory ----
+
+  ! One fluid per blade of this rank; a rank without blades gives an array of none.
+  subroutine aero_create(self, fluids, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    type(spar_fluid), intent(in) :: fluids(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr), allocatable :: handles(:)
+    type(c_ptr) :: session
+    integer(c_int64_t) :: n
+    integer(c_int) :: b, status
+
+    if (c_associated(self%handle)) then
+      call occupied('aero%create', stat, errmsg)
+      return
+    end if
+    allocate (handles(size(fluids)))
+    session = c_null_ptr
+    n = 0
+    do b = 1, size(fluids)
+      handles(b) = fluids(b)%handle
+      if (b == 1) session = fluids(b)%session
+    end do
+    status = spar_aero_create(int(size(fluids), c_int), handles, self%handle)
+    if (status == SPAR_OK .and. size(fluids) > 0) status = spar_fluid_get_count(handles(1), SPAR_NODES_MOTION, n)
+    if (status == SPAR_OK) then
+      self%session = session
+      self%blades = size(fluids)
+      self%sections = n
+    end if
+    call finish(status, session, stat, errmsg)
+  end subroutine aero_create
+
+  subroutine aero_destroy(self)
+    class(spar_aero), intent(inout) :: self
+
+    call spar_aero_destroy(self%handle)
+    self%session = c_null_ptr
+    self%blades = 0
+    self%sections = 0
+  end subroutine aero_destroy
+
+  impure elemental subroutine aero_final(self)
+    type(spar_aero), intent(inout) :: self
+
+    call self%destroy()
+  end subroutine aero_final
+
+  impure elemental subroutine aero_assign(left, right)
+    class(spar_aero), intent(inout) :: left
+    type(spar_aero), intent(in) :: right
+
+    call forbid_copy('aero object', left%handle, right%handle)
+  end subroutine aero_assign
+
+  logical function aero_exists(self) result(there)
+    class(spar_aero), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function aero_exists
+
+  type(c_ptr) function aero_handle(self) result(handle)
+    class(spar_aero), intent(in) :: self
+
+    handle = self%handle
+  end function aero_handle
+
+  function aero_place(self, verb) result(text)
+    class(spar_aero), intent(in) :: self
+    character(*), intent(in) :: verb
+    character(:), allocatable :: text
+
+    text = 'aero%' // verb // ': ' // text_of(self%blades) // ' blades of ' // text_of(self%sections) // ' sections'
+  end function aero_place
+
+  ! Section i, from 1, of every blade.
+  subroutine aero_set_section_64(self, i, chord, twist, polar, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: i
+    real(c_double), intent(in) :: chord, twist
+    class(spar_polar), intent(in) :: polar
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (c_associated(self%handle) .and. (i < 1 .or. (self%blades > 0 .and. i > self%sections))) then
+      call refuse(self%place('set_section') // '; there is no section ' // text_of(i), stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_set_section(self%handle, i - 1, chord, twist, polar%handle), self%session, stat, errmsg)
+  end subroutine aero_set_section_64
+
+  subroutine aero_set_section_32(self, i, chord, twist, polar, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int), intent(in) :: i
+    real(c_double), intent(in) :: chord, twist
+    class(spar_polar), intent(in) :: polar
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
+  end subroutine aero_set_section_32
+
+  subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
+  end subroutine aero_set_rotor
+
+  subroutine aero_set_turn(self, turn, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int), intent(in) :: turn
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_turn(self%handle, turn), self%session, stat, errmsg)
+  end subroutine aero_set_turn
+
+  subroutine aero_set_blades(self, total, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int), intent(in) :: total
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_blades(self%handle, total), self%session, stat, errmsg)
+  end subroutine aero_set_blades
+
+  subroutine aero_set_effects(self, effects, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int), intent(in) :: effects
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_effects(self%handle, effects), self%session, stat, errmsg)
+  end subroutine aero_set_effects
+
+  subroutine aero_solve(self, density, inflow, theta, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: density
+    real(c_double), contiguous, intent(in) :: inflow(:,:,:)
+    real(c_double), intent(in) :: theta
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('solve'), 'inflow', shape(inflow, kind=c_int64_t), [3_c_int64_t, self%sections, &
+        self%blades])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_solve(self%handle, density, inflow, theta), self%session, stat, errmsg)
+  end subroutine aero_solve
+
+  subroutine aero_get_rotor(self, thrust, torque, power, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_double), intent(inout), optional :: thrust, torque, power
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_get_rotor(self%handle, thrust, torque, power), self%session, stat, errmsg)
+  end subroutine aero_get_rotor
+
+  subroutine aero_get_sections(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: alpha(:,:), cl(:,:), cd(:,:), a(:,:), a_tangential(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(alpha)) call need(fault, self%place('get_sections'), 'alpha', shape(alpha, kind=c_int64_t), &
+        [self%sections, self%blades])
+    if (present(cl)) call need(fault, self%place('get_sections'), 'cl', shape(cl, kind=c_int64_t), &
+        [self%sections, self%blades])
+    if (present(cd)) call need(fault, self%place('get_sections'), 'cd', shape(cd, kind=c_int64_t), &
+        [self%sections, self%blades])
+    if (present(a)) call need(fault, self%place('get_sections'), 'a', shape(a, kind=c_int64_t), [self%sections, &
+        self%blades])
+    if (present(a_tangential)) call need(fault, self%place('get_sections'), 'a_tangential', shape(a_tangential, &
+        kind=c_int64_t), [self%sections, self%blades])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_get_sections(self%handle, alpha, cl, cd, a, a_tangential), self%session, stat, errmsg)
+  end subroutine aero_get_sections
+
+  subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer(c_int), contiguous, intent(inout), optional :: flags(:,:)
+    integer(c_int64_t), intent(inout), optional :: no_root
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(flags)) call need(fault, self%place('get_flags'), 'flags', shape(flags, kind=c_int64_t), &
+        [self%sections, self%blades])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_get_flags(self%handle, flags, no_root), self%session, stat, errmsg)
+  end subroutine aero_get_flags
+
+  subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: per_length(:,:,:), force(:,:,:), moment(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(per_length)) call need(fault, self%place('get_loads'), 'per_length', shape(per_length, &
+        kind=c_int64_t), [6_c_int64_t, self%sections, self%blades])
+    if (present(force)) call need(fault, self%place('get_loads'), 'force', shape(force, kind=c_int64_t), &
+        [3_c_int64_t, self%sections, self%blades])
+    if (present(moment)) call need(fault, self%place('get_loads'), 'moment', shape(moment, kind=c_int64_t), &
+        [3_c_int64_t, self%sections, self%blades])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
+  end subroutine aero_get_loads
+
+  ! ---- texts that need no object ----
+
+  function status_text(status) result(text)
+    integer(c_int), intent(in) :: status
+    character(:), allocatable :: text
+
+    text = f_text(c_status_text(status))
+  end function status_text
+
+  function version() result(text)
+    character(:), allocatable :: text
+
+    text = f_text(c_version())
+  end function version
+
+  ! Whether this build of the library has a feature: 'mpi', ...
+  logical function has_feature(feature) result(there)
+    character(*), intent(in) :: feature
+
+    there = c_has(c_text(feature)) /= 0
+  end function has_feature
+
+  ! ---- status and messages ----
+
+  ! How every call ends: the status goes to the caller that takes it; where none does, a failure stops the program with the
+  ! message.
+  subroutine finish(status, session, stat, errmsg)
+    integer(c_int), intent(in) :: status
+    type(c_ptr), intent(in) :: session ! whose message tells; none: this thread's
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: text
+
+    if (present(stat)) stat = status
+    if (status == SPAR_OK) return
+    text = f_text(spar_session_message(session))
+    if (len(text) == 0) text = f_text(c_status_text(status))
+    call tell(text, present(stat), errmsg)
+  end subroutine finish
+
+  ! How a call ends whose arguments the library has not seen.
+  subroutine refuse(text, stat, errmsg)
+    character(*), intent(in) :: text
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(stat)) stat = SPAR_ERR_ARGUMENT
+    call tell(text, present(stat), errmsg)
+  end subroutine refuse
+
+  subroutine occupied(call, stat, errmsg)
+    character(*), intent(in) :: call
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(stat)) stat = SPAR_ERR_STATE
+    call tell(call // ': the variable holds one already; destroy it first, or use another variable', present(stat), errmsg)
+  end subroutine occupied
+
+  subroutine tell(text, taken, errmsg)
+    character(*), intent(in) :: text
+    logical, intent(in) :: taken
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(errmsg)) errmsg = text
+    if (.not. taken) error stop text
+  end subroutine tell
+
+  ! Two uncreated variables are alike, and a variable is like itself; anything else would make a second owner.
+  subroutine forbid_copy(what, left, right)
+    character(*), intent(in) :: what
+    type(c_ptr), intent(in) :: left, right
+
+    if (c_associated(right)) then
+      if (c_associated(left, right)) return
+    else
+      if (.not. c_associated(left)) return
+    end if
+    error stop 'spar: a ' // what // ' cannot be copied: pass it as an argument or keep a pointer to it'
+  end subroutine forbid_copy
+
+  ! ---- shapes and numbers ----
+
+  ! Puts into fault what is wrong with the shape of an array, unless something is there already.
+  subroutine need(fault, place, array, has, needs)
+    character(:), allocatable, intent(inout) :: fault
+    character(*), intent(in) :: place, array
+    integer(c_int64_t), intent(in) :: has(:), needs(:)
+
+    if (allocated(fault) .or. all(has == needs)) return
+    fault = place // ': ' // array // ' has the shape ' // extents(has) // '; it must be ' // extents(needs)
+  end subroutine need
+
+  function extents(shape) result(text)
+    integer(c_int64_t), intent(in) :: shape(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = '('
+    do i = 1, size(shape)
+      if (i > 1) text = text // ','
+      text = text // text_of(shape(i))
+    end do
+    text = text // ')'
+  end function extents
+
+  function text_of(number) result(text)
+    integer(c_int64_t), intent(in) :: number
+    character(:), allocatable :: text
+    character(24) :: buffer
+
+    write (buffer, '(i0)') number
+    text = trim(buffer)
+  end function text_of
+
+  ! A count for a caller with 32-bit integers.
+  subroutine narrow(status, from, to, place, session, stat, errmsg)
+    integer(c_int), intent(in) :: status
+    integer(c_int64_t), intent(in) :: from
+    integer(c_int), intent(inout) :: to
+    character(*), intent(in) :: place
+    type(c_ptr), intent(in) :: session
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (status == SPAR_OK) then
+      if (from > huge(to)) then
+        call refuse(place // ': ' // text_of(from) // ' does not fit; take a 64-bit integer', stat, errmsg)
+        return
+      end if
+      to = int(from, c_int)
+    end if
+    call finish(status, session, stat, errmsg)
+  end subroutine narrow
+
+  integer(c_int) function flag(on)
+    logical, intent(in) :: on
+
+    flag = merge(1_c_int, 0_c_int, on)
+  end function flag
+
+  ! ---- text across the border ----
+
+  function c_text(text) result(c)
+    character(*), intent(in) :: text
+    character(kind=c_char, len=:), allocatable :: c
+
+    c = trim(text) // c_null_char
+  end function c_text
+
+  function f_text(c) result(text)
+    type(c_ptr), intent(in) :: c
+    character(kind=c_char, len=:), allocatable :: text
+    character(kind=c_char), pointer :: letters(:)
+    integer(c_int64_t) :: i, n
+
+    n = 0
+    if (c_associated(c)) n = strlen(c)
+    allocate (character(kind=c_char, len=n) :: text)
+    if (n == 0) return
+    call c_f_pointer(c, letters, [n])
+    do i = 1, n
+      text(i:i) = letters(i)
+    end do
+  end function f_text
+
+  function name_of(name) result(text)
+    character(:), allocatable, intent(in) :: name
+    character(:), allocatable :: text
+
+    text = ''
+    if (allocated(name)) text = name
+  end function name_of
+end module spar

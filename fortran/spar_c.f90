@@ -1,0 +1,668 @@
+! spar_c: the C interface of spar as it is, one binding per public function, one parameter per constant. The headers under
+! include/spar say what every call does, and what it may be given; the module spar puts the types and checks of Fortran over it.
+!
+! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
+! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
+! pointer to text of the library. Results are intent(inout): a refused call leaves them as they were. Counting is C's, from 0.
+module spar_c
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int, c_int64_t, c_ptr
+  implicit none
+  private :: c_char, c_double, c_funptr, c_int, c_int64_t, c_ptr
+  public
+
+  ! spar.h
+  integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
+      SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
+      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
+  integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, &
+      SPAR_COUPLING_AITKEN = 2, SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
+      SPAR_ROOT_DRIVEN = 3
+  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
+      SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
+  integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
+  integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
+  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, &
+      SPAR_EFFECT_GRAVITY = 4, SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
+      SPAR_EFFECT_FLUID_HISTORY = 64
+  ! spar_aero.h
+  integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
+      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
+  integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
+  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, &
+      SPAR_AERO_FLAG_BEYOND_POLAR = 4
+
+  interface
+    ! spar.h
+    function spar_status_text(status) bind(c) result(text)
+      import :: c_int, c_ptr
+      integer(c_int), value :: status
+      type(c_ptr) :: text
+    end function spar_status_text
+
+    function spar_version() bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr) :: text
+    end function spar_version
+
+    function spar_has(feature) bind(c) result(there)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in), optional :: feature(*)
+      integer(c_int) :: there
+    end function spar_has
+
+    function spar_session_create(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), intent(inout) :: session
+      integer(c_int) :: status
+    end function spar_session_create
+
+    function spar_session_create_fcomm(comm, session) bind(c) result(status)
+      import :: c_int, c_ptr
+      integer(c_int), value :: comm
+      type(c_ptr), intent(inout) :: session
+      integer(c_int) :: status
+    end function spar_session_create_fcomm
+
+    subroutine spar_session_destroy(session) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: session
+    end subroutine spar_session_destroy
+
+    function spar_session_message(session) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: session
+      type(c_ptr) :: text
+    end function spar_session_message
+
+    function spar_session_set_gravity(session, g) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(in), optional :: g(3)
+      integer(c_int) :: status
+    end function spar_session_set_gravity
+
+    function spar_session_set_integrator(session, rho_inf, substeps) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: rho_inf
+      integer(c_int), value :: substeps
+      integer(c_int) :: status
+    end function spar_session_set_integrator
+
+    function spar_session_set_newton(session, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: atol, rtol
+      integer(c_int), value :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_set_newton
+
+    function spar_session_set_predictor(session, order) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: order
+      integer(c_int) :: status
+    end function spar_session_set_predictor
+
+    function spar_session_set_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: scheme
+      real(c_double), value :: atol, rtol
+      integer(c_int), value :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_set_coupling
+
+    function spar_session_set_relaxation(session, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: omega
+      integer(c_int) :: status
+    end function spar_session_set_relaxation
+
+    function spar_session_set_reproducible(session, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: on
+      integer(c_int) :: status
+    end function spar_session_set_reproducible
+
+    function spar_session_set_option(session, key, value) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: key(*), value(*)
+      integer(c_int) :: status
+    end function spar_session_set_option
+
+    function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: t
+      integer(c_int64_t), intent(inout), optional :: step
+      integer(c_int), intent(inout), optional :: iteration
+      integer(c_int) :: status
+    end function spar_session_get_time
+
+    function spar_point_create(session, name, x, q, member) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: name(*)
+      real(c_double), intent(in), optional :: x(3), q(4)
+      type(c_ptr), intent(inout) :: member
+      integer(c_int) :: status
+    end function spar_point_create
+
+    function spar_rigid_create(session, name, x, q, mass, member) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: name(*)
+      real(c_double), intent(in), optional :: x(3), q(4), mass(36)
+      type(c_ptr), intent(inout) :: member
+      integer(c_int) :: status
+    end function spar_rigid_create
+
+    function spar_beam_create(session, name, elements, nodes_per_element, member) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: name(*)
+      integer(c_int), value :: elements, nodes_per_element
+      type(c_ptr), intent(inout) :: member
+      integer(c_int) :: status
+    end function spar_beam_create
+
+    function spar_beam_set_axis(beam, n, eta, xyz, twist) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*), xyz(*), twist(*)
+      integer(c_int) :: status
+    end function spar_beam_set_axis
+
+    function spar_beam_set_nodes(beam, n, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*), q(*)
+      integer(c_int) :: status
+    end function spar_beam_set_nodes
+
+    function spar_beam_set_sections(beam, n, eta, stiffness, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*), stiffness(*), mass(*)
+      integer(c_int) :: status
+    end function spar_beam_set_sections
+
+    function spar_beam_set_quadrature(beam, rule, points) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), value :: rule, points
+      integer(c_int) :: status
+    end function spar_beam_set_quadrature
+
+    function spar_beam_set_damping(beam, mu) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(in), optional :: mu(6)
+      integer(c_int) :: status
+    end function spar_beam_set_damping
+
+    function spar_member_set_placement(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: x(3), q(4)
+      integer(c_int) :: status
+    end function spar_member_set_placement
+
+    function spar_member_set_root(member, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_member_set_root
+
+    function spar_member_set_external(member, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: on
+      integer(c_int) :: status
+    end function spar_member_set_external
+
+    function spar_member_set_effects(member, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: effects
+      integer(c_int) :: status
+    end function spar_member_set_effects
+
+    function spar_member_set_velocity(member, x0, v0, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
+      integer(c_int) :: status
+    end function spar_member_set_velocity
+
+    function spar_member_set_owner(member, rank) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: rank
+      integer(c_int) :: status
+    end function spar_member_set_owner
+
+    function spar_member_commit(member) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int) :: status
+    end function spar_member_commit
+
+    function spar_member_get_count(member, nodes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: nodes
+      integer(c_int) :: status
+    end function spar_member_get_count
+
+    function spar_member_get_reference(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: x(*), q(*)
+      integer(c_int) :: status
+    end function spar_member_get_reference
+
+    function spar_member_get_motion(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: q(*), v(*), a(*)
+      integer(c_int) :: status
+    end function spar_member_get_motion
+
+    function spar_member_set_motion(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: q(*), v(*), a(*)
+      integer(c_int) :: status
+    end function spar_member_set_motion
+
+    function spar_member_drive_root(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: q(7), v(6), a(6)
+      integer(c_int) :: status
+    end function spar_member_drive_root
+
+    function spar_member_add_load(member, node, load) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: node
+      real(c_double), intent(in), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_member_add_load
+
+    function spar_member_get_loads(member, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: load(*)
+      integer(c_int) :: status
+    end function spar_member_get_loads
+
+    function spar_member_get_reaction(member, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_member_get_reaction
+
+    function spar_member_get_energy(member, energy) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: energy(4)
+      integer(c_int) :: status
+    end function spar_member_get_energy
+
+    function spar_member_solve_static(member, load_steps) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: load_steps
+      integer(c_int) :: status
+    end function spar_member_solve_static
+
+    function spar_member_get_modes(member, n, frequency_hz, shapes) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: frequency_hz(*), shapes(*)
+      integer(c_int) :: status
+    end function spar_member_get_modes
+
+    function spar_fluid_create(member, name, fluid) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: member
+      character(kind=c_char), intent(in), optional :: name(*)
+      type(c_ptr), intent(inout) :: fluid
+      integer(c_int) :: status
+    end function spar_fluid_create
+
+    subroutine spar_fluid_destroy(fluid) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: fluid
+    end subroutine spar_fluid_destroy
+
+    function spar_fluid_set_motion_nodes(fluid, n, x) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_motion_nodes
+
+    function spar_fluid_set_force_nodes(fluid, n, x) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_force_nodes
+
+    function spar_fluid_set_sections(fluid, n, xi, offset) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: xi(*), offset(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_sections
+
+    function spar_fluid_set_projection(fluid, method, max_distance) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: method
+      real(c_double), value :: max_distance
+      integer(c_int) :: status
+    end function spar_fluid_set_projection
+
+    function spar_fluid_set_interpolation(fluid, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_fluid_set_interpolation
+
+    function spar_fluid_map(fluid) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int) :: status
+    end function spar_fluid_map
+
+    function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int) :: status
+    end function spar_fluid_get_count
+
+    function spar_fluid_get_map(fluid, which, xi, distance, flags) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: xi(*), distance(*)
+      integer(c_int), intent(inout), optional :: flags(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_map
+
+    function spar_fluid_get_feet(fluid, which, x_map, q_map, con) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: x_map(*), q_map(*), con(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_feet
+
+    function spar_fluid_get_basis(fluid, which, first_node, phi) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int64_t), intent(inout), optional :: first_node(*)
+      real(c_double), intent(inout), optional :: phi(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_basis
+
+    function spar_fluid_pull_motion(fluid, theta, x, v) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), v(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_motion
+
+    function spar_fluid_pull_sections(fluid, theta, q, omega, accel) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: q(*), omega(*), accel(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_sections
+
+    function spar_fluid_pull_forces(fluid, theta, force) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: force(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_forces
+
+    function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces
+
+    function spar_fluid_get_audit(fluid, audit) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: audit(8)
+      integer(c_int) :: status
+    end function spar_fluid_get_audit
+
+    function spar_step_begin(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int) :: status
+    end function spar_step_begin
+
+    function spar_step_solve(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_solve
+
+    function spar_step_check(session, done) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: done
+      integer(c_int) :: status
+    end function spar_step_check
+
+    function spar_step_accept(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_accept
+
+    function spar_step_reject(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_reject
+
+    function spar_step(session, dt, solve, context, iterations) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_step
+
+    function spar_session_save(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_save
+
+    function spar_session_load(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_load
+
+    function spar_session_set_log(session, log, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: log
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_log
+
+    ! spar_aero.h
+    function spar_polar_create(n, alpha_rad, cl, cd, cm, polar) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: alpha_rad(*), cl(*), cd(*), cm(*)
+      type(c_ptr), intent(inout) :: polar
+      integer(c_int) :: status
+    end function spar_polar_create
+
+    function spar_polar_set_interpolation(polar, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: polar
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_polar_set_interpolation
+
+    function spar_polar_evaluate(polar, alpha_rad, cl, cd, cm) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: polar
+      real(c_double), value :: alpha_rad
+      real(c_double), intent(inout), optional :: cl, cd, cm
+      integer(c_int) :: status
+    end function spar_polar_evaluate
+
+    subroutine spar_polar_destroy(polar) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: polar
+    end subroutine spar_polar_destroy
+
+    function spar_aero_create(blades, sections, aero) bind(c) result(status)
+      import :: c_int, c_ptr
+      integer(c_int), value :: blades
+      type(c_ptr), intent(in), optional :: sections(*)
+      type(c_ptr), intent(inout) :: aero
+      integer(c_int) :: status
+    end function spar_aero_create
+
+    subroutine spar_aero_destroy(aero) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: aero
+    end subroutine spar_aero_destroy
+
+    function spar_aero_set_section(aero, i, chord, twist, polar) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int64_t), value :: i
+      real(c_double), value :: chord, twist
+      type(c_ptr), value :: polar
+      integer(c_int) :: status
+    end function spar_aero_set_section
+
+    function spar_aero_set_rotor(aero, hub, axis, hub_radius, tip_radius) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(in), optional :: hub(3), axis(3)
+      real(c_double), value :: hub_radius, tip_radius
+      integer(c_int) :: status
+    end function spar_aero_set_rotor
+
+    function spar_aero_set_turn(aero, turn) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), value :: turn
+      integer(c_int) :: status
+    end function spar_aero_set_turn
+
+    function spar_aero_set_blades(aero, total) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), value :: total
+      integer(c_int) :: status
+    end function spar_aero_set_blades
+
+    function spar_aero_set_effects(aero, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), value :: effects
+      integer(c_int) :: status
+    end function spar_aero_set_effects
+
+    function spar_aero_solve(aero, density, inflow, theta) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), value :: density
+      real(c_double), intent(in), optional :: inflow(*)
+      real(c_double), value :: theta
+      integer(c_int) :: status
+    end function spar_aero_solve
+
+    function spar_aero_get_rotor(aero, thrust, torque, power) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(inout), optional :: thrust, torque, power
+      integer(c_int) :: status
+    end function spar_aero_get_rotor
+
+    function spar_aero_get_sections(aero, alpha, cl, cd, a, a_tangential) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(inout), optional :: alpha(*), cl(*), cd(*), a(*), a_tangential(*)
+      integer(c_int) :: status
+    end function spar_aero_get_sections
+
+    function spar_aero_get_flags(aero, flags, no_root) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), intent(inout), optional :: flags(*)
+      integer(c_int64_t), intent(inout), optional :: no_root
+      integer(c_int) :: status
+    end function spar_aero_get_flags
+
+    function spar_aero_get_loads(aero, per_length, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(inout), optional :: per_length(*), force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_aero_get_loads
+
+    ! spar_output.h
+    function spar_member_write_vtk(member, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: member
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_member_write_vtk
+
+    function spar_fluid_write_vtk(fluid, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_fluid_write_vtk
+  end interface
+end module spar_c
