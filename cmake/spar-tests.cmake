@@ -110,6 +110,7 @@ if(TARGET spar_fortran)
       spar_set_test(${target} fortran 120)
     endif()
   endforeach()
+  include("${PROJECT_SOURCE_DIR}/tests/fortran/fortran.cmake" OPTIONAL)
 endif()
 
 include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)

@@ -13,7 +13,7 @@
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam. spar_status_text,
-! spar_version and spar_has keep their names.
+! spar_version, spar_has and spar_vtk_series_add keep their names.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -34,13 +34,14 @@
 module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_int, c_int64_t, &
       c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
-  use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has
+  use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
+      c_series_add => spar_vtk_series_add
   implicit none
   private
 
   public :: spar_session, spar_member, spar_fluid, spar_polar, spar_aero
   public :: spar_fluid_solver, spar_log
-  public :: spar_status_text, spar_version, spar_has
+  public :: spar_status_text, spar_version, spar_has, spar_vtk_series_add
 
   public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING
   public :: SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER, SPAR_COUPLING_EXPLICIT
@@ -245,6 +246,10 @@ module spar
     procedure :: has_feature
   end interface spar_has
 
+  interface spar_vtk_series_add
+    procedure :: series_add
+  end interface spar_vtk_series_add
+
   interface
     pure function strlen(text) bind(c) result(n)
       import :: c_ptr, c_int64_t
@@ -289,7 +294,7 @@ contains
     class(spar_session), intent(inout) :: left
     type(spar_session), intent(in) :: right
 
-    call forbid_copy('session', left%handle, right%handle)
+    call forbid_copy('a session', left%handle, right%handle)
   end subroutine session_assign
 
   logical function session_exists(self) result(there)
@@ -1030,7 +1035,7 @@ contains
     class(spar_fluid), intent(inout) :: left
     type(spar_fluid), intent(in) :: right
 
-    call forbid_copy('fluid', left%handle, right%handle)
+    call forbid_copy('a fluid', left%handle, right%handle)
   end subroutine fluid_assign
 
   logical function fluid_exists(self) result(there)
@@ -1396,7 +1401,7 @@ contains
     class(spar_polar), intent(inout) :: left
     type(spar_polar), intent(in) :: right
 
-    call forbid_copy('polar', left%handle, right%handle)
+    call forbid_copy('a polar', left%handle, right%handle)
   end subroutine polar_assign
 
   logical function polar_exists(self) result(there)
@@ -1483,7 +1488,7 @@ contains
     class(spar_aero), intent(inout) :: left
     type(spar_aero), intent(in) :: right
 
-    call forbid_copy('aero object', left%handle, right%handle)
+    call forbid_copy('an aero object', left%handle, right%handle)
   end subroutine aero_assign
 
   logical function aero_exists(self) result(there)
@@ -1657,7 +1662,7 @@ contains
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
   end subroutine aero_get_loads
 
-  ! ---- texts that need no object ----
+  ! ---- calls that need no object ----
 
   function status_text(status) result(text)
     integer(c_int), intent(in) :: status
@@ -1678,6 +1683,17 @@ contains
 
     there = c_has(c_text(feature)) /= 0
   end function has_feature
+
+  ! Adds a file to an index of files in time; part counts from 0.
+  subroutine series_add(path, time, part, file, stat, errmsg)
+    character(*), intent(in) :: path, file
+    real(c_double), intent(in) :: time
+    integer(c_int), intent(in) :: part
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(c_series_add(c_text(path), time, part, c_text(file)), c_null_ptr, stat, errmsg)
+  end subroutine series_add
 
   ! ---- status and messages ----
 
@@ -1735,18 +1751,19 @@ contains
     else
       if (.not. c_associated(left)) return
     end if
-    error stop 'spar: a ' // what // ' cannot be copied: pass it as an argument or keep a pointer to it'
+    error stop 'spar: ' // what // ' cannot be copied: pass it as an argument or keep a pointer to it'
   end subroutine forbid_copy
 
   ! ---- shapes and numbers ----
 
-  ! Puts into fault what is wrong with the shape of an array, unless something is there already.
+  ! Puts into fault what is wrong with the shape of an array, unless something is there already. Where there is nothing to be
+  ! read or written, any array without elements will do.
   subroutine need(fault, place, array, has, needs)
     character(:), allocatable, intent(inout) :: fault
     character(*), intent(in) :: place, array
     integer(c_int64_t), intent(in) :: has(:), needs(:)
 
-    if (allocated(fault) .or. all(has == needs)) return
+    if (allocated(fault) .or. all(has == needs) .or. (product(has) == 0 .and. product(needs) == 0)) return
     fault = place // ': ' // array // ' has the shape ' // extents(has) // '; it must be ' // extents(needs)
   end subroutine need
 

@@ -664,5 +664,14 @@ module spar_c
       character(kind=c_char), intent(in), optional :: path(*)
       integer(c_int) :: status
     end function spar_fluid_write_vtk
+
+    function spar_vtk_series_add(path, time, part, file) bind(c) result(status)
+      import :: c_char, c_double, c_int
+      character(kind=c_char), intent(in), optional :: path(*)
+      real(c_double), value :: time
+      integer(c_int), value :: part
+      character(kind=c_char), intent(in), optional :: file(*)
+      integer(c_int) :: status
+    end function spar_vtk_series_add
   end interface
 end module spar_c

@@ -1,0 +1,21 @@
+# Bindings against C: the same names and numbers, and the same types.
+add_test(NAME fortran_names COMMAND "${CMAKE_COMMAND}" -DSOURCE=${PROJECT_SOURCE_DIR}
+  -P "${CMAKE_CURRENT_LIST_DIR}/names.cmake")
+spar_set_test(fortran_names fortran 60)
+
+# A whole-program link of C and Fortran compares the types of every call; built when tested, for it takes a while.
+if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+  add_executable(fortran_types EXCLUDE_FROM_ALL ${spar_sources}
+    "${PROJECT_SOURCE_DIR}/fortran/spar_c.f90" "${PROJECT_SOURCE_DIR}/tests/fortran/test_bindings.f90")
+  set_target_properties(fortran_types PROPERTIES LINKER_LANGUAGE Fortran
+    RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
+    Fortran_MODULE_DIRECTORY "${PROJECT_BINARY_DIR}/tests/modules_types")
+  get_target_property(definitions spar_objects COMPILE_DEFINITIONS)
+  target_compile_definitions(fortran_types PRIVATE ${definitions})
+  target_include_directories(fortran_types PRIVATE "${PROJECT_SOURCE_DIR}/include")
+  target_compile_options(fortran_types PRIVATE -flto -O0)
+  target_link_options(fortran_types PRIVATE -flto -O0 -Werror=lto-type-mismatch)
+  target_link_libraries(fortran_types PRIVATE spar_flags spar::gsl Threads::Threads $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
+  add_test(NAME fortran_types COMMAND "${CMAKE_COMMAND}" --build "${PROJECT_BINARY_DIR}" --target fortran_types)
+  spar_set_test(fortran_types fortran 300)
+endif()

@@ -1,0 +1,132 @@
+! Every raw binding once, with no object to work on: the library refuses each such call. The check of types at link time
+! (fortran.cmake) sees only procedures that are referenced; this program is what it links.
+program test_bindings
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_int64_t, c_null_funptr, c_null_ptr, c_ptr
+  use spar_c
+  implicit none
+  type(c_ptr) :: none, made
+  integer :: failures = 0
+
+  none = c_null_ptr
+  made = c_null_ptr
+
+  ! spar.h
+  call check(c_associated(spar_status_text(0_c_int)), 'spar_status_text')
+  call check(c_associated(spar_version()), 'spar_version')
+  call check(spar_has() == 0, 'spar_has')
+  made = c_null_ptr
+  call check(spar_session_create(made) == SPAR_OK .and. c_associated(made), 'spar_session_create')
+  call spar_session_destroy(made)
+  call check(.not. c_associated(made), 'spar_session_destroy')
+  call check(spar_session_create_fcomm(-1_c_int, made) /= SPAR_OK .and. .not. c_associated(made), &
+      'spar_session_create_fcomm')
+  call check(c_associated(spar_session_message(none)), 'spar_session_message')
+  call refused(spar_session_set_gravity(none), 'spar_session_set_gravity')
+  call refused(spar_session_set_integrator(none, 0.0_c_double, 0_c_int), 'spar_session_set_integrator')
+  call refused(spar_session_set_newton(none, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_session_set_newton')
+  call refused(spar_session_set_predictor(none, 0_c_int), 'spar_session_set_predictor')
+  call refused(spar_session_set_coupling(none, 0_c_int, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_session_set_coupling')
+  call refused(spar_session_set_relaxation(none, 0.0_c_double), 'spar_session_set_relaxation')
+  call refused(spar_session_set_reproducible(none, 0_c_int), 'spar_session_set_reproducible')
+  call refused(spar_session_set_option(none), 'spar_session_set_option')
+  call refused(spar_session_get_time(none), 'spar_session_get_time')
+  call refused(spar_point_create(none, member=made), 'spar_point_create')
+  call refused(spar_rigid_create(none, member=made), 'spar_rigid_create')
+  call refused(spar_beam_create(none, elements=0_c_int, nodes_per_element=0_c_int, member=made), 'spar_beam_create')
+  call refused(spar_beam_set_axis(none, 0_c_int64_t), 'spar_beam_set_axis')
+  call refused(spar_beam_set_nodes(none, 0_c_int64_t), 'spar_beam_set_nodes')
+  call refused(spar_beam_set_sections(none, 0_c_int64_t), 'spar_beam_set_sections')
+  call refused(spar_beam_set_quadrature(none, 0_c_int, 0_c_int), 'spar_beam_set_quadrature')
+  call refused(spar_beam_set_damping(none), 'spar_beam_set_damping')
+  call refused(spar_member_set_placement(none), 'spar_member_set_placement')
+  call refused(spar_member_set_root(none, 0_c_int), 'spar_member_set_root')
+  call refused(spar_member_set_external(none, 0_c_int), 'spar_member_set_external')
+  call refused(spar_member_set_effects(none, 0_c_int), 'spar_member_set_effects')
+  call refused(spar_member_set_velocity(none), 'spar_member_set_velocity')
+  call refused(spar_member_set_owner(none, 0_c_int), 'spar_member_set_owner')
+  call refused(spar_member_commit(none), 'spar_member_commit')
+  call refused(spar_member_get_count(none), 'spar_member_get_count')
+  call refused(spar_member_get_reference(none), 'spar_member_get_reference')
+  call refused(spar_member_get_motion(none), 'spar_member_get_motion')
+  call refused(spar_member_set_motion(none), 'spar_member_set_motion')
+  call refused(spar_member_drive_root(none), 'spar_member_drive_root')
+  call refused(spar_member_add_load(none, 0_c_int64_t), 'spar_member_add_load')
+  call refused(spar_member_get_loads(none), 'spar_member_get_loads')
+  call refused(spar_member_get_reaction(none), 'spar_member_get_reaction')
+  call refused(spar_member_get_energy(none), 'spar_member_get_energy')
+  call refused(spar_member_solve_static(none, 0_c_int), 'spar_member_solve_static')
+  call refused(spar_member_get_modes(none, 0_c_int64_t), 'spar_member_get_modes')
+  call refused(spar_fluid_create(none, fluid=made), 'spar_fluid_create')
+  made = c_null_ptr
+  call spar_fluid_destroy(made)
+  call refused(spar_fluid_set_motion_nodes(none, 0_c_int64_t), 'spar_fluid_set_motion_nodes')
+  call refused(spar_fluid_set_force_nodes(none, 0_c_int64_t), 'spar_fluid_set_force_nodes')
+  call refused(spar_fluid_set_sections(none, 0_c_int64_t), 'spar_fluid_set_sections')
+  call refused(spar_fluid_set_projection(none, 0_c_int, 0.0_c_double), 'spar_fluid_set_projection')
+  call refused(spar_fluid_set_interpolation(none, 0_c_int), 'spar_fluid_set_interpolation')
+  call refused(spar_fluid_map(none), 'spar_fluid_map')
+  call refused(spar_fluid_get_count(none, 0_c_int), 'spar_fluid_get_count')
+  call refused(spar_fluid_get_map(none, 0_c_int), 'spar_fluid_get_map')
+  call refused(spar_fluid_get_feet(none, 0_c_int), 'spar_fluid_get_feet')
+  call refused(spar_fluid_get_basis(none, 0_c_int), 'spar_fluid_get_basis')
+  call refused(spar_fluid_pull_motion(none, 0.0_c_double), 'spar_fluid_pull_motion')
+  call refused(spar_fluid_pull_sections(none, 0.0_c_double), 'spar_fluid_pull_sections')
+  call refused(spar_fluid_pull_forces(none, 0.0_c_double), 'spar_fluid_pull_forces')
+  call refused(spar_fluid_push_forces(none), 'spar_fluid_push_forces')
+  call refused(spar_fluid_get_audit(none), 'spar_fluid_get_audit')
+  call refused(spar_step_begin(none, 0.0_c_double), 'spar_step_begin')
+  call refused(spar_step_solve(none), 'spar_step_solve')
+  call refused(spar_step_check(none), 'spar_step_check')
+  call refused(spar_step_accept(none), 'spar_step_accept')
+  call refused(spar_step_reject(none), 'spar_step_reject')
+  call refused(spar_step(none, 0.0_c_double, c_null_funptr, none), 'spar_step')
+  call refused(spar_session_save(none), 'spar_session_save')
+  call refused(spar_session_load(none), 'spar_session_load')
+  call refused(spar_session_set_log(none, c_null_funptr, none), 'spar_session_set_log')
+
+  ! spar_aero.h
+  call refused(spar_polar_create(0_c_int64_t, polar=made), 'spar_polar_create')
+  call refused(spar_polar_set_interpolation(none, 0_c_int), 'spar_polar_set_interpolation')
+  call refused(spar_polar_evaluate(none, 0.0_c_double), 'spar_polar_evaluate')
+  made = c_null_ptr
+  call spar_polar_destroy(made)
+  made = c_null_ptr
+  call check(spar_aero_create(0_c_int, aero=made) == SPAR_OK .and. c_associated(made), 'spar_aero_create')
+  call spar_aero_destroy(made)
+  call check(.not. c_associated(made), 'spar_aero_destroy')
+  call refused(spar_aero_set_section(none, 0_c_int64_t, 0.0_c_double, 0.0_c_double, none), 'spar_aero_set_section')
+  call refused(spar_aero_set_rotor(none, hub_radius=0.0_c_double, tip_radius=0.0_c_double), 'spar_aero_set_rotor')
+  call refused(spar_aero_set_turn(none, 0_c_int), 'spar_aero_set_turn')
+  call refused(spar_aero_set_blades(none, 0_c_int), 'spar_aero_set_blades')
+  call refused(spar_aero_set_effects(none, 0_c_int), 'spar_aero_set_effects')
+  call refused(spar_aero_solve(none, 0.0_c_double, theta=0.0_c_double), 'spar_aero_solve')
+  call refused(spar_aero_get_rotor(none), 'spar_aero_get_rotor')
+  call refused(spar_aero_get_sections(none), 'spar_aero_get_sections')
+  call refused(spar_aero_get_flags(none), 'spar_aero_get_flags')
+  call refused(spar_aero_get_loads(none), 'spar_aero_get_loads')
+
+  ! spar_output.h
+  call refused(spar_member_write_vtk(none), 'spar_member_write_vtk')
+  call refused(spar_fluid_write_vtk(none), 'spar_fluid_write_vtk')
+  call refused(spar_vtk_series_add(time=0.0_c_double, part=0_c_int), 'spar_vtk_series_add')
+
+  if (failures > 0) error stop 'test_bindings failed'
+
+contains
+
+  subroutine check(right, what)
+    logical, intent(in) :: right
+    character(*), intent(in) :: what
+
+    if (right) return
+    failures = failures + 1
+    write (*, '(2a)') 'wrong: ', what
+  end subroutine check
+
+  subroutine refused(status, what)
+    integer(c_int), intent(in) :: status
+    character(*), intent(in) :: what
+
+    call check(status == SPAR_ERR_ARGUMENT .and. .not. c_associated(made), what // ' of nothing is refused')
+  end subroutine refused
+end program test_bindings
