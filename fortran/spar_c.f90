@@ -16,6 +16,7 @@ module spar_c
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
   integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, &
       SPAR_COUPLING_AITKEN = 2, SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
       SPAR_ROOT_DRIVEN = 3
   integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
