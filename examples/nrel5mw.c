@@ -53,13 +53,15 @@ static void frame_quat(double axis[3][3], double q[4]) {
 
 /* ---- reading ---- */
 
-static int fail(nrel5mw *data, int status, const char *format, ...) {
+static void say(nrel5mw *data, const char *format, ...) {
     va_list list;
     va_start(list, format);
     vsnprintf(data->message, sizeof data->message, format, list);
     va_end(list);
-    return status;
 }
+
+/* The status, with its message written. */
+#define FAIL(data, status, ...) (say(data, __VA_ARGS__), (status))
 
 /* A table of numbers: rows of `columns` numbers, with a word after them where `words` is not NULL; '#' begins a
  * comment. */
@@ -82,12 +84,12 @@ static int read_row(nrel5mw *data, table *t, char *line, int words, const char *
         char *end;
         t->value[t->n * t->columns + c] = strtod(at, &end);
         if (end == at) {
-            return fail(data, SPAR_ERR_IO, "%s, line %d: %d numbers expected, %d found", path, number, t->columns, c);
+            return FAIL(data, SPAR_ERR_IO, "%s, line %d: %d numbers expected, %d found", path, number, t->columns, c);
         }
         at = end;
     }
     if (words && sscanf(at, "%31s", t->word[t->n]) != 1) {
-        return fail(data, SPAR_ERR_IO, "%s, line %d: a name is missing after the numbers", path, number);
+        return FAIL(data, SPAR_ERR_IO, "%s, line %d: a name is missing after the numbers", path, number);
     }
     t->n++;
     return SPAR_OK;
@@ -99,31 +101,35 @@ static int table_read(nrel5mw *data, const char *directory, const char *name, in
     snprintf(path, sizeof path, "%s/%s.txt", directory, name);
     FILE *file = fopen(path, "r");
     if (!file) {
-        return fail(data, SPAR_ERR_IO, "%s: cannot be opened; give the directory of the tables (examples/data/nrel5mw)",
+        return FAIL(data, SPAR_ERR_IO, "%s: cannot be opened; give the directory of the tables (examples/data/nrel5mw)",
                     path);
     }
     *t = (table){.columns = columns,
                  .value = malloc((size_t)(room * columns) * sizeof(double)),
                  .word = words ? malloc((size_t)room * sizeof *t->word) : NULL};
-    int status = t->value && (t->word || !words) ? SPAR_OK : fail(data, SPAR_ERR_MEMORY, "%s: no memory", path);
+    int status = SPAR_OK;
+    if (!t->value || (words && !t->word)) {
+        fclose(file);
+        return FAIL(data, SPAR_ERR_MEMORY, "%s: no memory", path);
+    }
     for (int number = 1; status == SPAR_OK && fgets(line, sizeof line, file); number++) {
         line[strcspn(line, "#\r\n")] = '\0';
         if (line[strspn(line, " \t")] == '\0') {
             continue;
         }
         status = t->n < room ? read_row(data, t, line, words, path, number)
-                             : fail(data, SPAR_ERR_IO, "%s: more than %lld rows", path, (long long)room);
+                             : FAIL(data, SPAR_ERR_IO, "%s: more than %lld rows", path, (long long)room);
     }
     fclose(file);
     if (status == SPAR_OK && t->n < 2) {
-        status = fail(data, SPAR_ERR_IO, "%s: fewer than 2 rows", path);
+        return FAIL(data, SPAR_ERR_IO, "%s: fewer than 2 rows", path);
     }
     return status;
 }
 
 /* Column c of the table times scale, in memory of its own. */
 static double *column(const table *t, int c, double scale) {
-    double *x = malloc((size_t)t->n * sizeof *x);
+    double *x = calloc((size_t)t->n, sizeof *x);
     for (int64_t i = 0; x && i < t->n; i++) {
         x[i] = scale * t->value[i * t->columns + c];
     }
@@ -151,7 +157,7 @@ static int read_rotor(nrel5mw *data, const char *directory) {
     snprintf(path, sizeof path, "%s/rotor.txt", directory);
     FILE *file = fopen(path, "r");
     if (!file) {
-        return fail(data, SPAR_ERR_IO, "%s: cannot be opened; give the directory of the tables (examples/data/nrel5mw)",
+        return FAIL(data, SPAR_ERR_IO, "%s: cannot be opened; give the directory of the tables (examples/data/nrel5mw)",
                     path);
     }
     while (fgets(line, sizeof line, file)) {
@@ -173,7 +179,7 @@ static int read_rotor(nrel5mw *data, const char *directory) {
     fclose(file);
     for (size_t k = 0; k < sizeof key / sizeof key[0]; k++) {
         if (key[k].found < key[k].n) {
-            return fail(data, SPAR_ERR_IO, "%s: '%s' with %d number(s) is missing", path, key[k].name, key[k].n);
+            return FAIL(data, SPAR_ERR_IO, "%s: '%s' with %d number(s) is missing", path, key[k].name, key[k].n);
         }
     }
     data->blades = (int)blades;
@@ -190,9 +196,9 @@ static int read_axis(nrel5mw *data, const char *directory) {
         data->axis_n = t.n;
         data->axis_eta = column(&t, 0, 1);
         data->axis_twist = column(&t, 4, -pi / 180); /* published: minus a right-handed turn */
-        data->axis_xyz = malloc((size_t)(3 * t.n) * sizeof(double));
+        data->axis_xyz = calloc((size_t)t.n, 3 * sizeof(double));
         if (!data->axis_eta || !data->axis_twist || !data->axis_xyz) {
-            status = fail(data, SPAR_ERR_MEMORY, "axis: no memory");
+            status = FAIL(data, SPAR_ERR_MEMORY, "axis: no memory");
         }
         for (int64_t i = 0; status == SPAR_OK && i < t.n; i++) {
             memcpy(data->axis_xyz + 3 * i, t.value + 5 * i + 1, 3 * sizeof(double));
@@ -209,10 +215,10 @@ static int read_sections(nrel5mw *data, const char *directory) {
     if (status == SPAR_OK) {
         data->section_n = t.n;
         data->section_eta = column(&t, 0, 1);
-        data->stiffness = malloc((size_t)(36 * t.n) * sizeof(double));
-        data->mass = malloc((size_t)(36 * t.n) * sizeof(double));
+        data->stiffness = calloc((size_t)t.n, 36 * sizeof(double));
+        data->mass = calloc((size_t)t.n, 36 * sizeof(double));
         if (!data->section_eta || !data->stiffness || !data->mass) {
-            status = fail(data, SPAR_ERR_MEMORY, "sections: no memory");
+            status = FAIL(data, SPAR_ERR_MEMORY, "sections: no memory");
         }
         for (int64_t i = 0; status == SPAR_OK && i < t.n; i++) {
             const double *from = t.value + 43 * i + 1;
@@ -241,7 +247,7 @@ static int read_polar(nrel5mw *data, const char *directory, const char *name, nr
         polar->cd = column(&t, 2, 1);
         polar->cm = column(&t, 3, 1);
         if (!polar->alpha || !polar->cl || !polar->cd || !polar->cm) {
-            status = fail(data, SPAR_ERR_MEMORY, "%s: no memory", file);
+            status = FAIL(data, SPAR_ERR_MEMORY, "%s: no memory", file);
         }
     }
     table_free(&t);
@@ -253,7 +259,7 @@ static int read_polars(nrel5mw *data, const char *directory, const table *t) {
     data->polar = calloc((size_t)t->n, sizeof *data->polar);
     data->polar_of = calloc((size_t)t->n, sizeof *data->polar_of);
     if (!data->polar || !data->polar_of) {
-        return fail(data, SPAR_ERR_MEMORY, "polars: no memory");
+        return FAIL(data, SPAR_ERR_MEMORY, "polars: no memory");
     }
     for (int64_t i = 0; i < t->n; i++) {
         int p = 0;
@@ -284,7 +290,7 @@ static int read_aero(nrel5mw *data, const char *directory) {
         data->chord = column(&t, 4, 1);
         status = data->span && data->curve && data->sweep && data->twist && data->chord
                      ? read_polars(data, directory, &t)
-                     : fail(data, SPAR_ERR_MEMORY, "aero: no memory");
+                     : FAIL(data, SPAR_ERR_MEMORY, "aero: no memory");
     }
     table_free(&t);
     return status;
@@ -496,7 +502,7 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     snprintf(name, sizeof name, "sections%d", blade + 1);
     double *work = malloc((size_t)(11 * n) * sizeof *work);
     if (!work) {
-        return fail(data, SPAR_ERR_MEMORY, "sections: no memory");
+        return FAIL(data, SPAR_ERR_MEMORY, "sections: no memory");
     }
     double *xi = work, *x_map = xi + n, *q_map = x_map + 3 * n, *offset = q_map + 4 * n;
     for (int64_t i = 0; i < n; i++) {
@@ -523,20 +529,24 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     return status;
 }
 
+/* The section keeps the polar's table, so that the polar itself can go at once. */
+static int set_section(const nrel5mw *data, int64_t i, double twist, spar_aero *aero) {
+    const nrel5mw_polar *from = &data->polar[data->polar_of[i]];
+    spar_polar *polar = NULL;
+    int status = spar_polar_create(from->n, from->alpha, from->cl, from->cd, from->cm, &polar);
+    if (status == SPAR_OK) {
+        status = spar_aero_set_section(aero, i, data->chord[i], twist, polar);
+    }
+    spar_polar_destroy(&polar);
+    return status;
+}
+
 int nrel5mw_create_aero(nrel5mw *data, const nrel5mw_rotor *rotor, int n, spar_fluid *const *fluids,
                         const double *twist, spar_aero **aero) {
     double shrink = cos(rotor->precone); /* radii are measured from the shaft axis */
-    spar_polar **polar = calloc((size_t)data->polar_n, sizeof *polar);
-    if (!polar) {
-        return fail(data, SPAR_ERR_MEMORY, "polars: no memory");
-    }
     int status = spar_aero_create(n, fluids, aero);
-    for (int p = 0; p < data->polar_n && status == SPAR_OK; p++) {
-        const nrel5mw_polar *from = &data->polar[p];
-        status = spar_polar_create(from->n, from->alpha, from->cl, from->cd, from->cm, &polar[p]);
-    }
     for (int64_t i = 0; n > 0 && i < data->aero_n && status == SPAR_OK; i++) {
-        status = spar_aero_set_section(*aero, i, data->chord[i], twist[i], polar[data->polar_of[i]]);
+        status = set_section(data, i, twist[i], *aero);
     }
     if (status == SPAR_OK) {
         status = spar_aero_set_blades(*aero, rotor->blades);
@@ -545,9 +555,5 @@ int nrel5mw_create_aero(nrel5mw *data, const nrel5mw_rotor *rotor, int n, spar_f
         status =
             spar_aero_set_rotor(*aero, rotor->hub, rotor->axis, shrink * data->hub_radius, shrink * data->tip_radius);
     }
-    for (int p = 0; p < data->polar_n; p++) {
-        spar_polar_destroy(&polar[p]); /* the sections keep the tables */
-    }
-    free(polar);
     return status;
 }
