@@ -78,7 +78,8 @@ SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
     NAME(put)(out + 8, __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
     NAME(put)(out + 16, __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
 #else
-    out[0] = x, out[1] = y, out[2] = z;
+    double t[3] = {x, y, z};
+    memcpy(out, t, sizeof t);
 #endif
 }
 
@@ -99,7 +100,9 @@ SPARI_INLINE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
     *y = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 10, 13, 0, 0, 0), c, 0, 1, 2, 3, 4, 8, 11, 14);
     *z = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 8, 11, 14, 0, 0, 0), c, 0, 1, 2, 3, 4, 9, 12, 15);
 #else
-    *x = in[0], *y = in[1], *z = in[2];
+    double t[3];
+    memcpy(t, in, sizeof t);
+    *x = t[0], *y = t[1], *z = t[2];
 #endif
 }
 
@@ -109,7 +112,8 @@ TARGET static void NAME(store_triples)(double (*row)[SPARI_ROW], int count, doub
         NAME(weave)(NAME(get)(row[0] + i), NAME(get)(row[1] + i), NAME(get)(row[2] + i), out + 3 * (ptrdiff_t)i);
     }
     for (; i < count; i++) {
-        out[3 * i] = row[0][i], out[3 * i + 1] = row[1][i], out[3 * i + 2] = row[2][i];
+        double t[3] = {row[0][i], row[1][i], row[2][i]};
+        memcpy(out + 3 * (ptrdiff_t)i, t, sizeof t);
     }
 }
 
@@ -123,7 +127,9 @@ TARGET static void NAME(load_triples)(const double *in, int count, double (*row)
         NAME(put)(row[2] + i, z);
     }
     for (; i < count; i++) {
-        row[0][i] = in[3 * i], row[1][i] = in[3 * i + 1], row[2][i] = in[3 * i + 2];
+        double t[3];
+        memcpy(t, in + 3 * (ptrdiff_t)i, sizeof t);
+        row[0][i] = t[0], row[1][i] = t[1], row[2][i] = t[2];
     }
 }
 

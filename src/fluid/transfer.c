@@ -22,7 +22,7 @@ static inline void spari_add(double *s, double x) {
 }
 
 /* Two lanes are in every processor that has lanes at all; more are asked for at run time. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(SPARI_PORTABLE)
 #define W 2
 #else
 #define W 1
@@ -42,7 +42,7 @@ static inline void spari_add(double *s, double x) {
 #undef MADD
 #undef SPLAT
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(SPARI_PORTABLE)
 #define SPARI_X86 1
 #include <immintrin.h>
 
@@ -294,8 +294,9 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
         return;
     }
     for (int i = 0; i < count; i++) {
-        const double *from = x + 3 * (first + s->place[first + i]);
-        f[0][i] = from[0], f[1][i] = from[1], f[2][i] = from[2];
+        double t[3];
+        memcpy(t, x + 3 * (first + s->place[first + i]), sizeof t); /* the host's array may lie anywhere */
+        f[0][i] = t[0], f[1][i] = t[1], f[2][i] = t[2];
     }
 }
 
@@ -306,8 +307,8 @@ void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_R
         return;
     }
     for (int i = 0; i < count; i++) {
-        double *to = x + 3 * (first + s->place[first + i]);
-        to[0] = row[0][i], to[1] = row[1][i], to[2] = row[2][i];
+        double t[3] = {row[0][i], row[1][i], row[2][i]};
+        memcpy(x + 3 * (first + s->place[first + i]), t, sizeof t);
     }
 }
 
