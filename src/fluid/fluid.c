@@ -37,6 +37,7 @@ struct spar_fluid {
     int shared; /* sections: the motion set serves both */
     node_set set[2];
     int64_t pushes;
+    int refused; /* status of the last push of this step */
 
     /* allocated by the map */
     double *modal;                           /* [P][P] */
@@ -910,10 +911,13 @@ int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double 
     if (!s) {
         return SPAR_OK;
     }
-    int status = push(fluid, s, force, moment, __func__);
-    session->refused = status;
-    if (status != SPAR_OK) {
-        return status;
+    fluid->refused = push(fluid, s, force, moment, __func__);
+    session->refused = fluid->refused;
+    if (fluid->refused != SPAR_OK) {
+        return fluid->refused;
+    }
+    for (const spar_fluid *f = session->fluids; f && session->refused == SPAR_OK; f = f->next) {
+        session->refused = f->refused; /* a good push mends its own fluid's, not another's */
     }
     fluid->pushes++;
     int before_start = session->phase == SPARI_IDLE;
@@ -956,6 +960,7 @@ static void predictor(int order, double dt, const double dt_last[2], double w[3]
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]) {
     history *h = fluid->history;
     double w[3];
+    fluid->refused = SPAR_OK;
     h->pushed = 0;
     if (!h->on) {
         return;
@@ -971,6 +976,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
 
 void spari_fluid_accept(spar_fluid *fluid) {
     history *h = fluid->history;
+    fluid->refused = SPAR_OK;
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
@@ -988,6 +994,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
 
 void spari_fluid_reject(spar_fluid *fluid) {
     history *h = fluid->history;
+    fluid->refused = SPAR_OK;
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }

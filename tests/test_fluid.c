@@ -1,0 +1,570 @@
+/* Fluids through the public interface: maps, motion out, loads in, histories, audit, refusals. Members are external or
+ * points, so that their motion is what the test says. */
+#include "math/rotation.h"
+#include "support/lines.h"
+#include <cmocka.h>
+#include <math.h>
+#include <spar/spar.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* cmocka's own compares floats */
+#define CLOSE(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+#define OK(call) assert_int_equal(call, SPAR_OK)
+
+enum { MOST = 64 };
+
+typedef struct rig {
+    spar_session *session;
+    spar_member *member;
+    int64_t nodes;
+    double x[MOST][3], qr[MOST][4], q[MOST][7], v[MOST][6], a[MOST][6];
+} rig;
+
+/* A bent, twisted beam of two elements with eight nodes each, moved by the host. */
+static void rig_start(rig *r, int effects) {
+    memset(r, 0, sizeof *r);
+    OK(spar_session_create(&r->session));
+    OK(spar_beam_create(r->session, "blade", 2, 8, &r->member));
+    double eta[21], xyz[21][3], twist[21];
+    for (int i = 0; i < 21; i++) {
+        eta[i] = 0.05 * i;
+        xyz[i][0] = 10 * eta[i], xyz[i][1] = 0.8 * eta[i] * eta[i], xyz[i][2] = -0.5 * pow(eta[i], 3);
+        twist[i] = 0.4 * (1 - eta[i]);
+    }
+    OK(spar_beam_set_axis(r->member, 21, eta, xyz[0], twist));
+    OK(spar_member_set_external(r->member, 1));
+    if (effects) {
+        OK(spar_member_set_effects(r->member, effects));
+    }
+    OK(spar_member_commit(r->member));
+    OK(spar_member_get_count(r->member, &r->nodes));
+    assert_int_equal(r->nodes, 16);
+    OK(spar_member_get_reference(r->member, r->x[0], r->qr[0]));
+    for (int l = 0; l < 16; l++) {
+        r->q[l][3] = 1;
+    }
+}
+
+static void rig_end(rig *r) {
+    spar_session_destroy(&r->session);
+    assert_null(r->session);
+}
+
+/* A smooth deformed state, larger with `size`; joints move once. */
+static void bend(rig *r, double size) {
+    for (int l = 0; l < 16; l++) {
+        double s = r->x[l][0] / 10, p[3] = {0.3 * size + s * size, -0.7 * s * size, 0.5 * s * s * size};
+        spari_quat_exp(p, r->q[l] + 3);
+        for (int i = 0; i < 3; i++) {
+            r->q[l][i] = size * (0.3 * i + sin(s * (i + 1)));
+            r->v[l][i] = size * cos(3 * s + i), r->v[l][3 + i] = size * sin(2 * s - i);
+            r->a[l][i] = size * (s + i), r->a[l][3 + i] = size * s * s;
+        }
+    }
+    OK(spar_member_set_motion(r->member, r->q[0], r->v[0], r->a[0]));
+}
+
+static void scatter(double (*x)[3], int n, unsigned long long *seed) {
+    for (int j = 0; j < n; j++) {
+        double t = 0.5 + 0.5 * line_random(seed);
+        x[j][0] = 10 * t, x[j][1] = 0.8 * t * t + 0.4 * line_random(seed), x[j][2] = 0.4 * line_random(seed);
+    }
+}
+
+static int says(const rig *r, const char *text) {
+    return strstr(spar_session_message(r->session), text) != NULL;
+}
+
+/* ---- the map ---- */
+
+/* The basis gives the foot from the nodes, the foot and the arm give the node back, the basis sums to one, and the arm
+   is perpendicular to the line where the foot is inside. */
+static void map_hangs_together(void **state) {
+    (void)state;
+    enum { N = 300 };
+    rig r;
+    unsigned long long seed = 12;
+    static double x[N][3], xi[N], distance[N], foot[N][3], q[N][4], con[N][3], phi[N][8];
+    static int64_t first[N];
+    static int flags[N];
+    rig_start(&r, 0);
+    scatter(x, N, &seed);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "surface", &f));
+    OK(spar_fluid_set_motion_nodes(f, N, x[0]));
+    OK(spar_fluid_set_force_nodes(f, 0, NULL));
+    OK(spar_fluid_map(f));
+    int64_t n;
+    OK(spar_fluid_get_count(f, SPAR_NODES_MOTION, &n));
+    assert_int_equal(n, N);
+    OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, xi, distance, flags));
+    OK(spar_fluid_get_feet(f, SPAR_NODES_MOTION, foot[0], q[0], con[0]));
+    OK(spar_fluid_get_basis(f, SPAR_NODES_MOTION, first, phi[0]));
+    for (int j = 0; j < N; j++) {
+        double sum = 0, at[3] = {0}, turn[4] = {0};
+        assert_true(first[j] == 0 || first[j] == 8);
+        assert_true(xi[j] >= -1 && xi[j] <= 1);
+        assert_int_equal(first[j] == 8, xi[j] > 0);
+        for (int l = 0; l < 8; l++) {
+            sum += phi[j][l];
+            for (int i = 0; i < 4; i++) {
+                turn[i] += phi[j][l] * r.qr[first[j] + l][i];
+                at[i % 3] += i < 3 ? phi[j][l] * r.x[first[j] + l][i] : 0;
+            }
+        }
+        CLOSE(sum, 1, 1e-14);
+        spari_quat_normalise(turn);
+        CLOSE(fabs(spari_quat_dot(turn, q[j])), 1, 1e-14);
+        CLOSE(distance[j], spari_norm(con[j]), 1e-15);
+        for (int i = 0; i < 3; i++) {
+            CLOSE(at[i], foot[j][i], 1e-13);
+            CLOSE(foot[j][i] + con[j][i], x[j][i], 1e-13);
+        }
+        if (xi[j] > -0.999 && xi[j] < 0.999 && fabs(xi[j]) > 1e-6) {
+            double tangent[3] = {1, 0, 0};
+            spari_rotate(q[j], tangent, tangent);
+            CLOSE(spari_dot(tangent, con[j]), 0, 2e-3); /* the frames' tangent is the axis', not the polynomial's */
+        }
+    }
+    OK(spar_fluid_get_map(f, SPAR_NODES_FORCE, NULL, NULL, NULL));
+    rig_end(&r);
+}
+
+/* Sections: feet where they are asked for, arms by R(q_map) offset, one set for motion and forces; at rest the node
+   stands at foot + arm and its orientation is q_map. */
+static void sections_stand_where_asked(void **state) {
+    (void)state;
+    enum { N = 7 };
+    const double xi[N] = {-1, -0.7, -0.2, 0, 0.3, 0.8, 1};
+    const double offset[N][3] = {{0, 0.1, 0},    {0, -0.2, 0.3}, {0.1, 0, 0}, {0, 0, 0},
+                                 {0, 0.5, -0.1}, {0, 0, 1},      {0, 0.25, 0}};
+    double got[N], distance[N], foot[N][3], q[N][4], con[N][3], x[N][3], now[N][4], want[3];
+    int flags[N];
+    rig r;
+    rig_start(&r, 0);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "sections", &f));
+    OK(spar_fluid_set_sections(f, N, xi, offset[0]));
+    assert_int_equal(spar_fluid_pull_motion(f, 1, x[0], NULL), SPAR_ERR_STATE);
+    assert_true(says(&r, "spar_fluid_map") && says(&r, "sections") && says(&r, "blade"));
+    OK(spar_fluid_map(f));
+    for (int which = 0; which < 2; which++) {
+        OK(spar_fluid_get_map(f, which, got, distance, flags));
+        OK(spar_fluid_get_feet(f, which, foot[0], q[0], con[0]));
+        for (int j = 0; j < N; j++) {
+            CLOSE(got[j], xi[j], 1e-15);
+            CLOSE(distance[j], spari_norm(offset[j]), 1e-15);
+            assert_int_equal(flags[j], 0);
+            spari_rotate(q[j], offset[j], want);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(con[j][i], want[i], 1e-15);
+            }
+        }
+    }
+    OK(spar_fluid_pull_motion(f, 1, x[0], NULL));
+    OK(spar_fluid_pull_sections(f, 1, now[0], NULL, NULL));
+    for (int j = 0; j < N; j++) {
+        CLOSE(fabs(spari_quat_dot(now[j], q[j])), 1, 1e-15);
+        for (int i = 0; i < 3; i++) {
+            CLOSE(x[j][i], foot[j][i] + con[j][i], 1e-14);
+        }
+    }
+    rig_end(&r);
+}
+
+/* A whole turn of the set-up: orientation now = R(q) R(q_map), places turned with it, for a rigid body and a point
+ * alike. */
+static void bodies_carry_their_nodes(void **state) {
+    (void)state;
+    for (int kind = 0; kind < 2; kind++) {
+        spar_session *s;
+        spar_member *m;
+        spar_fluid *f;
+        const double at[3] = {1, 2, 3}, attitude[4] = {0.8, 0, 0.6, 0};
+        double mass[36] = {0}, psi[3] = {0.4, -1.2, 2}, q[7] = {5, -1, 2}, v[6] = {1, 2, 3, 0.5, -0.4, 0.3};
+        OK(spar_session_create(&s));
+        if (kind == 0) {
+            OK(spar_point_create(s, "hub", at, attitude, &m));
+        } else {
+            for (int i = 0; i < 6; i++) {
+                mass[7 * i] = 2;
+            }
+            OK(spar_rigid_create(s, "hub", at, attitude, mass, &m));
+            OK(spar_member_set_external(m, 1));
+        }
+        OK(spar_member_commit(m));
+        const double node[2][3] = {{1.5, 2, 3}, {1, 2, 3}};
+        double x[2][3], dx[2][3], now[2][4], omega[2][3], want[3], r[3];
+        OK(spar_fluid_create(m, "shell", &f));
+        OK(spar_fluid_set_motion_nodes(f, 2, node[0]));
+        OK(spar_fluid_set_force_nodes(f, 2, node[0]));
+        OK(spar_fluid_map(f));
+        double con[2][3];
+        int flags[2];
+        OK(spar_fluid_get_feet(f, SPAR_NODES_MOTION, x[0], now[0], con[0]));
+        OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, NULL, NULL, flags));
+        assert_int_equal(flags[0] | flags[1], 0);
+        CLOSE(con[0][0], 0.5, 1e-15);
+        CLOSE(x[0][1], 2, 1e-15);
+        spari_quat_exp(psi, q + 3);
+        OK(spar_member_set_motion(m, q, v, NULL));
+        OK(spar_fluid_pull_motion(f, 1, x[0], dx[0]));
+        OK(spar_fluid_pull_sections(f, 1, now[0], omega[0], NULL));
+        for (int j = 0; j < 2; j++) {
+            double expect[4];
+            spari_rotate(q + 3, con[j], r);
+            spari_cross(v + 3, r, want);
+            spari_quat_mul(q + 3, attitude, expect);
+            CLOSE(fabs(spari_quat_dot(expect, now[j])), 1, 1e-15);
+            assert_true(now[j][0] >= 0);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(x[j][i], at[i] + q[i] + r[i], 1e-14);
+                CLOSE(dx[j][i], v[i] + want[i], 1e-14);
+                CLOSE(omega[j][i], v[3 + i], 0);
+            }
+        }
+        const double force[2][3] = {{0, 0, 2}, {1, 1, 1}};
+        double load[6], audit[8];
+        OK(spar_fluid_push_forces(f, force[0], NULL));
+        OK(spar_fluid_get_audit(f, audit));
+        CLOSE(audit[0], sqrt(1 + 1 + 9), 1e-14);
+        assert_true(audit[3] < 1e-15 && audit[4] < 1e-15 && audit[5] < 1e-15 && audit[7] == 2);
+        OK(spar_step_begin(s, 0.1));
+        if (kind == 0) {
+            OK(spar_member_get_loads(m, load));
+            spari_rotate(q + 3, con[0], r);
+            spari_cross(r, force[0], want);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(load[i], force[0][i] + force[1][i], 1e-15);
+                CLOSE(load[3 + i], want[i], 1e-15);
+            }
+        }
+        OK(spar_step_reject(s));
+        spar_session_destroy(&s);
+    }
+}
+
+/* ---- time ---- */
+
+/* The spec's average at theta, the ends exactly; on the group a quarter turn about z halves to an eighth turn. */
+static void theta_lies_between_the_times(void **state) {
+    (void)state;
+    enum { N = 20 };
+    rig r;
+    unsigned long long seed = 2;
+    double node[N][3], x[4][N][3], v[4][N][3], q[3][N][4], w[3][N][3], a[3][N][3];
+    const double theta[4] = {0, 1, 0.5, 0.25};
+    rig_start(&r, 0);
+    scatter(node, N, &seed);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "surface", &f));
+    OK(spar_fluid_set_motion_nodes(f, N, node[0]));
+    OK(spar_fluid_map(f));
+    bend(&r, 0.2);
+    OK(spar_step_begin(r.session, 0.1));
+    bend(&r, 0.7);
+    OK(spar_step_solve(r.session));
+    for (int k = 0; k < 4; k++) {
+        OK(spar_fluid_pull_motion(f, theta[k], x[k][0], v[k][0]));
+    }
+    for (int k = 0; k < 3; k++) {
+        OK(spar_fluid_pull_sections(f, theta[k], q[k][0], w[k][0], a[k][0]));
+    }
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 3; i++) {
+            for (int k = 2; k < 4; k++) {
+                CLOSE(x[k][j][i], (1 - theta[k]) * x[0][j][i] + theta[k] * x[1][j][i], 1e-14);
+                CLOSE(v[k][j][i], (1 - theta[k]) * v[0][j][i] + theta[k] * v[1][j][i], 1e-14);
+            }
+            CLOSE(w[2][j][i], 0.5 * (w[0][j][i] + w[1][j][i]), 1e-14);
+            CLOSE(a[2][j][i], 0.5 * (a[0][j][i] + a[1][j][i]), 1e-13);
+        }
+        /* halfway between two unit quaternions both are equally far */
+        CLOSE(fabs(spari_quat_dot(q[2][j], q[0][j])), fabs(spari_quat_dot(q[2][j], q[1][j])), 1e-14);
+    }
+    assert_int_equal(spar_fluid_pull_motion(f, 1.5, x[0][0], NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_pull_motion(f, NAN, x[0][0], NULL), SPAR_ERR_ARGUMENT);
+    rig_end(&r);
+}
+
+static void group_interpolation_keeps_the_radius(void **state) {
+    (void)state;
+    const double origin[3] = {0}, none[4] = {1, 0, 0, 0}, node[3] = {2, 0, 0};
+    double x[3], q[7] = {0, 0, 0, sqrt(0.5), 0, 0, sqrt(0.5)};
+    spar_session *s;
+    spar_member *m;
+    spar_fluid *f;
+    OK(spar_session_create(&s));
+    OK(spar_session_set_option(s, "fluid.theta", "group"));
+    OK(spar_point_create(s, "hub", origin, none, &m));
+    OK(spar_member_commit(m));
+    OK(spar_fluid_create(m, "arm", &f));
+    OK(spar_fluid_set_motion_nodes(f, 1, node));
+    OK(spar_fluid_map(f));
+    OK(spar_step_begin(s, 1));
+    OK(spar_member_set_motion(m, q, NULL, NULL));
+    OK(spar_step_solve(s));
+    OK(spar_fluid_pull_motion(f, 0.5, x, NULL));
+    CLOSE(x[0], 2 * cos(M_PI / 4), 1e-15);
+    CLOSE(x[1], 2 * sin(M_PI / 4), 1e-15);
+    CLOSE(x[2], 0, 1e-15);
+    spar_session_destroy(&s);
+}
+
+/* Node forces at theta between f^n and f^{n+1}; predicted at the begin of a step as the spec says, with the ratio of
+   the steps; a rejected step leaves no trace. f(t) = 2 + 3 t: linear prediction is exact from the third step on. */
+static void node_forces_are_kept_and_predicted(void **state) {
+    (void)state;
+    rig r;
+    rig_start(&r, 0);
+    const double node[3] = {5, 0.2, 0.3};
+    const double dt[4] = {0.1, 0.3, 0.2, 0.05};
+    double force[3], got[3], t = 0;
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "line", &f));
+    OK(spar_fluid_set_force_nodes(f, 1, node));
+    OK(spar_fluid_map(f));
+    OK(spar_fluid_pull_forces(f, 0.5, got));
+    CLOSE(fabs(got[0]) + fabs(got[1]) + fabs(got[2]), 0, 0); /* nothing pushed yet */
+    for (int i = 0; i < 3; i++) {
+        force[i] = 2 * (i + 1);
+    }
+    OK(spar_fluid_push_forces(f, force, NULL)); /* at t^0 */
+    for (int k = 0; k < 4; k++) {
+        OK(spar_step_begin(r.session, dt[k]));
+        OK(spar_fluid_pull_forces(f, 1, got));
+        for (int i = 0; i < 3; i++) {
+            CLOSE(got[i], (2 + 3 * (k == 0 ? 0 : t + dt[k])) * (i + 1), 1e-13); /* order 0 in the first step */
+        }
+        OK(spar_step_solve(r.session));
+        if (k == 2) { /* once astray and back */
+            force[0] = 77;
+            OK(spar_fluid_push_forces(f, force, NULL));
+            OK(spar_step_reject(r.session));
+            OK(spar_fluid_pull_forces(f, 1, got));
+            CLOSE(got[0], 2 + 3 * t, 1e-13);
+            OK(spar_step_begin(r.session, dt[k]));
+            OK(spar_step_solve(r.session));
+        }
+        for (int i = 0; i < 3; i++) {
+            force[i] = (2 + 3 * (t + dt[k])) * (i + 1);
+        }
+        OK(spar_fluid_push_forces(f, force, NULL));
+        OK(spar_fluid_pull_forces(f, 0.25, got));
+        for (int i = 0; i < 3; i++) {
+            CLOSE(got[i], (2 + 3 * (t + 0.25 * dt[k])) * (i + 1), 1e-13);
+        }
+        int done;
+        OK(spar_step_check(r.session, &done));
+        OK(spar_step_accept(r.session));
+        t += dt[k];
+    }
+    rig_end(&r);
+}
+
+/* Asked for when it is too late, a history is refused with the cure. */
+static void late_history_is_refused(void **state) {
+    (void)state;
+    rig r;
+    const double node[3] = {5, 0.2, 0.3}, force[3] = {1, 2, 3};
+    double got[3];
+    rig_start(&r, 0);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "line", &f));
+    OK(spar_fluid_set_force_nodes(f, 1, node));
+    OK(spar_fluid_map(f));
+    OK(spar_fluid_push_forces(f, force, NULL));
+    assert_int_equal(spar_fluid_pull_forces(f, 1, got), SPAR_ERR_STATE);
+    assert_true(says(&r, "SPAR_EFFECT_FLUID_HISTORY"));
+    rig_end(&r);
+}
+
+/* ---- loads ---- */
+
+static void total(const rig *r, double (*load)[6], double sum[6]) {
+    double t[3];
+    memset(sum, 0, 6 * sizeof *sum);
+    for (int l = 0; l < r->nodes; l++) {
+        double x[3] = {r->x[l][0] + r->q[l][0], r->x[l][1] + r->q[l][1], r->x[l][2] + r->q[l][2]};
+        spari_cross(x, load[l], t);
+        for (int i = 0; i < 3; i++) {
+            sum[i] += load[l][i], sum[3 + i] += t[i] + load[l][3 + i];
+        }
+    }
+}
+
+/* Two fluids on one member: their loads add; the member has the force and the moment of all nodes; the audit agrees.
+   Replacing the nodes of one leaves the other's map and load alone. With SPAR_EFFECT_FLUID_MOMENT off moments are not
+   read, arms are. */
+static void loads_of_fluids_add(void **state) {
+    (void)state;
+    enum { N = 60 };
+    for (int moments = 0; moments < 2; moments++) {
+        rig r;
+        unsigned long long seed = 5;
+        double node[2][N][3], x[N][3], force[2][N][3], moment[2][N][3], load[MOST][6], sum[6], want[6] = {0}, t[3],
+                                                                                               audit[8];
+        rig_start(&r, moments ? 0 : SPAR_EFFECT_LARGE_ROTATION);
+        spar_fluid *f[2];
+        bend(&r, 0.9);
+        for (int k = 0; k < 2; k++) {
+            OK(spar_fluid_create(r.member, k ? "b" : "a", &f[k]));
+            scatter(node[k], N, &seed);
+            OK(spar_fluid_set_interpolation(f[k], k ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL));
+            OK(spar_fluid_set_motion_nodes(f[k], N, node[k][0]));
+            OK(spar_fluid_set_force_nodes(f[k], N, node[k][0]));
+            OK(spar_fluid_map(f[k]));
+            OK(spar_fluid_pull_motion(f[k], 1, x[0], NULL));
+            for (int j = 0; j < N; j++) {
+                for (int i = 0; i < 3; i++) {
+                    force[k][j][i] = line_random(&seed), moment[k][j][i] = line_random(&seed);
+                }
+                spari_cross(x[j], force[k][j], t);
+                for (int i = 0; i < 3; i++) {
+                    want[i] += force[k][j][i], want[3 + i] += t[i] + moments * moment[k][j][i];
+                }
+            }
+            OK(spar_fluid_push_forces(f[k], force[k][0], moment[k][0]));
+            OK(spar_fluid_get_audit(f[k], audit));
+            assert_true(audit[0] > 0 && audit[1] > 0 && audit[2] != 0);
+            assert_true(audit[3] < 1e-13 && audit[4] < 1e-13 && audit[5] < 1e-13);
+            assert_true(audit[6] > 10 && audit[6] < 20 && audit[7] == N);
+        }
+        OK(spar_fluid_set_motion_nodes(f[1], 3, node[0][0]));
+        OK(spar_fluid_map(f[1]));
+        OK(spar_step_begin(r.session, 0.1));
+        OK(spar_member_get_loads(r.member, load[0]));
+        total(&r, load, sum);
+        for (int i = 0; i < 6; i++) {
+            CLOSE(sum[i], want[i], 1e-11); /* 120 nodes, |x| 15 */
+        }
+        rig_end(&r);
+    }
+}
+
+/* ---- policies and refusals ---- */
+
+static void far_nodes_are_flagged_or_refused(void **state) {
+    (void)state;
+    rig r;
+    rig_start(&r, 0);
+    const double node[3][3] = {{5, 0.2, 0}, {5, 3, 0}, {20, 0, 0}};
+    int flags[3];
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "surface", &f));
+    OK(spar_fluid_set_projection(f, SPAR_PROJECT_BOUNDED, 1.0));
+    OK(spar_fluid_set_motion_nodes(f, 3, node[0]));
+    OK(spar_fluid_map(f));
+    OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, NULL, NULL, flags));
+    assert_int_equal(flags[0], 0);
+    assert_int_equal(flags[1], SPAR_MAP_FAR);
+    assert_int_equal(flags[2], SPAR_MAP_FAR | SPAR_MAP_END);
+    OK(spar_session_set_option(r.session, "fluid.far", "refuse"));
+    OK(spar_fluid_set_motion_nodes(f, 3, node[0]));
+    assert_int_equal(spar_fluid_map(f), SPAR_ERR_MAPPING);
+    assert_true(says(&r, "2 of 3") && says(&r, "node 1") && says(&r, "surface"));
+    OK(spar_fluid_set_projection(f, SPAR_PROJECT_BOUNDED, 0));
+    OK(spar_fluid_map(f)); /* no limit: the same nodes are taken */
+    OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, NULL, NULL, flags));
+    assert_int_equal(flags[1], 0);
+    rig_end(&r);
+}
+
+/* Each refusal has its status and leaves things as they were. */
+static void bad_calls_are_refused(void **state) {
+    (void)state;
+    rig r;
+    rig_start(&r, 0);
+    double node[2][3] = {{5, 0, 0}, {6, NAN, 0}}, force[3] = {1, 2, 3}, xi[1] = {1.1}, x[3], before[8], after[8];
+    spar_fluid *f = NULL, *g;
+    spar_member *raw;
+    assert_int_equal(spar_fluid_create(NULL, "a", &f), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_create(r.member, NULL, &f), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_create(r.member, "a", NULL), SPAR_ERR_ARGUMENT);
+    OK(spar_fluid_create(r.member, "a", &f));
+    assert_int_equal(spar_fluid_set_motion_nodes(NULL, 0, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_motion_nodes(f, -1, node[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_motion_nodes(f, 1, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_motion_nodes(f, 2, node[0]), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "motion node 1, component 1"));
+    assert_int_equal(spar_fluid_set_sections(f, 1, xi, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_projection(f, 7, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_interpolation(f, 7), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_get_map(f, 2, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    OK(spar_fluid_set_motion_nodes(f, 0, NULL));
+    OK(spar_fluid_set_force_nodes(f, 1, node[0]));
+    assert_int_equal(spar_fluid_push_forces(f, force, NULL), SPAR_ERR_STATE); /* not mapped */
+    OK(spar_fluid_map(f));
+    OK(spar_fluid_pull_motion(f, 1, NULL, NULL));
+    OK(spar_fluid_push_forces(f, force, NULL));
+    OK(spar_fluid_get_audit(f, before));
+    assert_int_equal(spar_fluid_push_forces(f, NULL, NULL), SPAR_ERR_ARGUMENT);
+    force[1] = INFINITY;
+    assert_int_equal(spar_fluid_push_forces(f, force, NULL), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "force of node 0, component 1"));
+    force[1] = 2;
+    x[0] = NAN, x[1] = x[2] = 0;
+    assert_int_equal(spar_fluid_push_forces(f, force, x), SPAR_ERR_ARGUMENT);
+    OK(spar_fluid_get_audit(f, after));
+    assert_memory_equal(before, after, sizeof before);
+    OK(spar_fluid_push_forces(f, force, NULL));
+    /* a member that is not committed */
+    OK(spar_beam_create(r.session, "raw", 1, 4, &raw));
+    OK(spar_fluid_create(raw, "b", &g));
+    OK(spar_fluid_set_motion_nodes(g, 1, node[0]));
+    assert_int_equal(spar_fluid_map(g), SPAR_ERR_STATE);
+    assert_true(says(&r, "spar_member_commit"));
+    spar_fluid_destroy(&g);
+    assert_null(g);
+    spar_fluid_destroy(&g);
+    spar_fluid_destroy(NULL);
+    rig_end(&r);
+}
+
+/* Inside a step nodes stay as they are; outside, loads do. A refused push is told again by the check, until its own
+   fluid pushes well: another fluid's good push does not hide it. */
+static void order_of_calls(void **state) {
+    (void)state;
+    rig r;
+    rig_start(&r, 0);
+    const double node[3] = {5, 0, 0}, good[3] = {1, 2, 3}, bad[3] = {1, NAN, 3};
+    int done;
+    spar_fluid *f[2];
+    for (int k = 0; k < 2; k++) {
+        OK(spar_fluid_create(r.member, k ? "b" : "a", &f[k]));
+        OK(spar_fluid_set_force_nodes(f[k], 1, node));
+        OK(spar_fluid_map(f[k]));
+    }
+    OK(spar_step_begin(r.session, 0.1));
+    assert_int_equal(spar_fluid_set_force_nodes(f[0], 1, node), SPAR_ERR_STATE);
+    assert_int_equal(spar_fluid_map(f[0]), SPAR_ERR_STATE);
+    OK(spar_step_solve(r.session));
+    assert_int_equal(spar_fluid_push_forces(f[0], bad, NULL), SPAR_ERR_ARGUMENT);
+    OK(spar_fluid_push_forces(f[1], good, NULL));
+    assert_int_equal(spar_step_check(r.session, &done), SPAR_ERR_ARGUMENT);
+    OK(spar_fluid_push_forces(f[0], good, NULL));
+    OK(spar_step_check(r.session, &done));
+    OK(spar_step_accept(r.session));
+    assert_int_equal(spar_fluid_push_forces(f[0], good, NULL), SPAR_ERR_STATE);
+    assert_true(says(&r, "spar_step_begin"));
+    rig_end(&r);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(map_hangs_together),
+        cmocka_unit_test(sections_stand_where_asked),
+        cmocka_unit_test(bodies_carry_their_nodes),
+        cmocka_unit_test(theta_lies_between_the_times),
+        cmocka_unit_test(group_interpolation_keeps_the_radius),
+        cmocka_unit_test(node_forces_are_kept_and_predicted),
+        cmocka_unit_test(late_history_is_refused),
+        cmocka_unit_test(loads_of_fluids_add),
+        cmocka_unit_test(far_nodes_are_flagged_or_refused),
+        cmocka_unit_test(bad_calls_are_refused),
+        cmocka_unit_test(order_of_calls),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
