@@ -182,6 +182,32 @@ static void test_aerodyn_beam(void **state) {
     end(&rigid);
 }
 
+/* The reader: the rigid blade has the mass of the table. Turning about the hub its kinetic energy is Omega^2/2 int mu
+   (1.5 + x)^2 dx; with mu linear between the table's points the integrals of mu, mu x, mu x^2 are 16844.75 kg, 345672.0
+   kg m and 1.1188347e7 kg m^2 (summed apart, over 200 parts of each interval). The reader sums by the trapezium rule:
+   2e-3. The sections' own inertia adds some 1e-4, beams integrate by Gauss: 5e-3. Bad directories are refused with the
+   file's name. */
+static void test_reader(void **state) {
+    (void)state;
+    double inertia = 1.1188347e7 + 2.0 * 1.5 * 345672.0 + 1.5 * 1.5 * 16844.75;
+    for (int elements = 0; elements <= 1; elements++) {
+        scene s;
+        double energy[4];
+        begin(&s, 8.0, 9.16);
+        build(&s, elements, elements > 0 ? 10 : 1);
+        for (int b = 0; b < BLADES; b++) {
+            OK(spar_member_get_energy(s.blade[b], energy));
+            double ratio = energy[0] / (0.5 * inertia * s.speed * s.speed);
+            assert_true(fabs(ratio - 1.0) < (elements > 0 ? 5e-3 : 2e-3));
+        }
+        end(&s);
+    }
+    nrel5mw data;
+    assert_int_equal(nrel5mw_load(&data, "/nowhere"), SPAR_ERR_IO);
+    assert_non_null(strstr(data.message, "/nowhere/rotor.txt"));
+    nrel5mw_free(&data);
+}
+
 /* Which effect is worth how much, and that each does what it says: against the same rotor with all of them. The signs
    are theory: tip loss, swirl and drag cost power, no induction gives a multiple; at the hub there are only
    cylinders, whose little torque does not tell. */
@@ -464,9 +490,9 @@ static void test_wing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
-                                       cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),
-                                       cmocka_unit_test(test_spread),        cmocka_unit_test(test_broken_step),
-                                       cmocka_unit_test(test_refused),       cmocka_unit_test(test_wing)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam), cmocka_unit_test(test_reader),
+        cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),       cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),      cmocka_unit_test(test_wing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
