@@ -105,9 +105,9 @@ static void test_unsupported(void **state) {
     spar_session *session = NULL;
     assert_int_equal(spar_session_create(&session), SPAR_OK);
     assert_int_equal(spar_session_save(session, "a.state"), SPAR_ERR_UNSUPPORTED);
-    assert_non_null(strstr(spar_session_message(session), "spar_session_save: 'a.state'"));
+    assert_non_null(strstr(spar_session_message(session), "spar_session_save"));
     assert_int_equal(spar_session_load(session, "b.state"), SPAR_ERR_UNSUPPORTED);
-    assert_non_null(strstr(spar_session_message(session), "spar_session_load: 'b.state'"));
+    assert_non_null(strstr(spar_session_message(session), "spar_session_load"));
     assert_int_equal(spar_session_save(session, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_session_load(NULL, "b.state"), SPAR_ERR_ARGUMENT);
     spar_session_destroy(&session);

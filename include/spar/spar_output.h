@@ -1,10 +1,10 @@
 /* spar_output.h: pictures of the state for ParaView and other readers of VTK's XML files.
 
-   Files are written under a temporary name (path.part) and renamed, so a reader never meets half a file, and a failure leaves what
-   stood at the path. Numbers are stored exactly. A path that ends in .vtu gives an unstructured grid, any other poly data; end it
-   in .vtp, by which ParaView finds its reader. The time of the session goes with each file. All calls are local: write a member on
-   one rank, where it is known on all; write a fluid on the rank that has it. A file that cannot be written is SPAR_ERR_IO, and the
-   message says why. */
+   Files are written under a temporary name (path.part) and renamed, so a reader never meets half a file, and a
+   failure leaves what stood at the path. Numbers are stored exactly. A path that ends in .vtu gives an unstructured
+   grid, any other poly data; end it in .vtp, by which ParaView finds its reader. The time of the session goes with
+   each file. All calls are local: write a member on one rank, where it is known on all; write a fluid on the rank
+   that has it. A file that cannot be written is SPAR_ERR_IO, and the message says why. */
 #ifndef SPAR_OUTPUT_H
 #define SPAR_OUTPUT_H
 
@@ -14,18 +14,19 @@
 extern "C" {
 #endif
 
-/* A committed member where it is now: its nodes as points, its line through them drawn in finer pieces. At every point displacement,
-   section_x, _y, _z (axes of the section), velocity, angular_velocity, acceleration, angular_acceleration; node (its number, -1 between
-   nodes); at the nodes nodal_force and nodal_moment (lumped loads in use; 0 between nodes). For the whole: reaction_force, _moment. */
+/* A committed member where it is now: its nodes as points, its line through them drawn in finer pieces. At every
+   point displacement, section_x, _y, _z (axes of the section), velocity, angular_velocity, acceleration,
+   angular_acceleration; node (its number, -1 between nodes); at the nodes nodal_force and nodal_moment (lumped loads
+   in use; 0 between nodes). For the whole: reaction_force, _moment. */
 SPAR_API int spar_member_write_vtk(const spar_member *member, const char *path);
-/* This rank's nodes of a mapped fluid where they are now, with velocity and section_x, _y, _z (the turned axes of the line at their
-   feet). Sections are joined by a line in the order given, and have force, as pushed last. Of other fluids the motion nodes come
-   first, then the force nodes: set is 0 and 1, and force (0 at motion nodes) is there if node forces are kept
-   (SPAR_EFFECT_FLUID_HISTORY). */
+/* This rank's nodes of a mapped fluid where they are now, with velocity and section_x, _y, _z (the turned axes of the
+   line at their feet). Sections are joined by a line in the order given, and have force, as pushed last. Of other
+   fluids the motion nodes come first, then the force nodes: set is 0 and 1, and force (0 at motion nodes) is there if
+   node forces are kept (SPAR_EFFECT_FLUID_HISTORY). */
 SPAR_API int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path);
-/* Adds a file to an index of files in time (.pvd), which is made when it is not there; open that in ParaView. part: 0, 1, ... where
-   several files show one time. file is relative to the index. The index is whole after every call. The message of a
-   refusal is spar_session_message(NULL). */
+/* Adds a file to an index of files in time (.pvd), which is made when it is not there; open that in ParaView. part:
+   0, 1, ... where several files show one time. file is relative to the index. The index is whole after every call.
+   The message of a refusal is spar_session_message(NULL). */
 SPAR_API int spar_vtk_series_add(const char *path, double time, int part, const char *file);
 
 #ifdef __cplusplus
