@@ -777,7 +777,7 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
             first_stage(P, phi, dphi, m.B, damped, XB + k * row, XB + (n + k) * row);
         }
         if (masses && !damped) {
-            double M14[14 * 7];
+            double M14[14 * 7] = {0}; /* first_stage multiplies what it does not need by 0 */
             for (int i = 0; i < 7; i++) {
                 memcpy(M14 + 14 * i, m.M + 7 * i, 7 * sizeof *M14);
             }
