@@ -517,8 +517,9 @@ contains
     call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
   end subroutine session_step_reject
 
-  ! A whole step; solve is called in every iteration (none: the structure alone moves). solve may be an internal procedure, and
-  ! context anything of the host's: both are used during this call only. After a failure the session is at t^n again.
+  ! A whole step; solve is called in every iteration (none: the structure alone moves), with context, which can be anything of
+  ! the host. Both are used during this call only, so that solve may be an internal procedure, for which gfortran needs an
+  ! executable stack; a module procedure needs none. After a failure the session is at t^n again.
   subroutine session_step(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt

@@ -1,0 +1,391 @@
+! Scenes with known answers, driven from Fortran: that numbers arrive where C expects them, in the order of both languages.
+module coupling_fluids
+  use, intrinsic :: iso_c_binding, only: c_double, c_int
+  use spar
+  implicit none
+
+  ! A host of its own: springs at the nodes of a fluid.
+  type :: springs
+    type(spar_fluid), pointer :: fluid => null()
+    real(c_double) :: stiffness = 0
+    integer :: calls = 0, last_iteration = -1
+  end type springs
+
+  type(spar_fluid) :: own_fluid
+  integer :: own_calls = 0
+
+  type :: diary
+    integer :: lines = 0, worst = 99
+    character(200) :: last = ''
+  end type diary
+
+contains
+
+  subroutine pull_and_push(fluid, stiffness)
+    type(spar_fluid), intent(inout) :: fluid
+    real(c_double), intent(in) :: stiffness
+    real(c_double) :: x(3,1)
+
+    call fluid%pull_motion(1.0_c_double, x)
+    call fluid%push_forces(-stiffness * x)
+  end subroutine pull_and_push
+
+  subroutine solve_springs(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+    real(c_double) :: begun
+
+    call session%get_time(begun)
+    if (abs(begun - t) > 0 .or. dt <= 0) stat = 3
+    select type (context)
+    type is (springs)
+      context%calls = context%calls + 1
+      context%last_iteration = iteration
+      call pull_and_push(context%fluid, context%stiffness)
+    class default
+      stat = 4
+    end select
+  end subroutine solve_springs
+
+  ! A host that keeps its things in a module and needs no context.
+  subroutine solve_own_springs(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+
+    own_calls = own_calls + 1
+    call pull_and_push(own_fluid, 4.0_c_double)
+    if (present(context) .or. .not. session%exists() .or. t < 0 .or. dt < 0 .or. iteration < 0) stat = 5
+  end subroutine solve_own_springs
+
+  subroutine refuse_to_solve(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+
+    stat = 9
+    if (present(context) .or. .not. session%exists() .or. t < 0 .or. dt < 0 .or. iteration < 0) stat = 5
+  end subroutine refuse_to_solve
+
+  subroutine write_diary(level, text, context)
+    integer(c_int), intent(in) :: level
+    character(*), intent(in) :: text
+    class(*), intent(inout), optional :: context
+
+    select type (context)
+    type is (diary)
+      context%lines = context%lines + 1
+      context%worst = min(context%worst, level)
+      context%last = text
+    end select
+  end subroutine write_diary
+end module coupling_fluids
+
+program test_coupling
+  use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
+  use spar
+  use coupling_fluids
+  implicit none
+  real(c_double), parameter :: unit(4) = [1, 0, 0, 0], origin(3) = 0
+  integer :: failures = 0
+
+  call free_body()
+  call turned_point()
+  call oscillator()
+  call failing_fluid()
+  call logging()
+  call cantilever()
+  call driven_root()
+  if (failures > 0) error stop 'test_coupling failed'
+
+contains
+
+  subroutine check(right, what)
+    logical, intent(in) :: right
+    character(*), intent(in) :: what
+
+    if (right) return
+    failures = failures + 1
+    write (*, '(2a)') 'wrong: ', what
+  end subroutine check
+
+  pure function diagonal(d) result(matrix)
+    real(c_double), intent(in) :: d(6)
+    real(c_double) :: matrix(6,6)
+    integer :: i
+
+    matrix = 0
+    do i = 1, 6
+      matrix(i,i) = d(i)
+    end do
+  end function diagonal
+
+  ! 2 kg under a constant force through the centre: u = F t^2 / (2 m), v = F t / m, which the integrator has exactly (its
+  ! interpolation is quadratic), to rounding.
+  subroutine free_body()
+    type(spar_session) :: session
+    type(spar_member) :: body
+    type(spar_fluid) :: fluid
+    real(c_double) :: q(7,1), v(6,1), f(3,1), audit(8), energy(4), t
+    integer(c_int64_t) :: steps
+    integer :: i
+    logical :: done
+
+    call session%create()
+    call body%create_rigid(session, 'body', origin, unit, diagonal([2, 2, 2, 1, 1, 1] * 1.0_c_double))
+    call body%commit()
+    call fluid%create(body, 'fluid')
+    call fluid%set_motion_nodes(reshape(origin, [3, 1]))
+    call fluid%set_force_nodes(reshape(origin, [3, 1]))
+    call fluid%map()
+    f(:,1) = [1, -2, 3]
+    call fluid%push_forces(f)
+    do i = 1, 20
+      call session%step_begin(0.05_c_double)
+      call session%step_solve()
+      call fluid%push_forces(f)
+      call session%step_check(done)
+      call session%step_accept()
+    end do
+    call session%get_time(t, steps)
+    call body%get_motion(q, v)
+    call body%get_energy(energy)
+    call fluid%get_audit(audit)
+    call check(abs(t - 1) < 1e-14_c_double .and. steps == 20, 'twenty steps make a second')
+    call check(all(abs(q(1:3,1) - f(:,1) / 4) < 1e-12_c_double), 'places under a constant force')
+    call check(all(abs(v(1:3,1) - f(:,1) / 2) < 1e-12_c_double), 'velocities under a constant force')
+    call check(abs(energy(1) - 3.5_c_double) < 1e-11_c_double, 'kinetic energy m/2 v^2 = 14/4')
+    call check(abs(audit(1) - sqrt(14.0_c_double)) < 1e-14_c_double .and. maxval(audit(4:6)) < 1e-13_c_double, &
+        'audit of the map')
+  end subroutine free_body
+
+  ! A point turned by 90 degrees about z and moved: the nodes of its fluid go with it, and their forces come back as force and
+  ! moment about it.
+  subroutine turned_point()
+    type(spar_session) :: session
+    type(spar_member) :: point
+    type(spar_fluid) :: fluid
+    real(c_double) :: q(7,1), v(6,1), x(3,2), xdot(3,2), f(3,2), load(6,1), con(3,2)
+    real(c_double), parameter :: h = sqrt(0.5_c_double)
+
+    call session%create()
+    call point%create_point(session, 'point', [1, 0, 0] * 1.0_c_double, unit)
+    call point%commit()
+    call fluid%create(point, 'fluid')
+    x = reshape([3, 0, 0, 1, 1, 5] * 1.0_c_double, [3, 2])
+    call fluid%set_motion_nodes(x)
+    call fluid%set_force_nodes(x)
+    call fluid%map()
+    call fluid%get_feet(SPAR_NODES_FORCE, con=con)
+    call check(all(abs(con - reshape([2, 0, 0, 0, 1, 5] * 1.0_c_double, [3, 2])) < 1e-15_c_double), 'from the foot to the node')
+    q(:,1) = [0.0_c_double, 0.0_c_double, 10.0_c_double, h, 0.0_c_double, 0.0_c_double, h]
+    v(:,1) = [0, 0, 1, 0, 0, 2]
+    call session%step_begin(0.1_c_double)
+    call point%set_motion(q, v)
+    call session%step_solve()
+    call fluid%pull_motion(1.0_c_double, x, xdot)
+    call check(all(abs(x - reshape([1, 2, 10, 0, 0, 15] * 1.0_c_double, [3, 2])) < 1e-14_c_double), &
+        'places in a turned state')
+    call check(all(abs(xdot - reshape([-4, 0, 1, 0, -2, 1] * 1.0_c_double, [3, 2])) < 1e-14_c_double), &
+        'velocities')
+    f = reshape([1, 0, 0, 0, 0, 1] * 1.0_c_double, [3, 2])
+    call fluid%push_forces(f, 7 * f)
+    call session%step_accept()
+    call session%step_begin(0.1_c_double)
+    call session%step_reject()
+    call session%step_begin(0.1_c_double)
+    call session%step_solve()
+    call fluid%push_forces(f, 7 * f)
+    call check_and_accept(session)
+    call point%get_loads(load)
+    ! arms (0,2,0) and (-1,0,5): (0,2,0) x (1,0,0) = (0,0,-2); (-1,0,5) x (0,0,1) = (0,1,0); and the moments 7 f
+    call check(all(abs(load(:,1) - [1, 0, 1, 7, 1, 5]) < 1e-13_c_double), 'loads in a turned state')
+  end subroutine turned_point
+
+  subroutine check_and_accept(session)
+    type(spar_session), intent(inout) :: session
+    logical :: done
+
+    call session%step_check(done)
+    call session%step_accept()
+  end subroutine check_and_accept
+
+  subroutine make_oscillator(session, body, fluid)
+    type(spar_session), intent(inout) :: session
+    type(spar_member), intent(inout) :: body
+    type(spar_fluid), intent(inout) :: fluid
+
+    call session%create()
+    call session%set_integrator(1.0_c_double, 1)
+    call session%set_coupling(SPAR_COUPLING_FIXED_POINT, 0.0_c_double, 1e-13_c_double, 100)
+    call body%create_rigid(session, 'body', origin, unit, diagonal([1, 1, 1, 1, 1, 1] * 1.0_c_double))
+    call body%set_velocity(v0=[1, 0, 0] * 1.0_c_double)
+    call body%commit()
+    call fluid%create(body, 'fluid')
+    call fluid%set_motion_nodes(reshape(origin, [3, 1]))
+    call fluid%set_force_nodes(reshape(origin, [3, 1]))
+    call fluid%map()
+  end subroutine make_oscillator
+
+  ! 1 kg on a spring of 4 N/m, with 1 m/s at x = 0: x = sin(2 t) / 2. The trapezoidal rule (rho_inf = 1) lags by w^3 dt^2 t / 12
+  ! in phase, 6.7e-5 here, and keeps the amplitude. The same steps through callbacks with and without a context, and through a
+  ! loop of the host: the same bits.
+  subroutine oscillator()
+    type(spar_session) :: session(3)
+    type(spar_member) :: body(3)
+    type(spar_fluid), target :: fluid
+    type(spar_fluid) :: loop_fluid
+    type(springs) :: context
+    real(c_double), parameter :: dt = 0.01_c_double
+    real(c_double) :: q(7,3)
+    integer(c_int) :: iterations
+    integer :: i, k, mine
+    logical :: done
+
+    call make_oscillator(session(1), body(1), fluid)
+    call make_oscillator(session(2), body(2), own_fluid)
+    call make_oscillator(session(3), body(3), loop_fluid)
+    context%fluid => fluid
+    context%stiffness = 4
+    mine = 0
+    do i = 1, 100
+      call session(1)%step(dt, solve_springs, context, iterations)
+      mine = mine + iterations
+      call session(2)%step(dt, solve_own_springs)
+      call session(3)%step_begin(dt)
+      do
+        call session(3)%step_solve()
+        call pull_and_push(loop_fluid, 4.0_c_double)
+        call session(3)%step_check(done)
+        if (done) exit
+      end do
+      call session(3)%step_accept()
+    end do
+    do k = 1, 3
+      call body(k)%get_motion(q(:,k:k))
+    end do
+    call check(abs(q(1,1) - 0.5_c_double * sin(2.0_c_double)) < 7e-5_c_double, 'the oscillator after a second')
+    call check(all(abs(q(:,2) - q(:,1)) <= 0) .and. all(abs(q(:,3) - q(:,1)) <= 0), 'callbacks and loop give the same bits')
+    call check(context%calls == mine .and. own_calls == mine .and. mine > 100, 'each iteration is one call')
+    call check(context%last_iteration == iterations - 1, 'iterations are counted from 0')
+  end subroutine oscillator
+
+  ! After a refusal of the fluid the session is at t^n, and the next step is as if nothing had been.
+  subroutine failing_fluid()
+    type(spar_session) :: session, other
+    type(spar_member) :: body, twin
+    type(spar_fluid), target :: fluid, its
+    type(springs) :: context
+    real(c_double) :: q(7,2), t
+    integer(c_int) :: stat
+    character(200) :: errmsg
+    integer :: k
+
+    call make_oscillator(session, body, fluid)
+    call make_oscillator(other, twin, its)
+    context%stiffness = 4
+    do k = 1, 2
+      context%fluid => fluid
+      call session%step(0.01_c_double, solve_springs, context)
+      context%fluid => its
+      call other%step(0.01_c_double, solve_springs, context)
+      call session%step(0.02_c_double, refuse_to_solve, stat=stat, errmsg=errmsg)
+      call check(stat == SPAR_ERR_USER .and. index(errmsg, 'answered 9') > 0, 'a fluid that fails: ' // trim(errmsg))
+    end do
+    call session%get_time(t)
+    call body%get_motion(q(:,1:1))
+    call twin%get_motion(q(:,2:2))
+    call check(abs(t - 0.02_c_double) < 1e-15_c_double .and. all(abs(q(:,1) - q(:,2)) <= 0), 'a failed step leaves no trace')
+    call session%step(0.01_c_double, stat=stat)
+    call check(stat == SPAR_OK, 'a step without a fluid')
+  end subroutine failing_fluid
+
+  subroutine logging()
+    type(spar_session) :: session
+    type(diary), target :: log
+    class(*), pointer :: context
+    integer(c_int) :: stat
+    integer :: before
+
+    context => log
+    call session%create()
+    call session%set_log(write_diary, context)
+    call session%set_predictor(-1, stat)
+    call check(log%lines == 1 .and. log%worst == SPAR_LOG_ERROR .and. log%last == session%message(), &
+        'an error is logged')
+    before = log%lines
+    call session%set_log()
+    call session%set_predictor(-1, stat)
+    call check(log%lines == before .and. stat == SPAR_ERR_ARGUMENT, 'the log is silent again')
+    call session%set_log(write_diary, context)
+    call session%destroy()
+    call session%set_log(write_diary, context, stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'no log without a session')
+  end subroutine logging
+
+  ! A cantilever of length 2 in the linear theory, which one element of 4 nodes has exactly (deflections are cubic):
+  ! w = P L / GA + P L^3 / (3 EI); its root gives minus P and minus P L.
+  subroutine cantilever()
+    type(spar_session) :: session
+    type(spar_member) :: beam
+    real(c_double) :: stiffness(6,6,1), q(7,4), reaction(6), mass(6,6,1), f(3), shapes(6,4,3), p(6)
+
+    call session%create()
+    stiffness(:,:,1) = diagonal([100, 50, 60, 10, 20, 30] * 1.0_c_double)
+    mass(:,:,1) = diagonal([1.0_c_double, 1.0_c_double, 1.0_c_double, 2e-3_c_double, 1e-3_c_double, 1e-3_c_double])
+    call beam%create_beam(session, 'beam', 1, 4)
+    call beam%set_axis([0, 1] * 1.0_c_double, reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
+    call beam%set_sections([0.0_c_double], stiffness, mass)
+    call beam%set_effects(SPAR_EFFECT_INERTIA)
+    call beam%commit()
+    p = [0.0_c_double, 0.01_c_double, 0.02_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double]
+    call beam%add_load(4, p)
+    call beam%solve_static(1)
+    call beam%get_motion(q)
+    call beam%get_reaction(reaction)
+    call check(abs(q(2,4) - p(2) * (2 / 50.0_c_double + 8 / 90.0_c_double)) < 1e-12_c_double, 'deflection along y')
+    call check(abs(q(3,4) - p(3) * (2 / 60.0_c_double + 8 / 60.0_c_double)) < 1e-12_c_double, 'deflection along z')
+    call check(all(abs(reaction(1:3) + p(1:3)) < 1e-12_c_double), 'force at the root')
+    call check(abs(reaction(5) - 2 * p(3)) < 1e-12_c_double .and. abs(reaction(6) + 2 * p(2)) < 1e-12_c_double, &
+        'moment at the root')
+    call beam%get_modes(f, shapes)
+    call check(all(f(2:3) >= f(1:2)) .and. f(1) > 0 .and. all(abs(shapes(:,1,:)) <= 0), 'modes of a clamped beam')
+    call check(maxval(abs(shapes(:,4,1))) > 0, 'the tip moves in the first mode')
+  end subroutine cantilever
+
+  ! A rigid body whose node is driven about z through two turns: its tip goes round, |q| = 1.
+  subroutine driven_root()
+    type(spar_session) :: session
+    type(spar_member) :: body
+    type(spar_fluid) :: fluid
+    real(c_double), parameter :: pi = acos(-1.0_c_double), dt = 0.1_c_double
+    real(c_double) :: x(3,1), v(3,1), angle, q(7), w(6), a(6)
+    integer :: i
+
+    call session%create()
+    call body%create_rigid(session, 'body', origin, unit, diagonal([1, 1, 1, 1, 1, 1] * 1.0_c_double))
+    call body%set_root(SPAR_ROOT_DRIVEN)
+    call body%commit()
+    call fluid%create(body, 'tip')
+    call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
+    call fluid%map()
+    w = [0.0_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double, 2 * pi]
+    a = 0
+    do i = 1, 20
+      angle = 2 * pi * dt * i
+      q = [0.0_c_double, 0.0_c_double, 0.0_c_double, cos(angle / 2), 0.0_c_double, 0.0_c_double, sin(angle / 2)]
+      call body%drive_root(q, w, a)
+      call session%step(dt)
+      call fluid%pull_motion(1.0_c_double, x, v)
+      call check(all(abs(x(:,1) - 2 * [cos(angle), sin(angle), 0.0_c_double]) < 1e-13_c_double), 'the tip of a driven body')
+      call check(all(abs(v(:,1) - 4 * pi * [-sin(angle), cos(angle), 0.0_c_double]) < 1e-12_c_double), 'its velocity')
+    end do
+  end subroutine driven_root
+end program test_coupling
