@@ -117,6 +117,19 @@ enum {
     SPAR_COUPLING_IQN_ILS = 3      /* interface quasi-Newton by least squares (Degroote, Bathe, Vierendeels 2009) */
 };
 
+/* Entries of the report of spar_session_get_coupling. */
+enum {
+    SPAR_REPORT_CONTRACTION = 0, /* mean factor by which an iteration shrinks the residual; 0 after one iteration */
+    SPAR_REPORT_ADDED_MASS = 1,  /* (added mass) / (mass) in the most affected direction seen; iterated only */
+    SPAR_REPORT_COLUMNS = 2,     /* IQN-ILS: columns in the last least-squares problem */
+    SPAR_REPORT_DROPPED = 3,     /* IQN-ILS: nearly dependent columns filtered out in this step */
+    SPAR_REPORT_ERROR = 4,       /* last accepted step: |final loads - predicted loads| / |final loads| */
+    SPAR_REPORT_ADVISED_DT = 5,  /* dt at which that error is option coupling.target, within 0.1 to 2 of dt */
+    SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
+    SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
+    SPAR_REPORT_COUNT = 8
+};
+
 /* A session of this process alone. session: out. Local. */
 SPAR_API int spar_session_create(spar_session **session);
 /* A session over a communicator, which is duplicated and stays the caller's. comm: in, the Fortran integer of it (C:
@@ -153,13 +166,27 @@ SPAR_API int spar_session_set_relaxation(spar_session *session, double omega);
 /* on: in, 1: nodal loads come out the same to the last bit however the fluid nodes are spread over the ranks; 0
    (default): to rounding. SPAR_ERR_UNSUPPORTED: on several ranks in this release. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
-/* The long tail, by words. key, value: in.
-     coupling.unconverged  error (default) | accept        what spar_step_check does after max_iterations
-     fluid.theta           average (default) | group       pull at 0 < theta < 1: the spec's average of the two states,
-   or the node motion interpolated on the group (does not cut corners) fluid.far             take (default) | refuse
-   fluid nodes beyond max_distance: flagged, or SPAR_ERR_MAPPING fluid.audit           on (default) | off whether push
-   keeps the figures of spar_fluid_get_audit */
+/* The long tail, by words and numbers as text. key, value: in.
+     coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
+     coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
+     coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
+     coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, part of a column that newer ones must not contain already
+     coupling.motion_atol   >= 0, in m, default 0, and
+     coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also goes on until the nodes move from one
+                            iteration to the next by no more than atol + rtol times their way since t^n (root of the
+                            sum of squares; turns count times the member's length)
+     coupling.target        1e-15 to 1, default 0.01: the error that the advised dt aims at
+     fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the spec's average of the two
+                            states, or the node motion interpolated on the group (does not cut corners)
+     fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
+     fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
+/* The coupling of the step under way, or else of the last one; the same on all ranks. iterations: out. residual, size:
+   out, by iteration, room for max_iterations of spar_session_set_coupling (1 if explicit): the change of the loads and
+   the loads, [N], root of the sum of squares over all nodes of forces, and of moments divided by the member's length.
+   report: out, [SPAR_REPORT_COUNT]. Each NULL: not wanted. Local. */
+SPAR_API int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
+                                       double report[SPAR_REPORT_COUNT]);
 /* t: out, t^n in s, the time of the last accepted step, from 0; step: out, steps accepted; iteration: out, coupling
    iterations of the step under way or just ended. Each NULL: not wanted. Local. */
 SPAR_API int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration);

@@ -794,9 +794,9 @@ int spar_member_add_load(spar_member *member, int64_t node, const double load[6]
 int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_TRY(need_committed(member, "spar_member_get_loads"));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_loads: '%s': load is NULL", member->name);
-    const double *fluid = member->session->phase == SPARI_BEGUN || member->session->phase == SPARI_SOLVED
-                              ? member->load_used
-                              : member->load_pushed;
+    const spar_session *s = member->session;
+    int used = s->phase == SPARI_BEGUN || s->phase == SPARI_SOLVED || (s->phase == SPARI_CHECKED && s->iterating);
+    const double *fluid = used ? member->load_used : member->load_pushed;
     for (int64_t i = 0; i < 6 * member->nodes; i++) {
         load[i] = member->dead[i] + fluid[i];
     }

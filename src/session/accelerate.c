@@ -352,7 +352,7 @@ static void compute_next(spari_accelerator *a, const double *x, const double *g,
         return;
     }
     for (int64_t i = 0; i < a->n; i++) {
-        next[i] = x[i] + a->omega * (g[i] - x[i]);
+        next[i] = a->omega == 1 ? g[i] : x[i] + a->omega * (g[i] - x[i]);
     }
 }
 

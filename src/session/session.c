@@ -32,6 +32,11 @@ static int session_create(spari_comm *comm, spar_session **session) {
     s->coupling_rtol = 1e-6;
     s->coupling_max = 50;
     s->relaxation = 1;
+    s->coupling_columns = 30;
+    s->coupling_reuse = 5;
+    s->coupling_filter = 1e-4;
+    s->coupling_target = 0.01;
+    s->coupling_stale = 1;
     *session = s;
     return SPAR_OK;
 }
@@ -67,6 +72,7 @@ void spar_session_destroy(spar_session **session) {
         spari_member_free(m);
     }
     spari_comm_destroy(&s->comm);
+    spari_coupling_free(&s->coupling);
     free(s->pack);
     free(s->first);
     free(s->motion);
@@ -152,6 +158,7 @@ int spar_session_set_coupling(spar_session *session, int scheme, double atol, do
     session->coupling_atol = atol;
     session->coupling_rtol = rtol;
     session->coupling_max = max_iterations;
+    session->coupling_stale = 1;
     return SPAR_OK;
 }
 
@@ -161,6 +168,7 @@ int spar_session_set_relaxation(spar_session *session, double omega) {
     SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]", call,
                   omega);
     session->relaxation = omega;
+    session->coupling_stale = 1;
     return SPAR_OK;
 }
 
@@ -190,6 +198,39 @@ static const option options[] = {
     {"fluid.audit", "off", offsetof(spar_session, audit_off), 1},
 };
 
+/* Numbers, with the range they may have. */
+typedef struct number_option {
+    const char *key;
+    size_t field;
+    int whole; /* an int, else a double */
+    double least, most;
+    const char *range;
+} number_option;
+
+static const number_option number_options[] = {
+    {"coupling.columns", offsetof(spar_session, coupling_columns), 1, 1, 10000, "a whole number from 1 to 10000"},
+    {"coupling.reuse", offsetof(spar_session, coupling_reuse), 1, 0, 10000, "a whole number from 0 to 10000"},
+    {"coupling.filter", offsetof(spar_session, coupling_filter), 0, 0, 0.5, "a number from 0 to 0.5"},
+    {"coupling.target", offsetof(spar_session, coupling_target), 0, 1e-15, 1, "a number from 1e-15 to 1"},
+    {"coupling.motion_atol", offsetof(spar_session, motion_atol), 0, 0, 1e300, "a number >= 0 (metres)"},
+    {"coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0, 0, 1, "a number from 0 to 1"},
+};
+
+static int set_number(spar_session *session, const number_option *o, const char *value) {
+    char *end;
+    double x = strtod(value, &end);
+    SPARI_REQUIRE(
+        session, end != value && *end == '\0' && x >= o->least && x <= o->most && (!o->whole || x == floor(x)),
+        SPAR_ERR_ARGUMENT, "spar_session_set_option: option '%s' cannot be '%s'; give %s", o->key, value, o->range);
+    char *field = (char *)session + o->field;
+    if (o->whole) {
+        *(int *)(void *)field = (int)x;
+    } else {
+        *(double *)(void *)field = x;
+    }
+    return SPAR_OK;
+}
+
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     const char *call = "spar_session_set_option";
     SPARI_TRY(settable(session, call));
@@ -204,9 +245,30 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
             }
         }
     }
+    for (size_t i = 0; i < sizeof number_options / sizeof *number_options; i++) {
+        if (strcmp(number_options[i].key, key) == 0) {
+            SPARI_TRY(set_number(session, number_options + i, value));
+            session->coupling_stale = 1;
+            return SPAR_OK;
+        }
+    }
     SPARI_REQUIRE(session, known, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", call, key);
     return spari_fail(session, SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; spar.h lists its values", call, key,
                       value);
+}
+
+uint64_t spari_session_hash(const spar_session *s) {
+    const double numbers[] = {s->gravity[0],     s->gravity[1],      s->gravity[2],         s->rho_inf,
+                              s->substeps,       s->newton_atol,     s->newton_rtol,        s->newton_max,
+                              s->predictor,      s->scheme,          s->coupling_atol,      s->coupling_rtol,
+                              s->coupling_max,   s->relaxation,      s->accept_unconverged, s->coupling_columns,
+                              s->coupling_reuse, s->coupling_filter, s->coupling_target,    s->motion_atol,
+                              s->motion_rtol,    s->coupling_stale,  s->member_count};
+    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
+    for (size_t i = 0; i < sizeof numbers; i++) {
+        h = (h ^ ((const unsigned char *)numbers)[i]) * UINT64_C(1099511628211);
+    }
+    return h;
 }
 
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {

@@ -5,6 +5,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/member.h"
+#include "coupling.h"
 
 /* Where a step stands. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
@@ -28,8 +29,12 @@ struct spar_session {
     double coupling_atol, coupling_rtol;
     int coupling_max;
     double relaxation;
-    int accept_unconverged; /* option coupling.unconverged = accept */
-    int theta_on_group;     /* option fluid.theta = average (default) | group */
+    int accept_unconverged;               /* option coupling.unconverged = accept */
+    int coupling_columns, coupling_reuse; /* of IQN-ILS */
+    double coupling_filter;
+    double coupling_target;          /* error the advised dt aims at */
+    double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
+    int theta_on_group;              /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
     int audit_off;  /* option fluid.audit = on (default) | off */
 
@@ -37,14 +42,20 @@ struct spar_session {
     int64_t step;
     int iteration;
     spari_phase phase;
-    int started;  /* the clock has run */
-    int refused;  /* status of a push refused since the last check */
-    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
+    int order;     /* of the predictor in the step under way */
+    int iterating; /* the last check asked for another iteration */
+    int started;   /* the clock has run */
+    int refused;   /* status of a push refused since the last check */
+    double *pack;  /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
     int64_t pack_count;
-    int64_t *first; /* several ranks: where the block of each rank's members begins in `motion` */
-    double *motion; /* several ranks: motion of all solved members, by owner */
+    int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
+    spari_coupling *coupling; /* from the first step on */
+    int coupling_stale;       /* settings have changed since it was made */
+    double *motion;           /* several ranks: motion of all solved members, by owner */
 };
 
+/* What all ranks must have set alike before a step, as one number. */
+uint64_t spari_session_hash(const spar_session *session);
 /* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
 int spari_session_exchange_loads(spar_session *session, int status);
 /* Motion, reaction and dissipation of the members each rank has solved for, from member->after, to all ranks.

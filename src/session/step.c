@@ -11,9 +11,10 @@
 static const char *const phase_name[] = {"no step is under way", "the step has begun and is not solved",
                                          "the step is solved and not checked", "the step is checked"};
 
-/* Every call of the step agrees on a status before anything else. */
-static int agree(spar_session *s, int status) {
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+/* Every call of the step agrees, before anything else, on a status and on which call it is: ranks that are in different
+   ones would wait for each other. */
+static int enter(spar_session *s, const char *call, int status) {
+    return spari_comm_enter(s->comm, call, status, s->message, sizeof s->message);
 }
 
 static int wrong_phase(spar_session *s, const char *call, const char *cure) {
@@ -65,16 +66,30 @@ static void hold_root(spar_member *m) {
     }
 }
 
-int spar_step_begin(spar_session *session, double dt) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
-    spar_session *s = session;
-    int same = 1;
+/* The same dt and the same settings everywhere: else the ranks would part ways. */
+static int check_same(spar_session *s, double dt) {
     uint64_t key;
-    SPARI_TRY(agree(s, check_begin(s, dt)));
+    int same = 1;
     memcpy(&key, &dt, sizeof key);
     SPARI_TRY(spari_comm_same(s->comm, key, &same));
     SPARI_REQUIRE(s, same, SPAR_ERR_COMM,
                   "spar_step_begin: the ranks give different dt (here %g); give the same on every rank", dt);
+    SPARI_TRY(spari_comm_same(s->comm, spari_session_hash(s), &same));
+    SPARI_REQUIRE(s, same, SPAR_ERR_COMM,
+                  "spar_step_begin: the ranks have different settings; make the spar_session_set_ calls with the same "
+                  "arguments on every rank");
+    return SPAR_OK;
+}
+
+int spar_step_begin(spar_session *session, double dt) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
+    spar_session *s = session;
+    SPARI_TRY(enter(s, "spar_step_begin", check_begin(s, dt)));
+    SPARI_TRY(check_same(s, dt));
+    if (s->coupling_stale) {
+        SPARI_TRY(enter(s, "coupling", spari_coupling_prepare(s)));
+        s->coupling_stale = 0;
+    }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
         SPARI_TRY(spari_session_seal(s, SPAR_OK));
         SPARI_TRY(spari_session_exchange_loads(s, s->refused));
@@ -91,7 +106,10 @@ int spar_step_begin(spar_session *session, double dt) {
         spari_fluid_begin(f, order, dt, s->dt_last);
     }
     s->dt = dt;
+    s->order = order;
     s->iteration = 0;
+    s->iterating = 0;
+    spari_coupling_begin(s);
     s->refused = SPAR_OK;
     s->phase = SPARI_BEGUN;
     s->started = 1;
@@ -116,20 +134,19 @@ int spar_step_solve(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
+    SPARI_TRY(enter(s, "spar_step_solve", status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
     }
-    int agreed = spari_comm_size(s->comm) > 1 && s->motion ? spari_session_share_motion(s, status) : agree(s, status);
-    if (agreed != SPAR_OK) {
-        if (s->phase != SPARI_IDLE) { /* t^n is untouched; forget the half-solved iterate */
-            for (spar_member *m = s->members; m; m = m->next) {
-                if (m->body) {
-                    spari_member_reject(m);
-                }
+    status = spari_session_share_motion(s, status);
+    if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
+        for (spar_member *m = s->members; m; m = m->next) {
+            if (m->body) {
+                spari_member_reject(m);
             }
-            s->phase = SPARI_BEGUN;
         }
-        return agreed;
+        s->phase = SPARI_BEGUN;
+        return status;
     }
     s->phase = SPARI_SOLVED;
     return SPAR_OK;
@@ -137,76 +154,29 @@ int spar_step_solve(spar_session *session) {
 
 /* ---- check ---- */
 
-/* Size of the loads' change and of the loads: forces, and moments over the member's length, root of the sum of squares.
- */
-static void load_norms(const spar_session *s, double *residual, double *size) {
-    double r2 = 0, f2 = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        double per_length = m->body ? 1 / m->body->length : 1;
-        for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * m->load_used[i];
-            r2 += r * r;
-            f2 += f * f;
-        }
+/* status: of what this rank's host has done since the solution */
+static int check(spar_session *s, int status, int *done) {
+    int ended = 0;
+    if (s->phase != SPARI_SOLVED) {
+        status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
+    } else if (!done) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "spar_step_check: done is NULL");
+    } else if (status == SPAR_OK) {
+        status = s->refused; /* a push of this rank was refused; its message stands */
     }
-    *residual = sqrt(r2);
-    *size = sqrt(f2);
-}
-
-/* Loads for the next solution: a part omega of the way to those that came back. */
-static void relax(spar_session *s) {
-    for (spar_member *m = s->members; m; m = m->next) {
-        for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            m->load_used[i] += s->relaxation * (m->load_pushed[i] - m->load_used[i]);
-        }
-    }
-}
-
-static int check_done(spar_session *s, int *done) {
-    double residual, size;
-    *done = 1;
-    if (s->scheme == SPAR_COUPLING_EXPLICIT) {
-        return SPAR_OK;
-    }
-    SPARI_REQUIRE(s, s->scheme == SPAR_COUPLING_FIXED_POINT, SPAR_ERR_UNSUPPORTED,
-                  "spar_step_check: this scheme is not there yet");
-    load_norms(s, &residual, &size);
-    if (residual <= s->coupling_atol + s->coupling_rtol * size) {
-        return SPAR_OK;
-    }
-    if (s->iteration >= s->coupling_max) {
-        SPARI_REQUIRE(s, s->accept_unconverged, SPAR_ERR_NUMERIC,
-                      "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g of "
-                      "%.3g); take a smaller relaxation, another "
-                      "scheme or a smaller dt, or reject the step",
-                      s->iteration, residual, size);
-        return SPAR_OK;
-    }
-    *done = 0;
-    relax(s);
+    SPARI_TRY(enter(s, "spar_step_check", status));
+    SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
+    s->iteration++;
+    s->phase = SPARI_CHECKED;
+    SPARI_TRY(spari_coupling_check(s, &ended));
+    s->iterating = !ended;
+    *done = ended;
     return SPAR_OK;
 }
 
 int spar_step_check(spar_session *session, int *done) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
-    spar_session *s = session;
-    int status = SPAR_OK, ended = 0;
-    if (s->phase != SPARI_SOLVED) {
-        status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
-    } else if (!done) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "spar_step_check: done is NULL");
-    } else {
-        status = s->refused; /* a push of this rank was refused; its message stands */
-    }
-    if (!s->pack) {
-        return agree(s, status);
-    }
-    SPARI_TRY(spari_session_exchange_loads(s, status));
-    s->iteration++;
-    s->phase = SPARI_CHECKED;
-    SPARI_TRY(check_done(s, &ended));
-    *done = ended;
-    return SPAR_OK;
+    return check(session, SPAR_OK, done);
 }
 
 /* ---- accept and reject ---- */
@@ -230,7 +200,8 @@ int spar_step_accept(spar_session *session) {
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, "spar_step_accept", "begin and solve a step first");
     }
-    SPARI_TRY(agree(s, status));
+    SPARI_TRY(enter(s, "spar_step_accept", status));
+    spari_coupling_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
         spari_member_accept(m);
@@ -250,8 +221,9 @@ int spar_step_accept(spar_session *session) {
 int spar_step_reject(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(
-        agree(s, s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK));
+    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
+    SPARI_TRY(enter(s, "spar_step_reject", status));
+    spari_coupling_reject(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         memcpy(m->load_pushed, m->load_history[0], (size_t)(6 * m->nodes) * sizeof(double));
@@ -283,8 +255,7 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
                                     answer, s->iteration, why[0] ? ": " : "", why);
             }
         }
-        SPARI_TRY(agree(s, status));
-        SPARI_TRY(spar_step_check(s, &done));
+        SPARI_TRY(check(s, status, &done));
     }
     return SPAR_OK;
 }

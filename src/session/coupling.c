@@ -1,0 +1,332 @@
+#include "coupling.h"
+
+#include "../math/rotation.h"
+#include "../member/body.h"
+#include "session.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- memory ---- */
+
+void spari_coupling_free(spari_coupling **coupling) {
+    spari_coupling *c = coupling ? *coupling : NULL;
+    if (!c) {
+        return;
+    }
+    double *all[] = {c->length, c->unit, c->x, c->g, c->predicted, c->motion, c->residual, c->size};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        free(all[i]);
+    }
+    spari_accelerator_free(&c->accelerator);
+    free(c);
+    *coupling = NULL;
+}
+
+/* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
+static double length_of(const spar_member *m) {
+    double length = m->body ? m->body->length : 0;
+    for (int64_t i = 1; i < m->nodes && !m->body; i++) {
+        double d[3];
+        for (int k = 0; k < 3; k++) {
+            d[k] = m->xr[3 * i + k] - m->xr[3 * (i - 1) + k];
+        }
+        length += spari_norm(d);
+    }
+    return length > 0 ? length : 1;
+}
+
+static int wants_motion(const spar_session *s) {
+    return s->motion_atol > 0 || s->motion_rtol > 0;
+}
+
+static int allocate(const spar_session *s, spari_coupling *c) {
+    int iterated = s->scheme != SPAR_COUPLING_EXPLICIT;
+    int64_t n = iterated ? c->n : 0;
+    spari_accelerator_settings set = {s->scheme, s->relaxation, s->coupling_columns, s->coupling_reuse,
+                                      s->coupling_filter};
+    c->most = iterated ? s->coupling_max : 1;
+    return (c->length = spari_zalloc(c->members, sizeof(double))) &&
+           (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
+           (c->g = spari_zalloc(n, sizeof(double))) && (c->predicted = spari_zalloc(n, sizeof(double))) &&
+           (c->motion = spari_zalloc(iterated && wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
+           (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
+           (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
+}
+
+int spari_coupling_prepare(spar_session *s) {
+    spari_coupling *c = spari_zalloc(1, sizeof *c);
+    for (const spar_member *m = s->members; m && c; m = m->next) {
+        c->n += 6 * m->nodes;
+        c->members++;
+    }
+    if (!c || !allocate(s, c)) {
+        spari_coupling_free(&c);
+        return spari_fail(s, SPAR_ERR_MEMORY,
+                          "spar_step_begin: no memory for the coupling; ask for fewer columns "
+                          "(option coupling.columns)");
+    }
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        int exponent;
+        c->length[k] = length_of(m);
+        (void)frexp(1 / c->length[k], &exponent);
+        c->unit[k] = ldexp(1, exponent);
+    }
+    if (s->coupling) {
+        c->report[SPAR_REPORT_UNCONVERGED] = s->coupling->report[SPAR_REPORT_UNCONVERGED];
+    }
+    spari_coupling_free(&s->coupling);
+    s->coupling = c;
+    return SPAR_OK;
+}
+
+/* ---- the stacked vector ---- */
+
+static void stack(const spar_session *s) {
+    const spari_coupling *c = s->coupling;
+    int64_t at = 0;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++, at++) {
+            double unit = i % 6 < 3 ? 1 : c->unit[k];
+            c->x[at] = unit * m->load_used[i];
+            c->g[at] = unit * m->load_pushed[i];
+        }
+    }
+}
+
+static void unstack(const spar_session *s) {
+    const spari_coupling *c = s->coupling;
+    int64_t at = 0;
+    int k = 0;
+    for (spar_member *m = s->members; m; m = m->next, k++) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++, at++) {
+            m->load_used[i] = c->x[at] / (i % 6 < 3 ? 1 : c->unit[k]);
+        }
+    }
+}
+
+/* Root of the sum of squares of the change from `from` (stacked as the members are, or NULL: load_used) to the loads
+   that came back, and of these, [N]. */
+static void load_norms(const spar_session *s, const double *from, double *change, double *size) {
+    double r2 = 0, f2 = 0;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        const double *used = from ? from : m->load_used;
+        double per_length = 1 / s->coupling->length[k];
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * used[i];
+            r2 += r * r;
+            f2 += f * f;
+        }
+        from = from ? from + 6 * m->nodes : NULL;
+    }
+    *change = sqrt(r2);
+    *size = sqrt(f2);
+}
+
+/* Displacement and turn of a node between two motions. */
+static void travel(const double *from, const double *to, double d[6]) {
+    double c[4], p[4];
+    for (int k = 0; k < 3; k++) {
+        d[k] = to[k] - from[k];
+    }
+    spari_quat_conj(from + 3, c);
+    spari_quat_mul(to + 3, c, p);
+    spari_quat_log(p, d + 3);
+}
+
+/* How far the nodes are from where the iteration before had them, and from t^n, [m]; turns count times the length. */
+static void motion_norms(const spar_session *s) {
+    spari_coupling *c = s->coupling;
+    double r2 = 0, d2 = 0, d[6], *last = c->motion;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        for (int64_t i = 0; i < m->nodes; i++, last += 7) {
+            double l2 = c->length[k] * c->length[k];
+            travel(m->now.q + 7 * i, m->after.q + 7 * i, d);
+            d2 += spari_dot(d, d) + l2 * spari_dot(d + 3, d + 3);
+            if (c->iterations > 0) {
+                travel(last, m->after.q + 7 * i, d);
+                r2 += spari_dot(d, d) + l2 * spari_dot(d + 3, d + 3);
+            }
+            memcpy(last, m->after.q + 7 * i, 7 * sizeof *last);
+        }
+    }
+    c->moved = c->iterations > 0 ? sqrt(r2) : INFINITY;
+    c->travelled = sqrt(d2);
+}
+
+/* ---- the step ---- */
+
+void spari_coupling_begin(spar_session *s) {
+    spari_coupling *c = s->coupling;
+    c->iterations = 0;
+    for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
+        c->report[i] = 0;
+    }
+    if (c->accelerator) {
+        double *at = c->predicted;
+        for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
+            memcpy(at, m->load_used, (size_t)(6 * m->nodes) * sizeof *at);
+        }
+        spari_accelerator_begin(c->accelerator, s->dt);
+    }
+}
+
+static void record(spari_coupling *c, double residual, double size) {
+    int last = c->iterations < c->most ? c->iterations : c->most - 1; /* a host may check on after the end */
+    c->residual[last] = residual;
+    c->size[last] = size;
+    c->iterations = last + 1;
+    if (last > 0 && c->residual[0] > 0) {
+        c->report[SPAR_REPORT_CONTRACTION] = pow(residual / c->residual[0], 1.0 / last);
+    }
+}
+
+static int not_converged(spar_session *s, double residual, double size) {
+    const spari_coupling *c = s->coupling;
+    char motion[80] = "";
+    if (wants_motion(s)) {
+        (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
+    }
+    return spari_fail(
+        s, SPAR_ERR_NUMERIC,
+        "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
+        "N%s; added mass about %.3g of the mass); take a smaller relaxation, another scheme or a smaller "
+        "dt, or reject the step",
+        s->iteration, residual, size, motion, c->report[SPAR_REPORT_ADDED_MASS]);
+}
+
+int spari_coupling_check(spar_session *s, int *done) {
+    spari_coupling *c = s->coupling;
+    double residual, size;
+    *done = 1;
+    load_norms(s, NULL, &residual, &size);
+    SPARI_REQUIRE(s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
+                  "spar_step_check: the loads are too large to be squared (the iteration blows up); take a smaller "
+                  "relaxation or dt, or reject the step");
+    int motion = c->accelerator && wants_motion(s);
+    if (motion) {
+        motion_norms(s);
+    }
+    record(c, residual, size);
+    if (!c->accelerator || (residual <= s->coupling_atol + s->coupling_rtol * size &&
+                            (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled))) {
+        return SPAR_OK;
+    }
+    if (s->iteration >= s->coupling_max) {
+        if (!s->accept_unconverged) {
+            return not_converged(s, residual, size);
+        }
+        c->report[SPAR_REPORT_UNCONVERGED] += 1;
+        return SPAR_OK;
+    }
+    *done = 0;
+    stack(s);
+    spari_accelerator_next(c->accelerator, c->x, c->g, c->x);
+    unstack(s);
+    c->report[SPAR_REPORT_ADDED_MASS] = spari_accelerator_ratio(c->accelerator);
+    c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
+    c->report[SPAR_REPORT_DROPPED] = spari_accelerator_dropped(c->accelerator);
+    return SPAR_OK;
+}
+
+/* ---- what an accepted step shows ---- */
+
+/* The predicted loads against the final ones tell the error of the coupling; it goes with dt^(order + 1). */
+static void estimate_error(spar_session *s) {
+    spari_coupling *c = s->coupling;
+    double change, size;
+    load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
+    double error = size > 0 ? change / size : 0;
+    double factor = error > 0 ? 0.9 * pow(s->coupling_target / error, 1.0 / (s->order + 1)) : 2;
+    c->report[SPAR_REPORT_ERROR] = error;
+    c->report[SPAR_REPORT_ADVISED_DT] = s->dt * fmin(fmax(factor, 0.1), 2);
+}
+
+/* Work over the step that the fluid holds it has given less what the structure has taken, [J]; *whole: of all loads,
+   each counted positive. */
+static double work_defect(const spar_session *s, double *whole) {
+    double defect = 0, d[6];
+    *whole = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++) {
+            travel(m->now.q + 7 * i, m->after.q + 7 * i, d);
+            for (int k = 0; k < 6; k++) {
+                double f = m->load_pushed[6 * i + k];
+                defect += 0.5 * (f - m->load_used[6 * i + k]) * d[k];
+                *whole += 0.5 * fabs(f * d[k]);
+            }
+        }
+    }
+    return defect;
+}
+
+/* The defect of a sound run is a small part of the work, whatever its course. Of a run about to blow up it is of the
+   size of the work and grows from step to step. */
+static void watch(spar_session *s) {
+    enum { GROWING_STEPS = 4 };
+    spari_coupling *c = s->coupling;
+    double whole, defect = work_defect(s, &whole);
+    c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
+    c->defect = defect;
+    c->report[SPAR_REPORT_WORK_DEFECT] = defect;
+    if (c->grown == 0) {
+        c->warned = 0;
+    }
+    if (c->grown >= GROWING_STEPS && !c->warned) {
+        c->warned = 1;
+        if (s->log) {
+            char text[SPARI_MESSAGE_SIZE];
+            (void)snprintf(
+                text, sizeof text,
+                "the coupling is becoming unstable at t = %g: fluid and structure differ by %.3g J of %.3g J "
+                "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
+                "coupling) or lower the order of the predictor",
+                s->time + s->dt, fabs(defect), whole, c->grown);
+            s->log(s, SPARI_LOG_WARNING, text, s->log_context);
+        }
+    }
+}
+
+void spari_coupling_accept(spar_session *s) {
+    if (s->phase == SPARI_CHECKED) {
+        estimate_error(s);
+        watch(s);
+    }
+    if (s->coupling->accelerator) {
+        spari_accelerator_accept(s->coupling->accelerator);
+    }
+}
+
+void spari_coupling_reject(spar_session *s) {
+    if (s->coupling->accelerator) {
+        spari_accelerator_reject(s->coupling->accelerator);
+    }
+}
+
+int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
+                              double report[SPAR_REPORT_COUNT]) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
+    const spari_coupling *c = session->coupling;
+    int n = c ? c->iterations : 0;
+    if (iterations) {
+        *iterations = n;
+    }
+    for (int i = 0; i < n; i++) {
+        if (residual) {
+            residual[i] = c->residual[i];
+        }
+        if (size) {
+            size[i] = c->size[i];
+        }
+    }
+    for (int i = 0; report && i < SPAR_REPORT_COUNT; i++) {
+        report[i] = c ? c->report[i] : 0;
+    }
+    return SPAR_OK;
+}

@@ -1,0 +1,39 @@
+/* The coupling iteration of a session: the loads of all members stacked into one vector, the stop test, the
+   accelerator, and what a run shows of its coupling. */
+#ifndef SPARI_COUPLING_H
+#define SPARI_COUPLING_H
+
+#include "accelerate.h"
+
+#include <spar/spar.h>
+
+typedef struct spari_coupling {
+    int64_t n; /* six for every node of every member */
+    int members;
+    double *length;    /* of each member: moments count as moment over length, turns as turn times length */
+    double *unit;      /* of each member: the power of two next to 1/length, which scales moments without rounding */
+    double *x, *g;     /* iterated: loads used and come back, stacked, moments times unit */
+    double *predicted; /* iterated: loads the step began with, as they are */
+    double *motion;    /* motion test: places and quaternions [7] of the iteration before */
+    spari_accelerator *accelerator; /* iterated */
+
+    int iterations, most;    /* of the step under way or the last one; room of the next two */
+    double *residual, *size; /* change of the loads and the loads, [N], by iteration */
+    double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
+    double report[SPAR_REPORT_COUNT];
+    double defect; /* of the last accepted step */
+    int grown;     /* steps in which it has grown without a break */
+    int warned;
+} spari_coupling;
+
+/* Memory for the settings in force; what there was goes. Local. */
+int spari_coupling_prepare(spar_session *session);
+void spari_coupling_free(spari_coupling **coupling);
+void spari_coupling_begin(spar_session *session);
+/* After the loads have been exchanged: whether they agree with those used, else the next ones. */
+int spari_coupling_check(spar_session *session, int *done);
+/* Before the histories shift. */
+void spari_coupling_accept(spar_session *session);
+void spari_coupling_reject(spar_session *session);
+
+#endif

@@ -1,0 +1,335 @@
+/* The coupling of a session with a fluid that is added mass: limits of stability, iteration counts, the stop tests,
+   what is reported, and what a failure leaves behind. The maps are in closed form (pistons.h). */
+#include "pistons.h"
+
+/* Steps the explicit scheme from a load of 1 at t^0; returns the last load pushed. */
+static double explicit_run(int order, double ratio, int steps, double dt) {
+    pistons p;
+    double one[3] = {1, 0, 0};
+    pistons_create(&p, 1, &ratio);
+    OK(p.session, spar_session_set_predictor(p.session, order));
+    OK(p.session, spar_fluid_push_forces(p.fluid[0], one, NULL));
+    for (int i = 0; i < steps; i++) {
+        OK(p.session, spar_step(p.session, dt, pistons_fluid, &p, NULL));
+    }
+    double last = fabs(p.force[0][0]);
+    pistons_destroy(&p);
+    return last;
+}
+
+/* Loads follow f^{n+1} = -r (extrapolation of the last ones): |root| = 1 at r = 1 (order 0), 1/3 (order 1), 1/7 (order
+   2), where the root is -1: r (1), r (2 + 1), r (3 + 3 + 1) = 1. Sharp to 1e-3, for dt of any size. */
+static void explicit_limits(void **state) {
+    (void)state;
+    static const double limit[3] = {1, 1.0 / 3, 1.0 / 7}, dts[2] = {1e-3, 10};
+    for (int order = 0; order <= 2; order++) {
+        for (int k = 0; k < 2; k++) {
+            double start = explicit_run(order, limit[order] * (1 - 1e-3), 200, dts[k]);
+            double below = explicit_run(order, limit[order] * (1 - 1e-3), 4000, dts[k]);
+            assert_true(below < 0.2 * start);
+            start = explicit_run(order, limit[order] * (1 + 1e-3), 200, dts[k]);
+            double above = explicit_run(order, limit[order] * (1 + 1e-3), 4000, dts[k]);
+            assert_true(above > 5 * start);
+        }
+    }
+}
+
+/* Every ratio of added mass with every scheme: the answer is b / (1 + r), in 3 evaluations with Aitken and IQN-ILS;
+   fixed point iteration without relaxation needs r < 1. */
+static void ratios(void **state) {
+    (void)state;
+    static const double all[] = {0.1, 0.3, 0.9, 1.1, 3, 10, 100};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        for (int scheme = SPAR_COUPLING_FIXED_POINT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+            pistons p;
+            int evaluations = 0;
+            pistons_create(&p, 1, all + k);
+            p.b[0] = 5;
+            OK(p.session, spar_session_set_coupling(p.session, scheme, 0, 1e-10, 250));
+            int status = spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations);
+            int diverges = scheme == SPAR_COUPLING_FIXED_POINT && all[k] > 1;
+            assert_int_equal(status, diverges ? SPAR_ERR_NUMERIC : SPAR_OK);
+            if (!diverges) {
+                double a[6];
+                assert_true(scheme == SPAR_COUPLING_FIXED_POINT || evaluations <= 3);
+                NEAR(p.force[0][0], 5 / (1 + all[k]), 5e-9);
+                OK(p.session, spar_member_get_motion(p.body[0], NULL, NULL, a));
+                NEAR(a[0], 5 / (1 + all[k]) / 2, 5e-9);
+            }
+            pistons_destroy(&p);
+        }
+    }
+}
+
+/* Causin's channel modes, each a piston of one session: the stacked vector is iterated as a whole, so the counts are
+   those of the table (test_accelerate.c), to the same absolute tolerance: 1e-8 of |b|. */
+static void channel_modes(void **state) {
+    (void)state;
+    static const struct {
+        int n, aitken, iqn;
+        double a_dt2;
+    } rows[] = {{1, 3, 3, 0.004}, {2, 12, 4, 0.004}, {5, 30, 7, 0.004}, {5, 9, 6, 40}};
+    const double pi = 3.14159265358979323846;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        for (int scheme = SPAR_COUPLING_AITKEN; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+            double r[5];
+            int evaluations;
+            pistons p;
+            for (int i = 1; i <= rows[k].n; i++) {
+                r[i - 1] = 6 / (i * pi * tanh(i * pi * 0.5 / 6)) / (0.11 + rows[k].a_dt2);
+            }
+            pistons_create(&p, rows[k].n, r);
+            for (int i = 0; i < p.n; i++) {
+                p.b[i] = 1;
+            }
+            OK(p.session, spar_session_set_coupling(p.session, scheme, 1e-8 * sqrt(p.n), 0, 100));
+            OK(p.session, spar_session_set_relaxation(p.session, 0.01));
+            OK(p.session, spar_session_set_option(p.session, "coupling.filter", "0"));
+            OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
+            assert_int_equal(evaluations, scheme == SPAR_COUPLING_AITKEN ? rows[k].aitken : rows[k].iqn);
+            pistons_destroy(&p);
+        }
+    }
+}
+
+/* r = 1/2: residuals 5, 5/2, 5/4, ... against loads 5, 5/2, 15/4, ...; contraction and ratio are 1/2. */
+static void report(void **state) {
+    (void)state;
+    const double r = 0.5;
+    double residual[100], size[100], rep[SPAR_REPORT_COUNT];
+    int evaluations, iterations;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    p.b[0] = 5;
+    OK(p.session, spar_session_set_predictor(p.session, 0));
+    OK(p.session, spar_session_get_coupling(p.session, &iterations, residual, size, rep));
+    assert_int_equal(iterations, 0);
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 100));
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
+    OK(p.session, spar_session_get_coupling(p.session, &iterations, residual, size, rep));
+    assert_int_equal(iterations, evaluations);
+    for (int i = 0; i < iterations; i++) {
+        NEAR(residual[i], 5 * pow(0.5, i), 1e-12);
+    }
+    NEAR(size[0], 5, 1e-12);
+    NEAR(size[1], 2.5, 1e-12);
+    NEAR(size[2], 3.75, 1e-12);
+    NEAR(rep[SPAR_REPORT_CONTRACTION], 0.5, 1e-6);
+    NEAR(rep[SPAR_REPORT_ADDED_MASS], 0.5, 1e-6);
+    NEAR(rep[SPAR_REPORT_ERROR], 1, 1e-12); /* predicted: no load at all */
+    OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, NULL));
+    /* the second step predicts what it finds: one iteration, and a longer step is advised */
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
+    OK(p.session, spar_session_get_coupling(p.session, &iterations, NULL, NULL, rep));
+    assert_int_equal(iterations, 1);
+    assert_true(rep[SPAR_REPORT_ERROR] < 1e-8);
+    NEAR(rep[SPAR_REPORT_ADVISED_DT], 0.2, 1e-15);
+    pistons_destroy(&p);
+}
+
+/* At its limit the iteration is an error, or is accepted and counted. */
+static void unconverged(void **state) {
+    (void)state;
+    const double r = 3;
+    double rep[SPAR_REPORT_COUNT], t;
+    int64_t step;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    p.b[0] = 5;
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 4));
+    assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_NUMERIC);
+    assert_non_null(strstr(spar_session_message(p.session), "not converged in 4 iterations"));
+    assert_non_null(strstr(spar_session_message(p.session), "added mass about 3 of"));
+    OK(p.session, spar_session_get_time(p.session, &t, &step, NULL));
+    assert_true(t == 0 && step == 0);
+    OK(p.session, spar_session_set_option(p.session, "coupling.unconverged", "accept"));
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+    OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, rep));
+    assert_true(rep[SPAR_REPORT_UNCONVERGED] == 2);
+    /* without a limit in sight the loads overflow: a status, not an endless loop or a false success */
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 2000));
+    assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_NUMERIC);
+    /* and the session goes on */
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_IQN_ILS, 0, 1e-9, 20));
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+    NEAR(p.force[0][0], 1.25, 1e-8);
+    pistons_destroy(&p);
+}
+
+/* The motion test asks for one more iteration where the loads agree at once; it holds in the units it says: metres. */
+static void motion_test(void **state) {
+    (void)state;
+    const double r = 0.5;
+    int loads_only, with_motion;
+    for (int k = 0; k < 2; k++) {
+        pistons p;
+        pistons_create(&p, 1, &r);
+        p.b[0] = 5;
+        OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-3, 100));
+        if (k) { /* one step of 0.1 s moves the piston by a dt^2 / 4 or so; a residual R moves it by (R/2) dt^2 / 4 */
+            OK(p.session, spar_session_set_option(p.session, "coupling.motion_atol", "1e-9"));
+        }
+        OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, k ? &with_motion : &loads_only));
+        pistons_destroy(&p);
+    }
+    /* residual 5/2^i <= 1e-3 * 10/3 at i = 11; moved = 5/2^i / 2 * 0.0025 <= 1e-9 at i = 23, and it is the change of
+       the loads used, one behind */
+    assert_int_equal(loads_only, 12);
+    assert_int_equal(with_motion, 25);
+}
+
+/* The state as the user sees it */
+static void snapshot(const pistons *p, double *out) {
+    for (int i = 0; i < p->n; i++) {
+        OK(p->session, spar_member_get_motion(p->body[i], out + 25 * i, out + 25 * i + 7, out + 25 * i + 13));
+        OK(p->session, spar_member_get_loads(p->body[i], out + 25 * i + 19));
+    }
+}
+
+/* NaN in the third call of the fluid: refused, the step goes back, and the run goes on with the bits of one in which it
+   did not happen. Also after a step tried with another dt and rejected. */
+static void nan_in_the_third_iteration(void **state) {
+    (void)state;
+    const double r[3] = {0.2, 4, 30};
+    for (int scheme = SPAR_COUPLING_FIXED_POINT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+        double got[2][75];
+        for (int with = 0; with < 2; with++) {
+            pistons p;
+            pistons_create(&p, 3, r);
+            OK(p.session, spar_session_set_coupling(p.session, scheme, 0, 1e-9, 2000));
+            OK(p.session, spar_session_set_relaxation(p.session, 0.05));
+            p.b[0] = 1, p.b[1] = -2, p.b[2] = 3, p.stiffness = 20;
+            for (int step = 0; step < 6; step++) {
+                if (with && (step == 0 || step == 3)) {
+                    double before[75], after[75];
+                    snapshot(&p, before);
+                    p.calls = 0;
+                    p.bad_call = step == 0 ? 3 : 1; /* reused columns leave no third iteration later */
+                    assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_ARGUMENT);
+                    assert_non_null(strstr(spar_session_message(p.session), "nan"));
+                    p.bad_call = 0;
+                    snapshot(&p, after);
+                    assert_memory_equal(before, after, sizeof before);
+                    /* and a whole step with another dt, taken back */
+                    int done = 0;
+                    OK(p.session, spar_step_begin(p.session, 0.02));
+                    while (!done) {
+                        OK(p.session, spar_step_solve(p.session));
+                        pistons_fluid(p.session, 0, 0, 0, &p);
+                        OK(p.session, spar_step_check(p.session, &done));
+                    }
+                    OK(p.session, spar_step_reject(p.session));
+                    snapshot(&p, after);
+                    assert_memory_equal(before, after, sizeof before);
+                }
+                OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+            }
+            snapshot(&p, got[with]);
+            pistons_destroy(&p);
+        }
+        assert_memory_equal(got[0], got[1], sizeof got[0]);
+    }
+}
+
+/* ---- the warning ---- */
+
+static int warnings;
+
+static void count_warnings(const spar_session *s, int level, const char *text, void *context) {
+    (void)s;
+    (void)context;
+    warnings += level == 1 && strstr(text, "becoming unstable") != NULL;
+}
+
+/* Above the limit the log warns while the loads are still small; below it, and where a load merely grows, it is silent.
+ */
+static void instability_warning(void **state) {
+    (void)state;
+    static const double all[2] = {0.3, 0.5};
+    for (int k = 0; k < 2; k++) {
+        pistons p;
+        pistons_create(&p, 1, all + k);
+        p.stiffness = 2;
+        p.b[0] = 1;
+        warnings = 0;
+        OK(p.session, spar_session_set_log(p.session, count_warnings, NULL));
+        int step = 0;
+        for (; step < 200 && !warnings; step++) {
+            p.b[0] += 0.1;
+            OK(p.session, spar_step(p.session, 0.01, pistons_fluid, &p, NULL));
+        }
+        assert_int_equal(warnings, k);
+        assert_true(k == 0 || (step < 40 && fabs(p.force[0][0]) < 1e3));
+        pistons_destroy(&p);
+    }
+}
+
+/* ---- the predictor ---- */
+
+/* A load that is a polynomial of the predictor's order is predicted exactly whatever the steps: dt 1 : 3 : 2. */
+static int polynomial(spar_session *s, double t, double dt, int iteration, void *context) {
+    pistons *p = context;
+    double x = t + dt, f[3] = {p->b[0] + p->b[1] * x + p->b[2] * x * x, 0, 0};
+    (void)iteration;
+    (void)s;
+    return spar_fluid_push_forces(p->fluid[0], f, NULL);
+}
+
+static void predictor_is_exact(void **state) {
+    (void)state;
+    static const double dts[] = {0.1, 0.3, 0.2, 0.1, 0.6}, r = 0;
+    for (int order = 0; order <= 2; order++) {
+        pistons p;
+        double rep[SPAR_REPORT_COUNT];
+        pistons_create(&p, 1, &r);
+        OK(p.session, spar_session_set_predictor(p.session, order));
+        p.b[0] = 2, p.b[1] = order > 0 ? 3 : 0, p.b[2] = order > 1 ? -4 : 0;
+        polynomial(p.session, 0, 0, 0, &p);
+        for (int i = 0; i < 5; i++) {
+            OK(p.session, spar_step(p.session, dts[i], polynomial, &p, NULL));
+            OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, rep));
+            assert_true(i < order ? rep[SPAR_REPORT_ERROR] > 0.01 : rep[SPAR_REPORT_ERROR] < 1e-13);
+        }
+        pistons_destroy(&p);
+    }
+}
+
+/* ---- settings ---- */
+
+static void settings_are_checked(void **state) {
+    (void)state;
+    static const char *const bad[][2] = {{"coupling.columns", "0"},      {"coupling.columns", "2.5"},
+                                         {"coupling.columns", "ten"},    {"coupling.reuse", "-1"},
+                                         {"coupling.filter", "0.7"},     {"coupling.filter", "nan"},
+                                         {"coupling.filter", ""},        {"coupling.target", "0"},
+                                         {"coupling.motion_atol", "-1"}, {"coupling.motion_rtol", "1e-3 m"},
+                                         {"coupling.nothing", "1"}};
+    const double r = 1;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        assert_int_equal(spar_session_set_option(p.session, bad[k][0], bad[k][1]), SPAR_ERR_ARGUMENT);
+        assert_non_null(strstr(spar_session_message(p.session), bad[k][0]));
+    }
+    OK(p.session, spar_session_set_option(p.session, "coupling.columns", "4"));
+    OK(p.session, spar_session_set_option(p.session, "coupling.reuse", "0"));
+    OK(p.session, spar_session_set_option(p.session, "coupling.filter", "1e-6"));
+    pistons_destroy(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(explicit_limits),
+        cmocka_unit_test(ratios),
+        cmocka_unit_test(channel_modes),
+        cmocka_unit_test(report),
+        cmocka_unit_test(unconverged),
+        cmocka_unit_test(motion_test),
+        cmocka_unit_test(nan_in_the_third_iteration),
+        cmocka_unit_test(instability_warning),
+        cmocka_unit_test(predictor_is_exact),
+        cmocka_unit_test(settings_are_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
