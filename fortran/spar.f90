@@ -45,6 +45,8 @@ module spar
 
   public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING
   public :: SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER, SPAR_COUPLING_EXPLICIT
+  public :: SPAR_REPORT_CONTRACTION, SPAR_REPORT_ADDED_MASS, SPAR_REPORT_COLUMNS, SPAR_REPORT_DROPPED, SPAR_REPORT_ERROR
+  public :: SPAR_REPORT_ADVISED_DT, SPAR_REPORT_WORK_DEFECT, SPAR_REPORT_UNCONVERGED, SPAR_REPORT_COUNT
   public :: SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS, SPAR_ROOT_FREE, SPAR_ROOT_FIXED
   public :: SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN, SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO
   public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
@@ -75,6 +77,7 @@ module spar
     procedure :: set_option => session_set_option
     procedure :: set_log => session_set_log
     procedure :: get_time => session_get_time
+    procedure :: get_coupling => session_get_coupling
     procedure :: save => session_save
     procedure :: load => session_load
     procedure :: step_begin => session_step_begin
@@ -449,6 +452,18 @@ contains
 
     call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
   end subroutine session_get_time
+
+  ! residual, size: room for the iterations set_coupling allows; report: SPAR_REPORT_COUNT numbers, entry k at report(k + 1)
+  subroutine session_get_coupling(self, iterations, residual, size, report, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int), intent(inout), optional :: iterations
+    real(c_double), contiguous, intent(inout), optional :: residual(:), size(:)
+    real(c_double), intent(inout), optional :: report(SPAR_REPORT_COUNT)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_coupling(self%handle, iterations, residual, size, report), self%handle, stat, errmsg)
+  end subroutine session_get_coupling
 
   subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self

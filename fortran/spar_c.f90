@@ -16,6 +16,9 @@ module spar_c
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
   integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, &
       SPAR_COUPLING_AITKEN = 2, SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
+      SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
+      SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_COUNT = 8
   integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
       SPAR_ROOT_DRIVEN = 3
@@ -146,6 +149,14 @@ module spar_c
       integer(c_int), intent(inout), optional :: iteration
       integer(c_int) :: status
     end function spar_session_get_time
+
+    function spar_session_get_coupling(session, iterations, residual, size, report) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: iterations
+      real(c_double), intent(inout), optional :: residual(*), size(*), report(*)
+      integer(c_int) :: status
+    end function spar_session_get_coupling
 
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr

@@ -288,7 +288,7 @@ static void watch(spar_session *s) {
                 "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
                 "coupling) or lower the order of the predictor",
                 s->time + s->dt, fabs(defect), whole, c->grown);
-            s->log(s, SPARI_LOG_WARNING, text, s->log_context);
+            s->log(s, SPAR_LOG_WARNING, text, s->log_context);
         }
     }
 }

@@ -30,6 +30,7 @@ program test_bindings
   call refused(spar_session_set_reproducible(none, 0_c_int), 'spar_session_set_reproducible')
   call refused(spar_session_set_option(none), 'spar_session_set_option')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
+  call refused(spar_session_get_coupling(none), 'spar_session_get_coupling')
   call refused(spar_point_create(none, member=made), 'spar_point_create')
   call refused(spar_rigid_create(none, member=made), 'spar_rigid_create')
   call refused(spar_beam_create(none, elements=0_c_int, nodes_per_element=0_c_int, member=made), 'spar_beam_create')
