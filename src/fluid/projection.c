@@ -1,5 +1,6 @@
 #include "projection.h"
 
+#include "../math/roots.h"
 #include "../math/rotation.h"
 #include "../session/status.h"
 #include "transfer.h"
@@ -38,6 +39,7 @@ typedef struct segment {
     double radius;    /* what rounding is relative to: bound of all terms of r */
     double c[MODES][4];
     double dg[ROW], dc[3][ROW], g0, c0[3]; /* differences of G_i and of -2 C_i; first entries */
+    double pull[ROW], slope[MODES][3];     /* r . r' and r' in powers of s in [-1,1]: for the root finder */
 } segment;
 
 typedef struct ball {
@@ -178,6 +180,35 @@ static double distance_to_chord(const double a[3], const double b[3], const doub
     return spari_norm(v);
 }
 
+/* Powers of s in place of Chebyshev polynomials. That loses digits with the degree, but on a segment the coefficients
+   fall off faster than the loss grows. */
+static void make_powers(segment *s) {
+    double t[3][MODES] = {{1}, {0, 1}}, r[MODES][3] = {{0}};
+    int m = s->modes - 1;
+    for (int k = 1; k <= m; k++) {
+        const double *now = t[k % 3], *last = t[(k + 2) % 3];
+        double *next = t[(k + 1) % 3];
+        for (int j = 0; j <= k; j++) {
+            for (int i = 0; i < 3; i++) {
+                r[j][i] += s->c[k][i] * now[j];
+            }
+        }
+        for (int j = 0; j <= k + 1 && k < m; j++) {
+            next[j] = (j > 0 ? 2 * now[j - 1] : 0) - (j < k ? last[j] : 0);
+        }
+    }
+    for (int k = 1; k <= m; k++) {
+        for (int i = 0; i < 3; i++) {
+            s->slope[k - 1][i] = k * r[k][i];
+        }
+    }
+    for (int k = 0; k <= m; k++) {
+        for (int j = 0; j < m; j++) {
+            s->pull[k + j] += spari_dot(r[k], s->slope[j]);
+        }
+    }
+}
+
 /* Everything about r on [a,b] of an element. */
 static void make_segment(const spari_line *line, const binomials *bin, int element, double a, double b, segment *s) {
     double control[3][MODES], square[ROW], sum[ROW] = {0}, one[MODES], raised[ROW], peak[MODES];
@@ -222,6 +253,7 @@ static void make_segment(const spari_line *line, const binomials *bin, int eleme
         s->deviation = fmax(s->deviation, distance_to_chord(s->end[0], s->end[1], p));
         s->ball = fmax(s->ball, spari_norm(p));
     }
+    make_powers(s);
 }
 
 /* Nearly straight, and its control points near it: a segment worth keeping whole. */
@@ -376,6 +408,7 @@ typedef struct search {
     int element;   /* the foot; -1: none yet */
     double xi;
     int ambiguous;
+    int method;
 } search;
 
 /* Distances within 2e-13 of the line's size are one distance: rounding decides between them, so xi does. */
@@ -559,14 +592,8 @@ static int settle(search *q, const segment *s, const double p[3], part *a, int n
     return 1;
 }
 
-static void look_at(search *q, const segment *s) {
-    double p[3];
-    for (int i = 0; i < 3; i++) {
-        p[i] = q->p[i] - s->origin[i];
-    }
-    if (distance_to_chord(s->end[0], s->end[1], p) > q->reach + s->deviation + 8 * DBL_EPSILON * s->radius) {
-        return;
-    }
+/* By Descartes' rule and halving, as said at the top. */
+static void bound(search *q, const segment *s, const double p[3]) {
     part stack[DEPTH + 1];
     int n = 2 * (s->modes - 1), depth = 1;
     double size = spari_norm(p) + s->radius, noise = 32 * DBL_EPSILON * size * size;
@@ -588,6 +615,48 @@ static void look_at(search *q, const segment *s) {
             halve(&whole, n, &stack[depth], &stack[depth - 1]);
             depth++;
         }
+    }
+}
+
+/* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two real zeros close together come back as a
+   complex pair with an imaginary part of the order of the root of rounding: such pairs count as real, and Newton puts
+   them right. Returns 0 if the root finder gave up. */
+static int solve(search *q, const segment *s, const double p[3]) {
+    const double near = 1e-3;
+    double c[ROW], re[ROW], im[ROW], most = 0;
+    int degree = 2 * s->modes - 3;
+    for (int k = 0; k <= degree; k++) {
+        c[k] = s->pull[k] - (k < s->modes - 1 ? spari_dot(p, s->slope[k]) : 0);
+        most = fmax(most, fabs(c[k]));
+    }
+    while (degree > 1 && fabs(c[degree]) <= DBL_EPSILON * most) {
+        degree--;
+    }
+    if (most > 0 && spari_roots(degree, c, re, im) != degree) {
+        return 0;
+    }
+    for (int k = 0; k < degree && most > 0; k++) {
+        if (fabs(im[k]) <= near && fabs(re[k]) <= 1 + near) {
+            double at = fmax(-1, fmin(1, re[k]));
+            double found = refine(s, p, fmax(-1, at - near), fmin(1, at + near), at), xi = xi_of(s, 0.5 * (1 + found));
+            offer(q, s->element, xi, square_at(q, s->element, xi));
+        }
+    }
+    offer(q, s->element, s->a, square_at(q, s->element, s->a));
+    offer(q, s->element, s->b, square_at(q, s->element, s->b));
+    return 1;
+}
+
+static void look_at(search *q, const segment *s) {
+    double p[3];
+    for (int i = 0; i < 3; i++) {
+        p[i] = q->p[i] - s->origin[i];
+    }
+    if (distance_to_chord(s->end[0], s->end[1], p) > q->reach + s->deviation + 8 * DBL_EPSILON * s->radius) {
+        return;
+    }
+    if (q->method != SPAR_PROJECT_RPOLY || !solve(q, s, p)) {
+        bound(q, s, p);
     }
 }
 
@@ -646,8 +715,7 @@ static int is_beyond(const search *q) {
 
 void spari_line_project(const spari_line *line, int method, int64_t n, const double *x, int *element, double *xi,
                         double *feet, uint8_t *flags) {
-    search q = {.line = line, .xi = line->per_element > 1 ? -1 : 0};
-    (void)method;
+    search q = {.line = line, .method = method, .xi = line->per_element > 1 ? -1 : 0};
     for (int64_t j = 0; j < n; j++) {
         for (int i = 0; i < 3; i++) {
             q.p[i] = x[3 * j + i] - line->origin[i];
