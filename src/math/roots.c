@@ -1,5 +1,6 @@
 #include "roots.h"
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -409,6 +410,51 @@ static int search(finder *w) {
     return 0;
 }
 
+/* p(z) / p'(z) for c in rising powers, or 0 where |p(z)| is rounding. Outside the unit circle with the reversed
+   polynomial in 1/z, so that no power overflows. */
+static double complex newton_step(int n, const double *c, double complex z) {
+    int inside = cabs(z) <= 1;
+    double complex x = inside ? z : 1 / z, value = 0, slope = 0;
+    double size = cabs(x), sum = 0;
+    for (int i = 0; i <= n; i++) {
+        double next = c[inside ? n - i : i];
+        slope = slope * x + value;
+        value = value * x + next;
+        sum = sum * size + fabs(next);
+    }
+    if (cabs(value) <= 4 * DBL_EPSILON * sum) {
+        return 0;
+    }
+    return inside ? value / slope : value / ((n * value - slope * x) * x);
+}
+
+/* Each zero is found on a quotient, which carries the errors of those before it. All are set right on the polynomial
+   itself by the simultaneous Newton steps of Ehrlich and Aberth, which keep the zeros apart; pairs stay pairs, real
+   ones real. */
+static void polish(int n, const double *c, double *re, double *im) {
+    for (int sweep = 0, moving = 1; sweep < 30 && moving; sweep++) {
+        moving = 0;
+        for (int k = 0; k < n; k++) {
+            double complex z = re[k] + im[k] * _Complex_I, step = newton_step(n, c, z), others = 0;
+            int pair = im[k] != 0;
+            for (int j = 0; j < n && step != 0; j++) {
+                double complex d = z - (re[j] + im[j] * _Complex_I);
+                others += j != k && d != 0 ? 1 / d : 0;
+            }
+            step /= 1 - step * others;
+            if (isfinite(creal(step)) && isfinite(cimag(step)) && cabs(step) > DBL_EPSILON * cabs(z)) {
+                moving = 1;
+                re[k] -= creal(step);
+                im[k] -= pair ? cimag(step) : 0;
+            }
+            if (pair) { /* the conjugate stands behind it */
+                re[k + 1] = re[k], im[k + 1] = -im[k];
+                k++;
+            }
+        }
+    }
+}
+
 int spari_roots(int degree, const double *c, double *re, double *im) {
     finder w;
     int count = 0;
@@ -429,6 +475,7 @@ int spari_roots(int degree, const double *c, double *re, double *im) {
     for (; c[0] == 0; c++, degree--, count++) { /* zeros at the origin */
         re[count] = im[count] = 0;
     }
+    const int origin = count;
     w.n = degree;
     for (int i = 0; i <= degree; i++) {
         w.p[i] = c[degree - i];
@@ -451,5 +498,6 @@ int spari_roots(int degree, const double *c, double *re, double *im) {
         re[count] = -w.p[1] / w.p[0], im[count] = 0;
         count++;
     }
+    polish(degree, c, re + origin, im + origin);
     return count;
 }
