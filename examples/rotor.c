@@ -451,9 +451,9 @@ static void show_progress(const scene *s, double t, double begun, double *shown)
     fflush(stderr);
 }
 
-/* Bends the blades to where the loads of the turning rotor and gravity would hold them at rest. A straight blade let go
-   in the wind rushes downwind so fast that the momentum balance of its tip has no continuous solution. The loads
-   depend on the shape: a few rounds bring both together; the centrifugal force is left for the run to add. */
+/* Bends the blades to where the loads of the turning rotor and gravity would hold them at rest: straight blades let go
+   in the wind swing for many turns. The loads depend on the shape: a few rounds bring both together; the centrifugal
+   force is left for the run to add. */
 static int bend(scene *s) {
     enum { ROUNDS = 4, LOAD_STEPS = 4 };
     for (int round = 0; round < ROUNDS; round++) {
