@@ -1,4 +1,9 @@
-# tests/test_rotor.c runs the program as a user does, alone and on several ranks.
+# The examples as tests: what they print must be what it should.
+if(NOT SPAR_BUILD_TESTS)
+  return()
+endif()
+
+# tests/test_rotor.c runs the rotor as a user does, alone and on several ranks.
 if(TARGET test_rotor AND TARGET examples_rotor)
   add_dependencies(test_rotor examples_rotor)
   target_compile_definitions(test_rotor PRIVATE ROTOR_PROGRAM="$<TARGET_FILE:examples_rotor>")
@@ -6,3 +11,22 @@ if(TARGET test_rotor AND TARGET examples_rotor)
     target_compile_definitions(test_rotor PRIVATE ROTOR_LAUNCHER="${MPIEXEC_EXECUTABLE} --allow-run-as-root --oversubscribe ${MPIEXEC_NUMPROC_FLAG}")
   endif()
 endif()
+
+# At a hundred times the mass explicit coupling and fixed point must fail, the others must get the exact motion to 0.4 %
+# (backward Euler in 200 steps).
+add_test(NAME example_piston COMMAND examples_piston)
+spar_set_test(example_piston unit 60)
+set_tests_properties(example_piston PROPERTIES
+  PASS_REGULAR_EXPRESSION "100 +diverges +no convergence +[0-9.]+ +0[.]3[0-9]% +[0-9.]+ +0[.]3[0-9]%")
+
+# The twist at rest is that of strip theory, 0.100996 deg, to 1e-3; on ranks the same.
+add_test(NAME example_wing COMMAND examples_wing)
+set(spar_wing_tests example_wing)
+if(SPAR_MPI)
+  add_test(NAME example_wing_np3 COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 3 --oversubscribe --allow-run-as-root $<TARGET_FILE:examples_wing>)
+  list(APPEND spar_wing_tests example_wing_np3)
+endif()
+foreach(name IN LISTS spar_wing_tests)
+  spar_set_test(${name} unit 60)
+  set_tests_properties(${name} PROPERTIES PASS_REGULAR_EXPRESSION " 4[.]00 +0[.]01139[0-9]* +0[.]10(09|10)")
+endforeach()
