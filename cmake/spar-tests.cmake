@@ -114,3 +114,4 @@ if(TARGET spar_fortran)
 endif()
 
 include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)
+include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
