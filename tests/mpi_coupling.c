@@ -1,0 +1,303 @@
+/* A coupled scene on any number of ranks against the same scene on one process: a flexible beam of three elements and a
+   heavy piston, whose fluid nodes are dealt out over all ranks but the last (which has none, when there are several).
+   The serial run is made on every rank beside the other; results agree to 1e-12 of their size, which is rounding in the
+   order of sums. Then everything a single rank can do wrong: all ranks are told, none waits (ctest's time limit is the
+   witness), and the run goes on. */
+#include "scene.h"
+
+#include <mpi.h>
+#include <spar/spar_mpi.h>
+#include <stdio.h>
+
+enum { NODES = 40, STEPS = 12, POINTS = 12 };
+
+typedef struct scene {
+    spar_session *session;
+    spar_member *beam, *piston;
+    spar_fluid *around, *added;
+    int64_t n;              /* this rank's nodes around the beam */
+    double x[NODES][3];     /* their reference places */
+    int piston_here, parts; /* ranks that carry the piston's added mass: each its part */
+    int calls, bad_call;    /* this call of the fluid pushes NaN */
+    int user_call;          /* this call answers 77 */
+} scene;
+
+static int rank, size;
+
+/* Rank `me` of `ranks` gets its share of the nodes. */
+static void create(scene *c, int me, int ranks, int scheme) {
+    static const double q[4] = {1, 0, 0, 0}, where[3] = {0, 5, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 1, 1};
+    double K[36], M[36], mass[36], gravity[3] = {0, 0, -2};
+    int carriers = ranks > 1 ? ranks - 1 : 1;
+    memset(c, 0, sizeof *c);
+    if (ranks > 1) {
+        OK(NULL, spar_session_create_mpi(MPI_COMM_WORLD, &c->session));
+    } else {
+        OK(NULL, spar_session_create(&c->session));
+    }
+    spar_session *s = c->session;
+    scene_box(K, M);
+    OK(s, spar_session_set_gravity(s, gravity));
+    OK(s, spar_session_set_coupling(s, scheme, 0, 1e-12, 200));
+    OK(s, spar_session_set_relaxation(s, 0.3));
+    c->beam = scene_beam(s, "beam", 3, POINTS / 3, 10, K, M);
+    OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
+    OK(s, spar_member_commit(c->beam));
+    scene_mass(mass, 3, centre, J);
+    OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));
+    OK(s, spar_member_commit(c->piston));
+    for (int i = 0; i < NODES; i++) {
+        if (i % carriers == me) {
+            double angle = 0.7 * i, place[3] = {10.0 * i / (NODES - 1), 0.3 * cos(angle), 0.3 * sin(angle)};
+            memcpy(c->x[c->n++], place, sizeof place);
+        }
+    }
+    c->parts = carriers;
+    c->piston_here = me < carriers;
+    OK(s, spar_fluid_create(c->beam, "around", &c->around));
+    OK(s, spar_fluid_set_motion_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
+    OK(s, spar_fluid_set_force_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
+    OK(s, spar_fluid_map(c->around));
+    OK(s, spar_fluid_create(c->piston, "added", &c->added));
+    OK(s, spar_fluid_set_force_nodes(c->added, c->piston_here, c->piston_here ? where : NULL));
+    OK(s, spar_fluid_map(c->added));
+}
+
+/* A stiff and viscous medium around the beam, pulled sideways; twice its own mass of added mass on the piston. */
+static int solve(spar_session *s, double t, double dt, int iteration, void *context) {
+    scene *c = context;
+    double x[NODES][3], v[NODES][3], f[NODES][3], moment[NODES][3], q[7], a[6], piston[3];
+    (void)iteration;
+    c->calls++;
+    OK(s, spar_fluid_pull_motion(c->around, 1, c->n ? x[0] : NULL, c->n ? v[0] : NULL));
+    for (int64_t i = 0; i < c->n; i++) {
+        for (int k = 0; k < 3; k++) {
+            f[i][k] = -20 * (x[i][k] - c->x[i][k]) - 3 * v[i][k] + (k == 1 ? 2 * sin(3 * (t + dt)) : 0);
+            moment[i][k] = 0.1 * v[i][(k + 1) % 3];
+        }
+    }
+    OK(s, spar_member_get_motion(c->piston, q, NULL, a));
+    for (int k = 0; k < 3; k++) {
+        piston[k] = (-6 * a[k] - 10 * q[k] + (k == 0)) / c->parts;
+    }
+    if (c->calls == c->bad_call) {
+        f[c->n - 1][1] = NAN;
+    }
+    if (c->calls == c->user_call) {
+        return 77;
+    }
+    int status = spar_fluid_push_forces(c->around, c->n ? f[0] : NULL, c->n ? moment[0] : NULL);
+    OK(s, spar_fluid_push_forces(c->added, piston, NULL));
+    return c->calls == c->bad_call ? 0 : status; /* a host that does not look at the status of its push */
+}
+
+static void state_of(const scene *c, double *out) {
+    OK(c->session, spar_member_get_motion(c->beam, out, out + 7 * POINTS, out + 13 * POINTS));
+    out += 19 * POINTS;
+    OK(c->session, spar_member_get_motion(c->piston, out, out + 7, out + 13));
+    OK(c->session, spar_member_get_reaction(c->beam, out + 19));
+    OK(c->session, spar_member_get_loads(c->beam, out + 25));
+}
+
+enum { STATE = 19 * POINTS + 25 + 6 * POINTS };
+
+/* Each kind of number within 1e-12 of the largest of its kind; accelerations, which answer a rounding in the loads of
+   light sections at once (1e-12 of 4 N on 1e-3 kg m^2), within 1e-9. */
+static void compare(const scene *a, const scene *b) {
+    static const int ends[] = {7 * POINTS,       13 * POINTS,      19 * POINTS, 19 * POINTS + 7,
+                               19 * POINTS + 13, 19 * POINTS + 19, STATE};
+    double x[STATE], y[STATE];
+    state_of(a, x);
+    state_of(b, y);
+    for (int kind = 0, i = 0; kind < 7; kind++) {
+        double largest = 0;
+        for (int k = i; k < ends[kind]; k++) {
+            largest = fmax(largest, fabs(y[k]));
+        }
+        for (; i < ends[kind]; i++) {
+            NEAR(x[i], y[i], largest * (kind % 3 == 2 ? 1e-9 : 1e-12));
+        }
+    }
+}
+
+/* ---- the same as on one process ---- */
+
+static void same_as_serial(void **state) {
+    (void)state;
+    for (int scheme = SPAR_COUPLING_FIXED_POINT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+        scene all, alone;
+        create(&all, rank, size, scheme);
+        create(&alone, 0, 1, scheme);
+        for (int step = 0; step < STEPS; step++) {
+            int iterations, serial;
+            OK(all.session, spar_step(all.session, 0.02, solve, &all, &iterations));
+            OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, &serial));
+            assert_true(abs(iterations - serial) <= 1); /* rounding may decide the last one */
+            compare(&all, &alone);
+        }
+        spar_session_destroy(&all.session);
+        spar_session_destroy(&alone.session);
+    }
+}
+
+/* ---- what one rank can do wrong ---- */
+
+/* Whatever happens in between, the run ends where a run without trouble ends. */
+static void check_goes_on(scene *c) {
+    scene alone;
+    int64_t step;
+    create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
+    OK(c->session, spar_session_get_time(c->session, NULL, &step, NULL));
+    c->bad_call = c->user_call = 0;
+    for (int64_t i = 0; i < step + 2; i++) {
+        if (i >= step) {
+            OK(c->session, spar_step(c->session, 0.02, solve, c, NULL));
+        }
+        OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
+    }
+    compare(c, &alone);
+    spar_session_destroy(&alone.session);
+}
+
+static void nan_on_one_rank(void **state) {
+    (void)state;
+    int carriers = size > 1 ? size - 1 : 1;
+    for (int bad = 0; bad < carriers; bad++) {
+        for (int call = 1; call <= 3; call += 2) {
+            scene c;
+            char prefix[32];
+            create(&c, rank, size, SPAR_COUPLING_IQN_ILS);
+            c.bad_call = rank == bad ? call : 0;
+            int status = spar_step(c.session, 0.02, solve, &c, NULL);
+            assert_int_equal(status, rank == bad ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
+            snprintf(prefix, sizeof prefix, "rank %d: ", bad);
+            const char *text = spar_session_message(c.session);
+            assert_non_null(strstr(text, "around"));
+            assert_true(rank == bad || strstr(text, prefix) == text);
+            check_goes_on(&c);
+            spar_session_destroy(&c.session);
+        }
+    }
+}
+
+static void callback_fails_on_one_rank(void **state) {
+    (void)state;
+    scene c;
+    int bad = size - 1; /* the one without nodes */
+    create(&c, rank, size, SPAR_COUPLING_IQN_ILS);
+    c.user_call = rank == bad ? 2 : 0;
+    int status = spar_step(c.session, 0.02, solve, &c, NULL);
+    assert_int_equal(status, rank == bad ? SPAR_ERR_USER : SPAR_ERR_PEER);
+    assert_non_null(strstr(spar_session_message(c.session), "77"));
+    check_goes_on(&c);
+    spar_session_destroy(&c.session);
+}
+
+/* Ranks in different calls, in every pair of calls of the step. */
+static int make_call(scene *c, int which, double dt) {
+    int done = 0;
+    switch (which) {
+    case 0:
+        return spar_step_begin(c->session, dt);
+    case 1:
+        return spar_step_solve(c->session);
+    case 2:
+        return spar_step_check(c->session, &done);
+    case 3:
+        return spar_step_accept(c->session);
+    default:
+        return spar_step_reject(c->session);
+    }
+}
+
+static void wrong_calls_on_one_rank(void **state) {
+    (void)state;
+    if (size == 1) {
+        return;
+    }
+    for (int reached = 0; reached < 3; reached++) { /* idle, begun, solved */
+        for (int one = 0; one < 5; one++) {
+            for (int others = 0; others < 5; others++) {
+                if (one == others) {
+                    continue;
+                }
+                scene c;
+                create(&c, rank, size, SPAR_COUPLING_IQN_ILS);
+                for (int k = 0; k < reached; k++) {
+                    OK(c.session, make_call(&c, k, 0.02));
+                }
+                int status = make_call(&c, rank == 1 ? one : others, 0.02);
+                assert_int_equal(status, SPAR_ERR_COMM);
+                assert_non_null(strstr(spar_session_message(c.session), "another call"));
+                if (reached > 0) {
+                    OK(c.session, spar_step_reject(c.session));
+                }
+                spar_session_destroy(&c.session);
+            }
+        }
+    }
+}
+
+static void different_arguments(void **state) {
+    (void)state;
+    scene c;
+    create(&c, rank, size, SPAR_COUPLING_IQN_ILS);
+    int expected = size > 1 ? SPAR_ERR_COMM : SPAR_OK;
+    int status = spar_step_begin(c.session, rank == 0 ? 0.02 : 0.03);
+    assert_int_equal(status, expected);
+    if (status == SPAR_OK) {
+        OK(c.session, spar_step_reject(c.session));
+    }
+    /* dt that is no dt on one rank only */
+    status = spar_step_begin(c.session, rank == 0 ? NAN : 0.02);
+    assert_int_equal(status, rank == 0 ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
+    OK(c.session, spar_session_set_relaxation(c.session, rank == 0 ? 0.3 : 0.4));
+    status = spar_step_begin(c.session, 0.02);
+    assert_int_equal(status, expected);
+    if (status == SPAR_OK) {
+        OK(c.session, spar_step_reject(c.session));
+    }
+    OK(c.session, spar_session_set_relaxation(c.session, 0.3));
+    /* no place for the answer, on one rank */
+    int done;
+    OK(c.session, spar_step_begin(c.session, 0.02));
+    OK(c.session, spar_step_solve(c.session));
+    status = spar_step_check(c.session, rank == 0 ? NULL : &done);
+    assert_int_equal(status, rank == 0 ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
+    OK(c.session, spar_step_reject(c.session));
+    check_goes_on(&c);
+    spar_session_destroy(&c.session);
+}
+
+/* A member described differently on one rank. */
+static void different_members(void **state) {
+    (void)state;
+    static const double q[4] = {1, 0, 0, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 1, 1};
+    spar_session *s = NULL;
+    spar_member *m = NULL;
+    double x[3] = {rank == 0 ? 1 : 2, 0, 0}, mass[36];
+    OK(NULL, spar_session_create_mpi(MPI_COMM_WORLD, &s));
+    scene_mass(mass, 1, centre, J);
+    OK(s, spar_rigid_create(s, "body", x, q, mass, &m));
+    assert_int_equal(spar_member_commit(m), size > 1 ? SPAR_ERR_COMM : SPAR_OK);
+    spar_session_destroy(&s);
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_as_serial),
+        cmocka_unit_test(nan_on_one_rank),
+        cmocka_unit_test(callback_fails_on_one_rank),
+        cmocka_unit_test(wrong_calls_on_one_rank),
+        cmocka_unit_test(different_arguments),
+        cmocka_unit_test(different_members),
+    };
+    int failed, worst = 0;
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Finalize();
+    return worst;
+}
