@@ -55,6 +55,7 @@ module spar
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
+  public :: SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
 
   type :: spar_session
@@ -122,6 +123,9 @@ module spar
     procedure :: drive_root => member_drive_root
     procedure, private :: member_add_load_64, member_add_load_32
     generic :: add_load => member_add_load_64, member_add_load_32
+    procedure, private :: member_add_follower_64, member_add_follower_32
+    generic :: add_follower => member_add_follower_64, member_add_follower_32
+    procedure :: set_line_load => member_set_line_load
     procedure :: get_loads => member_get_loads
     procedure :: get_reaction => member_get_reaction
     procedure :: get_energy => member_get_energy
@@ -933,6 +937,58 @@ contains
 
     call self%add_load(int(node, c_int64_t), load, stat, errmsg)
   end subroutine member_add_load_32
+
+  subroutine member_add_follower_64(self, node, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: node
+    real(c_double), intent(in) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int64_t) :: n
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (node < 1 .or. node > n) then
+      fault = self%place('add_follower') // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_member_add_follower(self%handle, node - 1, load), self%session, stat, errmsg)
+  end subroutine member_add_follower_64
+
+  subroutine member_add_follower_32(self, node, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: node
+    real(c_double), intent(in) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%add_follower(int(node, c_int64_t), load, stat, errmsg)
+  end subroutine member_add_follower_32
+
+  subroutine member_set_line_load(self, eta, load, kind, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(in) :: load(:,:)
+    integer(c_int), intent(in) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, self%place('set_line_load'), 'load', shape(load, kind=c_int64_t), [6_c_int64_t, &
+        size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_beam_set_line_load(self%handle, size(eta, kind=c_int64_t), eta, load, kind), &
+        self%session, stat, errmsg)
+  end subroutine member_set_line_load
 
   subroutine member_get_loads(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self

@@ -24,6 +24,7 @@ module spar_c
       SPAR_ROOT_DRIVEN = 3
   integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
       SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
@@ -313,6 +314,24 @@ module spar_c
       real(c_double), intent(in), optional :: load(6)
       integer(c_int) :: status
     end function spar_member_add_load
+
+    function spar_member_add_follower(member, node, load) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: node
+      real(c_double), intent(in), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_member_add_follower
+
+    function spar_beam_set_line_load(beam, n, eta, load, kind) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*)
+      real(c_double), intent(in), optional :: load(*)
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_beam_set_line_load
 
     function spar_member_get_loads(member, load) bind(c) result(status)
       import :: c_double, c_int, c_ptr

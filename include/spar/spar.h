@@ -209,6 +209,7 @@ enum {
     SPAR_ROOT_PINNED = 2, /* turns freely about a fixed place */
     SPAR_ROOT_DRIVEN = 3  /* follows spar_member_drive_root */
 };
+enum { SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1 };
 enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
 /* Effects: what is off is not computed, stored or sent. */
 enum {
@@ -299,7 +300,20 @@ SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], cons
 /* A dead load (global axes, does not turn) on a node, which replaces the node's earlier one and is kept. node: in, 0
    to n-1; load[6]: in, N, N m. Local, the same on every rank. */
 SPAR_API int spar_member_add_load(spar_member *member, int64_t node, const double load[6]);
-/* load[n][6]: out, dead and fluid loads in use: those the structure is solved with; after spar_step_check those just
+/* The same for a load that turns with its node. load[6]: in, N, N m, in the node's section axes (x tangent, y, z; a
+   rigid body's own axes). It adds to the dead load; zeros take it away. Its tangent is exact (unsymmetric). With
+   LARGE_ROTATION off it stays as it is in the reference configuration. Local, the same on every rank. */
+SPAR_API int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]);
+/* Loads along a beam, per unit length of the reference line, which replace the earlier ones of that kind and are kept.
+   n: in, stations, 0: none any more; eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump;
+   load[n][6]: in, N/m, N m/m, linear in eta between stations, zero before the first and behind the last; n = 1: the
+   same all along. kind: SPAR_LOAD_DEAD (global axes) or SPAR_LOAD_FOLLOWER (section axes, turning with the section).
+   They work at quadrature points of their own, so that they may change where sections do not, through the virtual work
+   of the beam's displacement and rotation field. After commit. Local, the same on every rank. SPAR_ERR_ARGUMENT: no
+   beam, or eta or load not allowed. */
+SPAR_API int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind);
+/* load[n][6]: out, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that do the
+   same work: those the structure is solved with; after spar_step_check those just
    pushed. */
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 /* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */

@@ -223,7 +223,7 @@ typedef struct framing {
 
 enum { NEAR_VERTICAL = 1000 }; /* sine of the tangent's angle to z below 1/1000: level sections are no longer defined */
 
-static int make_framing(spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
+static int make_framing(const spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
     int P = member->per_element;
     line_point p, q;
     memset(f, 0, sizeof *f);
@@ -350,7 +350,7 @@ int spari_beam_place_nodes(spar_member *member) {
 /* ---- sections and quadrature ---- */
 
 /* Linear in eta between stations, constant beyond the first and last. */
-static void section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
+void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
     int64_t i = 0, n = beam->section_count;
     while (i < n - 2 && eta > beam->section_eta[i + 1]) {
         i++;
@@ -475,7 +475,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     memcpy(b->tangent + 3 * (int64_t)k, p.t, sizeof p.t);
     memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
     b->length += b->weight[k];
-    section_at(beam, beam->stiffness, eta, section);
+    spari_beam_section_at(beam, beam->stiffness, eta, section);
     turn_section(R, section, b->C + 36 * (int64_t)k);
     for (int i = 0; i < 6; i++) {
         b->stiffest = fmax(b->stiffest, section[7 * i]);
@@ -490,7 +490,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     }
     if (b->mass) {
         double *m = b->mass + 10 * (int64_t)k;
-        section_at(beam, beam->mass, eta, section);
+        spari_beam_section_at(beam, beam->mass, eta, section);
         spari_mass_place(R, section, m);
     }
 }
@@ -546,4 +546,39 @@ int spari_beam_build(spar_member *member, spari_body **body) {
     }
     *body = b;
     return SPAR_OK;
+}
+
+int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) {
+    int P = member->per_element;
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], back[4];
+    double *x = spari_zalloc(3 * member->nodes, sizeof *x);
+    if (!x) {
+        return no_memory(member, "its frames");
+    }
+    spari_gll(P, gll, NULL, bary);
+    spari_quat_conj(member->place_q, back);
+    for (int64_t i = 0; i < member->nodes; i++) { /* the nodes in the beam's own frame */
+        double d[3];
+        for (int c = 0; c < 3; c++) {
+            d[c] = member->xr[3 * i + c] - member->place_x[c];
+        }
+        spari_rotate(back, d, x + 3 * i);
+    }
+    framing f = {0, NULL};
+    int status = member->beam->node_q ? SPAR_OK : make_framing(member, gll, bary, x, &f);
+    for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
+        line_point p;
+        line_at(P, gll, bary, member->xr + 3 * (int64_t)s[k].element * P, s[k].xi, &p);
+        spari_lagrange(P, gll, bary, s[k].xi, s[k].phi, s[k].dphi);
+        for (int l = 0; l < P; l++) {
+            s[k].dphi[l] /= p.jacobian;
+        }
+        memcpy(s[k].x, p.x, sizeof p.x);
+        memcpy(s[k].t, p.t, sizeof p.t);
+        s[k].jacobian = p.jacobian;
+        reference_frame(member, &f, gll, bary, x, s[k].element, s[k].xi, s[k].R);
+    }
+    free(x);
+    free(f.y);
+    return status;
 }

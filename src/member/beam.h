@@ -2,6 +2,7 @@
 #ifndef SPARI_BEAM_H
 #define SPARI_BEAM_H
 
+#include "../math/basis.h"
 #include "body.h"
 #include "member.h"
 
@@ -20,6 +21,18 @@ int spari_beam_place_nodes(spar_member *member);
 /* Builds the body; the description has been checked. */
 int spari_beam_build(spar_member *member, spari_body **body);
 void spari_beam_free(spari_beam *beam);
+
+/* A place of a beam's reference line. The caller gives element and xi. */
+typedef struct spari_station {
+    int element;
+    double xi, jacobian;                                /* ds/dxi */
+    double phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES]; /* dphi per arc length */
+    double x[3], t[3], R[9];                            /* place, unit tangent, section axes (columns), global */
+} spari_station;
+
+int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s);
+/* The section's table of 36 (beam->stiffness or beam->mass) at eta, local axes. */
+void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]);
 
 /* A rigid body of 6x6 mass (about its node, in its own axes) as a body of one node. */
 int spari_rigid_build(spar_member *member, spari_body **body);

@@ -4,6 +4,7 @@
 #include "../math/rotation.h"
 #include "../session/session.h"
 #include "../solve/solver.h"
+#include "applied.h"
 #include "beam.h"
 
 #include <gsl/gsl_errno.h>
@@ -583,6 +584,8 @@ static void release(spar_member *m) {
         free(*all[k]);
         *all[k] = NULL;
     }
+    spari_applied_free(m->applied);
+    m->applied = NULL;
     spari_solver_free(m->solver);
     spari_body_free(m->body);
     m->solver = NULL;
@@ -799,6 +802,9 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     const double *fluid = used ? member->load_used : member->load_pushed;
     for (int64_t i = 0; i < 6 * member->nodes; i++) {
         load[i] = member->dead[i] + fluid[i];
+    }
+    if (member->applied) {
+        spari_applied_nodal(member, member->after.q, load);
     }
     return SPAR_OK;
 }

@@ -13,9 +13,10 @@ typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
-typedef struct spari_solver spari_solver; /* src/solve: the owner's integrator */
-typedef struct spari_beam spari_beam;     /* src/member/beam.h: the description of a beam */
-typedef struct spari_body spari_body;     /* src/member/body.h: what of it is solved, on every rank */
+typedef struct spari_solver spari_solver;   /* src/solve: the owner's integrator */
+typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
+typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
+typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
 
 struct spar_member {
     spar_session *session;
@@ -42,6 +43,7 @@ struct spar_member {
 
     /* nodal loads [n][6], global axes */
     double *dead;            /* spar_member_add_load */
+    spari_applied *applied;  /* follower and line loads; NULL: none */
     double *load_used;       /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
     double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */

@@ -1,6 +1,7 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. */
 #include "../math/rotation.h"
+#include "../member/applied.h"
 #include "../session/session.h"
 #include "solver.h"
 
@@ -119,6 +120,9 @@ static double balance(spar_member *member, const scheme *c, const spari_state *s
                                        c->still ? NULL : s->a, 1, r);
     for (int i = 0; i < 6 * n; i++) {
         r[i] -= solver->load[i];
+    }
+    if (member->applied) {
+        scale = fmax(scale, spari_applied_residual(member, s->q, 1, r));
     }
     spari_solver_fixed(member, &first, &end);
     memset(member->reaction, 0, sizeof member->reaction);
@@ -353,6 +357,9 @@ static int start(spar_member *member, const scheme *c) {
     int singular = spari_solver_factor(member, b->q, NULL, NULL, 0, c->cm, 0, NULL);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
         spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r);
+        if (member->applied) {
+            spari_applied_residual(member, b->q, 1, s->r);
+        }
         for (int i = 0; i < 6 * n; i++) {
             s->dx[i] = s->load0[i] - s->r[i];
         }

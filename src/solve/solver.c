@@ -1,5 +1,6 @@
 #include "solver.h"
 
+#include "../member/applied.h"
 #include "../session/session.h"
 
 #include <stdlib.h>
@@ -104,6 +105,9 @@ int spari_solver_factor(spar_member *member, const double *q, const double *v, c
     spari_linear_zero(s->linear);
     for (int e = 0; e < member->elements; e++) {
         spari_body_tangent(member->body, e, q, v, a, factor, cm, cv, tinv, s->element);
+        if (member->applied && factor != 0) {
+            spari_applied_tangent(member, e, q, factor, s->element);
+        }
         spari_linear_add(s->linear, e, s->element);
     }
     spari_solver_fixed(member, &first, &end);

@@ -1,5 +1,6 @@
 /* Static equilibrium by Newton with the exact tangent, in load steps that halve where Newton fails. */
 #include "../math/rotation.h"
+#include "../member/applied.h"
 #include "../session/session.h"
 #include "solver.h"
 
@@ -20,6 +21,9 @@ static int equilibrium(spar_member *member, double f, double *q) {
         for (int i = 0; i < 6 * n; i++) {
             s->r[i] -= f * s->load[i];
             scale = fmax(scale, fabs(f * s->load[i]));
+        }
+        if (member->applied) {
+            scale = fmax(scale, spari_applied_residual(member, q, f, s->r));
         }
         memcpy(member->reaction + first, s->r + first, (size_t)(end - first) * sizeof *s->r);
         memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
@@ -53,6 +57,9 @@ static int equilibrium(spar_member *member, double f, double *q) {
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
             double check = spari_body_residual(member->body, q, NULL, NULL, f, s->r);
+            if (member->applied) {
+                spari_applied_residual(member, q, f, s->r);
+            }
             for (int i = first; i < end; i++) {
                 member->reaction[i] = s->r[i] - f * s->load[i];
             }

@@ -52,6 +52,8 @@ program test_bindings
   call refused(spar_member_set_motion(none), 'spar_member_set_motion')
   call refused(spar_member_drive_root(none), 'spar_member_drive_root')
   call refused(spar_member_add_load(none, 0_c_int64_t), 'spar_member_add_load')
+  call refused(spar_member_add_follower(none, 0_c_int64_t), 'spar_member_add_follower')
+  call refused(spar_beam_set_line_load(none, 0_c_int64_t, kind=0_c_int), 'spar_beam_set_line_load')
   call refused(spar_member_get_loads(none), 'spar_member_get_loads')
   call refused(spar_member_get_reaction(none), 'spar_member_get_reaction')
   call refused(spar_member_get_energy(none), 'spar_member_get_energy')

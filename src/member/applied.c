@@ -1,0 +1,443 @@
+#include "applied.h"
+
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "beam.h"
+#include "body.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One load along the line, at its own quadrature points: it may jump where sections do not. */
+typedef struct line_load {
+    int *first;   /* [elements + 1] */
+    double *phi;  /* [points][P] */
+    double *load; /* [points][6] times weight and Jacobian; global axes, at the reference where they follow */
+} line_load;
+
+struct spari_applied {
+    double *follower;  /* [nodes][6], global axes at the reference; NULL: none */
+    line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
+};
+
+static void line_free(line_load *line) {
+    free(line->first);
+    free(line->phi);
+    free(line->load);
+    memset(line, 0, sizeof *line);
+}
+
+void spari_applied_free(spari_applied *a) {
+    if (a) {
+        free(a->follower);
+        line_free(&a->line[0]);
+        line_free(&a->line[1]);
+        free(a);
+    }
+}
+
+/* ---- forces ---- */
+
+/* Nodal quaternions of an element in one hemisphere; those of a member that is linear stay at the reference. */
+static void element_field(const spar_member *m, const double *q, double z[][4]) {
+    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    for (int l = 0; l < m->per_element; l++) {
+        const double unit[4] = {1, 0, 0, 0}, *ql = linear ? unit : q + 7 * l + 3;
+        double sign = l > 0 && spari_quat_dot(ql, z[l - 1]) < 0 ? -1 : 1;
+        for (int i = 0; i < 4; i++) {
+            z[l][i] = sign * ql[i];
+        }
+    }
+}
+
+/* Q/|Q| at a point; returns |Q|. */
+static double point_turn(int P, const double *phi, double z[][4], double r[4]) {
+    double Q[4] = {0};
+    for (int l = 0; l < P; l++) {
+        for (int i = 0; i < 4; i++) {
+            Q[i] += phi[l] * z[l][i];
+        }
+    }
+    double N = sqrt(spari_quat_dot(Q, Q));
+    for (int i = 0; i < 4; i++) {
+        r[i] = Q[i] / N;
+    }
+    return N;
+}
+
+/* Force and moment now. */
+static void load_now(const double *load, int follows, const double r[4], double f[3], double m[3]) {
+    memcpy(f, load, 3 * sizeof *f);
+    memcpy(m, load + 3, 3 * sizeof *m);
+    if (follows) {
+        spari_rotate(r, f, f);
+        spari_rotate(r, m, m);
+    }
+}
+
+static void pure_times(const double m[3], const double q[4], double c[4]) {
+    double pure[4] = {0, m[0], m[1], m[2]};
+    spari_quat_mul(pure, q, c);
+}
+
+/* g [P][7] += nodal forces and 4-vectors of one line load on element e */
+static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double z[][4], double *g) {
+    int P = m->per_element;
+    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+        const double *phi = line->phi + (int64_t)k * P;
+        double r[4], f[3], c[3], m4[4], N = point_turn(P, phi, z, r);
+        load_now(line->load + 6 * (int64_t)k, follows, r, f, c);
+        pure_times(c, r, m4);
+        for (int l = 0; l < P; l++) {
+            for (int i = 0; i < 3; i++) {
+                g[7 * l + i] += phi[l] * f[i];
+            }
+            for (int i = 0; i < 4; i++) {
+                g[7 * l + 3 + i] += 2 * phi[l] * m4[i] / N;
+            }
+        }
+    }
+}
+
+/* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes */
+static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
+    const spari_applied *a = m->applied;
+    int P = m->per_element;
+    double z[SPARI_MAX_NODES][4], g[7 * SPARI_MAX_NODES] = {0};
+    element_field(m, q, z);
+    for (int k = 0; k < 2; k++) {
+        if (a->line[k].first) {
+            line_forces(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, g);
+        }
+    }
+    for (int l = 0; l < P; l++) {
+        double c[4], p[4];
+        spari_quat_conj(z[l], c);
+        spari_quat_mul(g + 7 * l + 3, c, p); /* delta q . g = delta theta . 1/2 Im(g q*) */
+        for (int i = 0; i < 3; i++) {
+            out[6 * l + i] += factor * g[7 * l + i];
+            out[6 * l + 3 + i] += factor * 0.5 * p[1 + i];
+        }
+        if (a->follower) {
+            double f[3], t[3];
+            load_now(a->follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
+            for (int i = 0; i < 3; i++) {
+                out[6 * l + i] += factor * f[i];
+                out[6 * l + 3 + i] += factor * t[i];
+            }
+        }
+    }
+}
+
+double spari_applied_residual(const spar_member *m, const double *q, double factor, double *r) {
+    int P = m->per_element;
+    double largest = 0, out[6 * SPARI_MAX_NODES];
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * (P - 1);
+        memset(out, 0, sizeof out);
+        element_loads(m, e, q + 7 * first, factor, out);
+        for (int i = 0; i < 6 * P; i++) {
+            r[6 * first + i] -= out[i];
+            largest = fmax(largest, fabs(out[i]));
+        }
+    }
+    return largest;
+}
+
+void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * m->per_element;
+        element_loads(m, e, q + 7 * first, 1, load + 6 * first);
+    }
+}
+
+/* ---- tangent ---- */
+
+/* S (rows at row, columns at col) += f * skew(a) */
+static void add_skew(double *S, int stride, int row, int col, double f, const double a[3]) {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        S[stride * (row + i) + col + j] -= f * a[k];
+        S[stride * (row + i) + col + k] += f * a[j];
+    }
+}
+
+/* X (7 x 4) = d (force, 4-vector) / dQ at a point, per phi_i phi_j */
+static void point_tangent(const double *load, int follows, const double r[4], double N, double X[7][4]) {
+    double f[3], m[3], conj[4], mr[4], rm[4];
+    load_now(load, follows, r, f, m);
+    pure_times(m, r, mr);
+    double body[4] = {0, load[3], load[4], load[5]};
+    spari_quat_mul(r, body, rm);
+    spari_quat_conj(r, conj);
+    for (int j = 0; j < 4; j++) {
+        double d[4] = {0}, turn[4], df[3] = {0}, dm[4];
+        d[j] = 1;
+        if (follows) { /* d(R f) = d theta x R f; 2 Q m/N^2 */
+            spari_quat_mul(d, conj, turn);
+            spari_cross(turn + 1, f, df);
+            spari_quat_mul(d, body, dm);
+        } else { /* 2 m Q/N^2 */
+            pure_times(m, d, dm);
+        }
+        const double *at = follows ? rm : mr;
+        for (int i = 0; i < 3; i++) {
+            X[i][j] = 2 * df[i] / N;
+        }
+        for (int i = 0; i < 4; i++) {
+            X[3 + i][j] = (2 * dm[i] - 4 * at[i] * r[j]) / (N * N);
+        }
+    }
+}
+
+/* B [P][7][4 P] -> S: rows and columns of nodal quaternions through dq = E dtheta */
+static void project(int P, const double *B, double E[][4][3], double factor, double *S) {
+    int stride = 6 * P;
+    for (int i = 0; i < P; i++) {
+        for (int j = 0; j < P; j++) {
+            double XE[7][3];
+            for (int r = 0; r < 7; r++) {
+                const double *x = B + ((int64_t)(7 * i + r) * P + j) * 4;
+                for (int c = 0; c < 3; c++) {
+                    XE[r][c] = x[0] * E[j][0][c] + x[1] * E[j][1][c] + x[2] * E[j][2][c] + x[3] * E[j][3][c];
+                }
+            }
+            for (int c = 0; c < 3; c++) {
+                for (int r = 0; r < 3; r++) {
+                    double turn = 0;
+                    for (int k = 0; k < 4; k++) {
+                        turn += E[i][k][r] * XE[3 + k][c];
+                    }
+                    S[stride * (6 * i + r) + 6 * j + 3 + c] -= factor * XE[r][c];
+                    S[stride * (6 * i + 3 + r) + 6 * j + 3 + c] -= factor * turn;
+                }
+            }
+        }
+    }
+}
+
+static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4], double factor,
+                         double *S) {
+    int P = m->per_element, stride = 6 * P;
+    double B[7 * 4 * SPARI_MAX_NODES * SPARI_MAX_NODES], g[7 * SPARI_MAX_NODES] = {0}, E[SPARI_MAX_NODES][4][3];
+    memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
+    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+        const double *phi = line->phi + (int64_t)k * P;
+        double r[4], X[7][4], N = point_turn(P, phi, z, r);
+        point_tangent(line->load + 6 * (int64_t)k, follows, r, N, X);
+        for (int i = 0; i < P; i++) {
+            for (int row = 0; row < 7; row++) {
+                for (int j = 0; j < P; j++) {
+                    double w = phi[i] * phi[j], *b = B + ((int64_t)(7 * i + row) * P + j) * 4;
+                    for (int c = 0; c < 4; c++) {
+                        b[c] += w * X[row][c];
+                    }
+                }
+            }
+        }
+    }
+    for (int l = 0; l < P; l++) {
+        for (int j = 0; j < 3; j++) {
+            double half[3] = {0}, dq[4];
+            half[j] = 0.5;
+            pure_times(half, z[l], dq);
+            for (int i = 0; i < 4; i++) {
+                E[l][i][j] = dq[i];
+            }
+        }
+    }
+    project(P, B, E, factor, S);
+    /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
+    line_forces(m, line, follows, e, z, g);
+    for (int l = 0; l < P; l++) {
+        double c[4], p[4];
+        spari_quat_conj(z[l], c);
+        spari_quat_mul(g + 7 * l + 3, c, p);
+        add_skew(S, stride, 6 * l + 3, 6 * l + 3, 0.25 * factor, p + 1);
+        for (int i = 0; i < 3; i++) {
+            S[stride * (6 * l + 3 + i) + 6 * l + 3 + i] += 0.25 * factor * p[0];
+        }
+    }
+}
+
+void spari_applied_tangent(const spar_member *m, int e, const double *q, double factor, double *S) {
+    const spari_applied *a = m->applied;
+    int P = m->per_element;
+    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
+        return; /* linear about the reference: the loads stay as they are there */
+    }
+    double z[SPARI_MAX_NODES][4];
+    element_field(m, q + 7 * (int64_t)e * (P - 1), z);
+    for (int k = 0; k < 2; k++) {
+        if (a->line[k].first) {
+            line_tangent(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, factor, S);
+        }
+    }
+    for (int l = 0; l < P && a->follower; l++) {
+        double f[3], t[3];
+        load_now(a->follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
+        add_skew(S, 6 * P, 6 * l, 6 * l + 3, factor, f); /* -d(R f) = -dtheta x R f */
+        add_skew(S, 6 * P, 6 * l + 3, 6 * l + 3, factor, t);
+    }
+}
+
+/* ---- what the host says ---- */
+
+static int need_applied(spar_member *member, const char *call) {
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_REQUIRE(member->session, member->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
+    if (!member->applied) {
+        member->applied = spari_zalloc(1, sizeof *member->applied);
+    }
+    SPARI_REQUIRE(member->session, member->applied, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call,
+                  member->name);
+    return SPAR_OK;
+}
+
+/* Nothing applied any more: nothing computed any more. */
+static void drop_empty(spar_member *m) {
+    spari_applied *a = m->applied;
+    int any = a->line[0].first || a->line[1].first;
+    for (int64_t i = 0; a->follower && i < 6 * m->nodes && !any; i++) {
+        any = a->follower[i] != 0;
+    }
+    if (!any) {
+        spari_applied_free(a);
+        m->applied = NULL;
+    }
+}
+
+int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]) {
+    const char *call = "spar_member_add_follower";
+    SPARI_TRY(need_applied(member, call));
+    spar_session *s = member->session;
+    spari_applied *a = member->applied;
+    int status = SPAR_OK;
+    int64_t bad = load ? spari_first_nonfinite(load, 6) : -1;
+    if (node < 0 || node >= member->nodes) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s' has nodes 0 to %lld; there is no node %lld", call,
+                            member->name, (long long)member->nodes - 1, (long long)node);
+    } else if (!load) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", call, member->name);
+    } else if (bad >= 0) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': entry %lld of load is not a finite number", call,
+                            member->name, (long long)bad);
+    } else if (!a->follower && !(a->follower = spari_zalloc(6 * member->nodes, sizeof *a->follower))) {
+        status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, member->name);
+    } else {
+        spari_rotate(member->qr + 4 * node, load, a->follower + 6 * node);
+        spari_rotate(member->qr + 4 * node, load + 3, a->follower + 6 * node + 3);
+    }
+    drop_empty(member);
+    return status;
+}
+
+/* Pieces of element e between load stations, and their Gauss points; NULL s: only counts. A point's eta and weight go
+   beside it. */
+static int line_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
+                       double *at) {
+    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->elements;
+    int count = 0, whole = n == 1;
+    for (int64_t i = 0; i < (whole ? 1 : n - 1); i++) {
+        double from = whole ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1),
+               to = whole ? 1 : fmin(2 * (eta[i + 1] * E - e) - 1, 1);
+        if (to - from < 1e-12) {
+            continue;
+        }
+        double half = 0.5 * (to - from);
+        int points = 2 + (int)ceil(half * (m->per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
+        if (s && spari_gauss(points, gx, gw)) {
+            return -1;
+        }
+        for (int k = 0; k < points && s; k++) {
+            s[count + k].element = e;
+            s[count + k].xi = from + half * (1 + gx[k]);
+            w[count + k] = half * gw[k];
+            double where = 0.5 * (1 + spari_member_xi(m, e, s[count + k].xi));
+            at[count + k] = whole ? 0 : (double)i + fmin(fmax((where - eta[i]) / (eta[i + 1] - eta[i]), 0), 1 - 1e-16);
+        }
+        count += points;
+    }
+    return count;
+}
+
+static int line_build(const spar_member *m, int64_t n, const double *eta, const double *load, int kind,
+                      line_load *line) {
+    int E = m->elements, P = m->per_element, points = 0;
+    for (int e = 0; e < E; e++) {
+        points += line_points(m, e, n, eta, NULL, NULL, NULL);
+    }
+    spari_station *s = spari_zalloc(points, sizeof *s);
+    double *w = spari_zalloc(2 * (int64_t)points, sizeof *w), *at = w + points;
+    line->first = spari_zalloc(E + 1, sizeof *line->first);
+    line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
+    line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
+    int ok = s && w && line->first && line->phi && line->load;
+    for (int e = 0; e < E && ok; e++) {
+        int k = line->first[e], count = line_points(m, e, n, eta, s + k, w + k, at + k);
+        ok = count >= 0;
+        line->first[e + 1] = k + count;
+    }
+    ok = ok && spari_beam_stations(m, points, s) == SPAR_OK;
+    for (int k = 0; k < points && ok; k++) {
+        int64_t i = (int64_t)at[k];
+        double f = at[k] - (double)i, now[6], *to = line->load + 6 * (int64_t)k;
+        for (int c = 0; c < 6; c++) {
+            now[c] = w[k] * s[k].jacobian * ((1 - f) * load[6 * i + c] + (f > 0 ? f * load[6 * (i + 1) + c] : 0));
+        }
+        memcpy(to, now, sizeof now);
+        for (int b = 0; b < 6 && kind == SPAR_LOAD_FOLLOWER; b += 3) {
+            for (int c = 0; c < 3; c++) {
+                to[b + c] = s[k].R[3 * c] * now[b] + s[k].R[3 * c + 1] * now[b + 1] + s[k].R[3 * c + 2] * now[b + 2];
+            }
+        }
+        memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
+    }
+    free(s);
+    free(w);
+    if (!ok) {
+        line_free(line);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "spar_beam_set_line_load: no memory for the loads of '%s'",
+                          m->name);
+    }
+    return SPAR_OK;
+}
+
+static int check_line_load(const spar_member *m, int64_t n, const double *eta, const double *load, int kind) {
+    const char *call = "spar_beam_set_line_load";
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
+    SPARI_REQUIRE(s, kind == SPAR_LOAD_DEAD || kind == SPAR_LOAD_FOLLOWER, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no kind of load %d; see SPAR_LOAD_*", call, m->name, kind);
+    SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations", call, m->name, (long long)n);
+    SPARI_REQUIRE(s, n == 0 || (eta && load), SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, m->name,
+                  eta ? "load" : "eta");
+    int64_t bad = spari_first_nonfinite(eta, n);
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': eta %lld is not a finite number", call, m->name,
+                  (long long)bad);
+    bad = spari_first_nonfinite(load, 6 * n);
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': load %lld of station %lld is not a finite number", call,
+                  m->name, (long long)(bad % 6), (long long)(bad / 6));
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_REQUIRE(s, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, m->name, (long long)i, eta[i]);
+        SPARI_REQUIRE(s, i == 0 || eta[i] >= eta[i - 1], SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld (%.17g) is below the one before; two stations at one eta are a jump", call,
+                      m->name, (long long)i, eta[i]);
+    }
+    return SPAR_OK;
+}
+
+int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind) {
+    SPARI_TRY(need_applied(beam, "spar_beam_set_line_load"));
+    line_load line = {0};
+    int status = check_line_load(beam, n, eta, load, kind);
+    status = status == SPAR_OK && n > 0 ? line_build(beam, n, eta, load, kind, &line) : status;
+    if (status == SPAR_OK) {
+        line_free(&beam->applied->line[kind]);
+        beam->applied->line[kind] = line;
+    }
+    drop_empty(beam);
+    return status;
+}

@@ -1,0 +1,19 @@
+/* Loads a member carries beside the dead ones at its nodes: follower loads at nodes, dead and follower loads along a
+   beam. Loads along the line enter by their virtual work on the element's own field (see body.h): a force through
+   delta u = sum phi_l delta u_l, a moment m through delta theta = 2 Im(delta Q Q*)/|Q|^2, so that the nodal 4-vector is
+   2 phi_l m Q/|Q|^2. Dead loads along a line have then a potential, and moments that follow turn with the section. */
+#ifndef SPARI_APPLIED_H
+#define SPARI_APPLIED_H
+
+#include "member.h"
+
+/* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. For members with
+ * `applied` only. */
+double spari_applied_residual(const spar_member *member, const double *q, double factor, double *r);
+/* Its exact tangent, added to the tangent S [6P][6P] of element e. */
+void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
+/* load [nodes][6] += the loads at the motion q [nodes][7] of the public numbering. */
+void spari_applied_nodal(const spar_member *member, const double *q, double *load);
+void spari_applied_free(spari_applied *applied);
+
+#endif
