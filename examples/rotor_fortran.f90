@@ -1,0 +1,989 @@
+! The NREL 5-MW rotor from the side of an older Fortran code: a blade-element host with its data in modules, its own reader of
+! the tables, its own momentum theory and its own loop over time. Each rank takes its share of the blades (none is normal),
+! pulls the motion of its sections out of spar, finds the loads and pushes them back. The equations are those of spar_aero.h,
+! programmed a second time, so that the history agrees with that of the C program rotor to rounding:
+!
+!   rotor --seconds 2 --out out
+!   rotor_fortran --seconds 2 --compare out/history.csv        (or: mpirun -np 2 rotor_fortran ...)
+!
+! --help lists the options.
+
+!-----------------------------------------------------------------------------------------------------------------------
+! What an older code keeps in COMMON.
+module turbine
+  use, intrinsic :: iso_c_binding, only: c_double, c_int
+  implicit none
+  integer, parameter :: dp = c_double, max_rows = 512, max_sections = 64, max_polars = 16, max_blades = 9
+  real(dp), parameter :: pi = acos(-1.0_dp), degree = pi / 180
+
+  ! the turbine, from the tables
+  integer :: blades = 0
+  real(dp) :: length = 0, hub_radius = 0, tip_radius = 0, precone = 0, tilt = 0, density = 0, damping(6) = 0
+  integer :: n_axis = 0, n_structure = 0, ns = 0, n_polars = 0
+  real(dp) :: axis_eta(max_rows), axis_xyz(3,max_rows), axis_twist(max_rows)
+  real(dp) :: structure_eta(max_rows), stiffness(6,6,max_rows), mass(6,6,max_rows)
+  real(dp) :: span(max_sections), curve(max_sections), sweep(max_sections), aero_twist(max_sections), chord(max_sections)
+  integer :: polar_of(max_sections), polar_rows(max_polars)
+  character(32) :: polar_name(max_polars)
+  real(dp) :: polar_alpha(max_rows,max_polars), polar_cl(max_rows,max_polars), polar_cd(max_rows,max_polars), &
+      polar_cm(max_rows,max_polars)
+
+  ! where the rotor stands and how it runs
+  real(dp) :: hub(3) = 0, shaft(3) = 0, pitch = 0, speed = 0
+  real(dp) :: wind = 8, gust = 0, gust_start = 10, gust_length = 10
+
+contains
+
+  pure function cross(a, b) result(c)
+    real(dp), intent(in) :: a(3), b(3)
+    real(dp) :: c(3)
+
+    c = [a(2) * b(3) - a(3) * b(2), a(3) * b(1) - a(1) * b(3), a(1) * b(2) - a(2) * b(1)]
+  end function cross
+
+  ! The columns are the axes of the frame q.
+  pure function frame_of(q) result(r)
+    real(dp), intent(in) :: q(4)
+    real(dp) :: r(3,3)
+
+    r(:,1) = [1 - 2 * (q(3)**2 + q(4)**2), 2 * (q(2) * q(3) + q(1) * q(4)), 2 * (q(2) * q(4) - q(1) * q(3))]
+    r(:,2) = [2 * (q(2) * q(3) - q(1) * q(4)), 1 - 2 * (q(2)**2 + q(4)**2), 2 * (q(3) * q(4) + q(1) * q(2))]
+    r(:,3) = [2 * (q(2) * q(4) + q(1) * q(3)), 2 * (q(3) * q(4) - q(1) * q(2)), 1 - 2 * (q(2)**2 + q(3)**2)]
+  end function frame_of
+
+  ! The unit quaternion of a frame, from the largest of its four entries (Shepperd 1978).
+  pure function quaternion_of(r) result(q)
+    real(dp), intent(in) :: r(3,3)
+    real(dp) :: q(4)
+    integer :: a, b, c
+
+    if (r(1,1) + r(2,2) + r(3,3) >= max(r(1,1), r(2,2), r(3,3))) then
+      q = [1 + r(1,1) + r(2,2) + r(3,3), r(3,2) - r(2,3), r(1,3) - r(3,1), r(2,1) - r(1,2)]
+    else
+      a = maxloc([r(1,1), r(2,2), r(3,3)], dim=1)
+      b = mod(a, 3) + 1
+      c = mod(b, 3) + 1
+      q(1) = r(c,b) - r(b,c)
+      q(1+a) = 1 + r(a,a) - r(b,b) - r(c,c)
+      q(1+b) = r(b,a) + r(a,b)
+      q(1+c) = r(a,c) + r(c,a)
+    end if
+    q = q / norm2(q)
+  end function quaternion_of
+
+  ! Root of blade b (from 1) when the rotor stands at angle: x along the span, y towards the trailing edge, z upwind.
+  subroutine root_at(b, angle, x, r)
+    integer, intent(in) :: b
+    real(dp), intent(in) :: angle
+    real(dp), intent(out) :: x(3), r(3,3)
+    real(dp) :: up(3), side(3), psi, radial(3), aft(3), face(3)
+
+    psi = angle + 2 * pi * (b - 1) / blades
+    up = [0, 0, 1] - shaft(3) * shaft
+    up = up / norm2(up)
+    side = cross(shaft, up)
+    radial = cos(psi) * up + sin(psi) * side
+    aft = sin(psi) * up - cos(psi) * side
+    r(:,1) = cos(precone) * radial - sin(precone) * shaft
+    face = cross(r(:,1), aft)
+    r(:,2) = cos(pitch) * aft - sin(pitch) * face
+    r(:,3) = sin(pitch) * aft + cos(pitch) * face
+    x = hub + hub_radius * r(:,1)
+  end subroutine root_at
+
+  ! Motion of that root, relative to the reference at angle 0, at constant speed.
+  subroutine root_motion(b, angle, q, v, a)
+    integer, intent(in) :: b
+    real(dp), intent(in) :: angle
+    real(dp), intent(out) :: q(7), v(6), a(6)
+    real(dp) :: x0(3), x(3), r(3,3), swirl(3)
+
+    call root_at(b, 0.0_dp, x0, r)
+    call root_at(b, angle, x, r)
+    swirl = cross(shaft, x - hub)
+    q = [x - x0, cos(angle / 2), sin(angle / 2) * shaft]
+    v = [speed * swirl, speed * shaft]
+    a = [speed**2 * cross(shaft, swirl), 0.0_dp, 0.0_dp, 0.0_dp]
+  end subroutine root_motion
+
+  ! A 1-cos gust on top of the steady wind, along global x.
+  real(dp) function wind_at(t)
+    real(dp), intent(in) :: t
+    real(dp) :: part
+
+    part = (t - gust_start) / gust_length
+    wind_at = wind
+    if (part > 0 .and. part < 1) wind_at = wind + gust / 2 * (1 - cos(2 * pi * part))
+  end function wind_at
+
+  ! Steady operation: rotor speed (rev/min) and pitch (degrees) over the wind; Jonkman et al., NREL/TP-500-38060, table 7-1.
+  subroutine operating_point(u, rpm, degrees)
+    real(dp), intent(in) :: u
+    real(dp), intent(out) :: rpm, degrees
+    real(dp), parameter :: row(3,24) = reshape([ &
+        3.0_dp, 6.97_dp, 0.0_dp,    4.0_dp, 7.18_dp, 0.0_dp,    5.0_dp, 7.51_dp, 0.0_dp,    6.0_dp, 7.94_dp, 0.0_dp, &
+        7.0_dp, 8.47_dp, 0.0_dp,    8.0_dp, 9.16_dp, 0.0_dp,    9.0_dp, 10.30_dp, 0.0_dp,   10.0_dp, 11.43_dp, 0.0_dp, &
+        11.0_dp, 11.89_dp, 0.0_dp,  11.4_dp, 12.1_dp, 0.0_dp,   12.0_dp, 12.1_dp, 3.83_dp,  13.0_dp, 12.1_dp, 6.60_dp, &
+        14.0_dp, 12.1_dp, 8.70_dp,  15.0_dp, 12.1_dp, 10.45_dp, 16.0_dp, 12.1_dp, 12.06_dp, 17.0_dp, 12.1_dp, 13.54_dp, &
+        18.0_dp, 12.1_dp, 14.92_dp, 19.0_dp, 12.1_dp, 16.23_dp, 20.0_dp, 12.1_dp, 17.47_dp, 21.0_dp, 12.1_dp, 18.70_dp, &
+        22.0_dp, 12.1_dp, 19.94_dp, 23.0_dp, 12.1_dp, 21.18_dp, 24.0_dp, 12.1_dp, 22.35_dp, 25.0_dp, 12.1_dp, 23.47_dp], &
+        [3, 24])
+    real(dp) :: t
+    integer :: i
+
+    i = 2
+    do while (i < 24 .and. row(1,i) < u)
+      i = i + 1
+    end do
+    t = min(1.0_dp, max(0.0_dp, (u - row(1,i-1)) / (row(1,i) - row(1,i-1))))
+    rpm = row(2,i-1) + t * (row(2,i) - row(2,i-1))
+    degrees = row(3,i-1) + t * (row(3,i) - row(3,i-1))
+  end subroutine operating_point
+end module turbine
+
+!-----------------------------------------------------------------------------------------------------------------------
+! The tables of examples/data/nrel5mw.
+module tables
+  use turbine
+  implicit none
+  private
+  public :: read_turbine
+
+contains
+
+  subroutine read_turbine(folder)
+    character(*), intent(in) :: folder
+
+    call read_rotor(folder // '/rotor.txt')
+    call read_axis(folder // '/axis.txt')
+    call read_structure(folder // '/sections.txt')
+    call read_aero(folder // '/aero.txt', folder // '/polars/')
+  end subroutine read_turbine
+
+  ! The next line that says something; false at the end of the file.
+  logical function next_line(unit, line)
+    integer, intent(in) :: unit
+    character(*), intent(out) :: line
+    integer :: end, hash
+
+    do
+      read (unit, '(a)', iostat=end) line
+      next_line = end == 0
+      hash = index(line, '#')
+      if (hash > 0) line(hash:) = ''
+      if (.not. next_line .or. line /= '') return
+    end do
+  end function next_line
+
+  integer function open_table(path) result(unit)
+    character(*), intent(in) :: path
+    integer :: status
+
+    open (newunit=unit, file=path, action='read', status='old', iostat=status)
+    if (status /= 0) error stop 'rotor_fortran: ' // path // ' cannot be opened; say where the tables are with --data'
+  end function open_table
+
+  ! Rows of numbers, with a word after them where word is there.
+  subroutine read_rows(path, columns, row, n, word)
+    character(*), intent(in) :: path
+    integer, intent(in) :: columns
+    real(dp), intent(out) :: row(:,:)
+    integer, intent(out) :: n
+    character(*), intent(out), optional :: word(:)
+    character(4096) :: line
+    integer :: unit, status
+
+    unit = open_table(path)
+    n = 0
+    do while (next_line(unit, line))
+      n = n + 1
+      if (n > size(row, 2)) error stop 'rotor_fortran: ' // path // ' has too many rows'
+      if (present(word)) then
+        read (line, *, iostat=status) row(1:columns,n), word(n)
+      else
+        read (line, *, iostat=status) row(1:columns,n)
+      end if
+      if (status /= 0) error stop 'rotor_fortran: ' // path // ': not the numbers expected: ' // trim(line)
+    end do
+    close (unit)
+    if (n < 2) error stop 'rotor_fortran: ' // path // ' has fewer than 2 rows'
+  end subroutine read_rows
+
+  subroutine read_rotor(path)
+    character(*), intent(in) :: path
+    character(4096) :: line
+    character(32) :: name
+    integer :: unit
+
+    unit = open_table(path)
+    do while (next_line(unit, line))
+      read (line, *) name
+      line = line(index(line, trim(name)) + len_trim(name):)
+      select case (name)
+      case ('blades')
+        read (line, *) blades
+      case ('length')
+        read (line, *) length
+      case ('hub_radius')
+        read (line, *) hub_radius
+      case ('tip_radius')
+        read (line, *) tip_radius
+      case ('precone')
+        read (line, *) precone
+        precone = precone * degree
+      case ('tilt')
+        read (line, *) tilt
+        tilt = tilt * degree
+      case ('density')
+        read (line, *) density
+      case ('damping')
+        read (line, *) damping
+      end select
+    end do
+    close (unit)
+    if (blades < 1 .or. blades > max_blades) error stop 'rotor_fortran: ' // path // ': a number of blades is wanted'
+  end subroutine read_rotor
+
+  subroutine read_axis(path)
+    character(*), intent(in) :: path
+    real(dp), save :: row(5,max_rows) ! not on the stack
+
+    call read_rows(path, 5, row, n_axis)
+    axis_eta(1:n_axis) = row(1,1:n_axis)
+    axis_xyz(:,1:n_axis) = row(2:4,1:n_axis)
+    axis_twist(1:n_axis) = -degree * row(5,1:n_axis) ! published: minus a right-handed turn
+  end subroutine read_axis
+
+  ! Upper triangles, row by row: 21 numbers of the stiffness, 21 of the mass.
+  subroutine read_structure(path)
+    character(*), intent(in) :: path
+    real(dp), save :: row(43,max_rows) ! not on the stack
+    integer :: i, j, k, at
+
+    call read_rows(path, 43, row, n_structure)
+    do k = 1, n_structure
+      structure_eta(k) = row(1,k)
+      at = 2
+      do i = 1, 6
+        do j = i, 6
+          stiffness(i,j,k) = row(at,k)
+          stiffness(j,i,k) = row(at,k)
+          mass(i,j,k) = row(at+21,k)
+          mass(j,i,k) = row(at+21,k)
+          at = at + 1
+        end do
+      end do
+    end do
+  end subroutine read_structure
+
+  subroutine read_aero(path, polars)
+    character(*), intent(in) :: path, polars
+    real(dp) :: row(5,max_sections)
+    character(32) :: word(max_sections)
+    integer :: i, p
+
+    call read_rows(path, 5, row, ns, word)
+    span(1:ns) = row(1,1:ns)
+    curve(1:ns) = row(2,1:ns)
+    sweep(1:ns) = row(3,1:ns)
+    aero_twist(1:ns) = degree * row(4,1:ns)
+    chord(1:ns) = row(5,1:ns)
+    do i = 1, ns
+      do p = 1, n_polars
+        if (polar_name(p) == word(i)) exit
+      end do
+      polar_of(i) = p
+      if (p > n_polars) call read_polar(polars // trim(word(i)) // '.txt', word(i))
+    end do
+  end subroutine read_aero
+
+  subroutine read_polar(path, name)
+    character(*), intent(in) :: path, name
+    real(dp), save :: row(4,max_rows) ! not on the stack
+    integer :: n
+
+    if (n_polars == max_polars) error stop 'rotor_fortran: too many polars'
+    call read_rows(path, 4, row, n)
+    n_polars = n_polars + 1
+    polar_name(n_polars) = name
+    polar_rows(n_polars) = n
+    polar_alpha(1:n,n_polars) = degree * row(1,1:n)
+    polar_cl(1:n,n_polars) = row(2,1:n)
+    polar_cd(1:n,n_polars) = row(3,1:n)
+    polar_cm(1:n,n_polars) = row(4,1:n)
+  end subroutine read_polar
+end module tables
+
+!-----------------------------------------------------------------------------------------------------------------------
+! Blade element momentum theory: one bracketed equation for the inflow angle of each section (Ning 2014, doi
+! 10.1002/we.1636), in the form without poles of src/aero/momentum.h, with the losses of Prandtl and the thrust of Buhl.
+module bemt
+  use turbine
+  implicit none
+  private
+  public :: element_loads, distance_from_shaft
+
+  ! how near to 0 an angle is looked for; where the swirl fades out; how near to tip and hub there is no loss factor
+  real(dp), parameter :: phi_min = 1e-8_dp, swirl_sine = 0.01_dp, end_share = 1e-4_dp
+  ! the annulus that is being solved
+  integer :: polar
+  real(dp) :: vx, vy, twist, sigma, tip_loss, hub_loss
+
+contains
+
+  pure real(dp) function distance_from_shaft(x)
+    real(dp), intent(in) :: x(3)
+
+    distance_from_shaft = norm2(cross(shaft, x - hub))
+  end function distance_from_shaft
+
+  ! Loads per length of section i: x, q, v its place, frame and velocity, loss_radius its distance from the shaft in the
+  ! reference configuration, extra_twist what the frame lacks of the aerodynamic twist.
+  subroutine element_loads(i, x, q, v, u, loss_radius, extra_twist, load)
+    integer, intent(in) :: i
+    real(dp), intent(in) :: x(3), q(4), v(3), u(3), loss_radius, extra_twist
+    real(dp), intent(out) :: load(6)
+    real(dp) :: r(3,3), c(3), normal(3), flow(2), alpha, cl, cd, cm, v_total, scale
+
+    r = frame_of(q)
+    c = cos(extra_twist) * r(:,2) - sin(extra_twist) * r(:,3)
+    normal = -cos(extra_twist) * r(:,3) - sin(extra_twist) * r(:,2)
+    flow = [dot_product(u - v, c), dot_product(u - v, normal)]
+    call induce(i, x, loss_radius, r(:,1), c, flow)
+    alpha = atan2(flow(2), flow(1))
+    call look_up(polar_of(i), alpha, cl, cd, cm)
+    v_total = norm2(flow)
+    scale = density / 2 * chord(i) * v_total
+    load(1:3) = scale * ((cd * flow(1) - cl * flow(2)) * c + (cl * flow(1) + cd * flow(2)) * normal)
+    load(4:6) = scale * chord(i) * v_total * cm * r(:,1)
+  end subroutine element_loads
+
+  ! The flow in the plane of the section, along the chord and the normal, with the induction of the rotor.
+  subroutine induce(i, x, loss_radius, along, c, flow)
+    integer, intent(in) :: i
+    real(dp), intent(in) :: x(3), loss_radius, along(3), c(3)
+    real(dp), intent(inout) :: flow(2)
+    real(dp) :: lean, p(3), s(3), to_p, to_s, w(2), half, tip, root
+    logical :: balanced
+
+    lean = dot_product(shaft, along)
+    p = (shaft - lean * along) / sqrt(1 - lean**2)
+    s = cross(along, p)
+    to_p = dot_product(c, p)
+    to_s = dot_product(c, s)
+    half = 0.5_dp * blades
+    tip = cos(precone) * tip_radius
+    root = cos(precone) * hub_radius
+    vx = flow(1) * to_p + flow(2) * to_s
+    vy = flow(1) * to_s - flow(2) * to_p
+    twist = atan2(to_p, to_s)
+    polar = polar_of(i)
+    sigma = half * chord(i) / (pi * distance_from_shaft(x))
+    if (loss_radius >= (1 - end_share) * tip .or. loss_radius <= (1 + end_share) * root) then
+      w = [0.0_dp, vy] ! no loss factor is left here
+    else
+      tip_loss = half * (tip - loss_radius) / loss_radius
+      hub_loss = half * (loss_radius - root) / root
+      call balance_momentum(w, balanced)
+      if (.not. balanced) w = [vx, vy]
+    end if
+    flow = [w(1) * to_p + w(2) * to_s, w(1) * to_s - w(2) * to_p]
+  end subroutine induce
+
+  ! The flow w across and along the disc for which blade element and momentum give the same.
+  subroutine balance_momentum(w, balanced)
+    real(dp), intent(out) :: w(2)
+    logical, intent(out) :: balanced
+    ! windmill, brake, and the reversed flow; with the short pieces between two of them
+    real(dp), parameter :: range(2,6) = reshape([phi_min, pi / 2, -phi_min, -pi / 2, -phi_min, phi_min, &
+        pi - phi_min, pi / 2, phi_min - pi, -pi / 2, pi - phi_min, pi + phi_min], [2, 6])
+    real(dp) :: cl, phi, total
+    integer :: k, parts, first
+
+    call look_up(polar, atan2(vx, vy) - twist, cl)
+    w = [vx, vy]
+    balanced = abs(cl) <= 0
+    if (balanced) return
+    first = merge(3, 0, vy < 0)
+    parts = 1
+    do
+      do k = 0, 5
+        call search(range(:,mod(first+k,6)+1), parts, phi, total, balanced)
+        if (balanced) then
+          w = total * [sign(1.0_dp, vx) * sin(phi), cos(phi)]
+          return
+        end if
+      end do
+      if (parts > 1) return
+      parts = 32
+    end do
+  end subroutine balance_momentum
+
+  ! The first sound root in a range, looked through in pieces that lie closer at its beginning.
+  subroutine search(range, parts, phi, total, found)
+    real(dp), intent(in) :: range(2)
+    integer, intent(in) :: parts
+    real(dp), intent(out) :: phi, total
+    logical, intent(out) :: found
+    real(dp) :: x0, x1, r0, r1, g, h
+    integer :: i
+
+    phi = 0
+    total = 0
+    found = .false.
+    x0 = range(1)
+    r0 = residual(x0)
+    do i = 1, parts
+      x1 = range(1) + (range(2) - range(1)) * (real(i, dp) / parts)**2
+      r1 = residual(x1)
+      if ((r0 < 0 .and. r1 >= 0) .or. (r0 > 0 .and. r1 <= 0)) then
+        phi = root_between(x0, r0, x1, r1)
+        call balance(phi, g, h)
+        total = (abs(vx) * g + vy * h) / (g**2 + h**2)
+        found = total > 0 .and. total < huge(total)
+        if (found) return
+      end if
+      x0 = x1
+      r0 = r1
+    end do
+  end subroutine search
+
+  real(dp) function residual(phi)
+    real(dp), intent(in) :: phi
+    real(dp) :: g, h
+
+    call balance(phi, g, h)
+    residual = vy * g - abs(vx) * h
+  end function residual
+
+  ! |vx| / W = g and vy / W = h if phi were the angle of the flow W.
+  subroutine balance(phi, g, h)
+    real(dp), intent(in) :: phi
+    real(dp), intent(out) :: g, h
+    real(dp) :: s, c, side, cl, loss, share, fade
+
+    s = sin(phi)
+    c = cos(phi)
+    side = sign(1.0_dp, vx)
+    call look_up(polar, side * phi - twist, cl)
+    loss = prandtl(tip_loss, s) * prandtl(hub_loss, s)
+    share = side * sigma * cl / (4 * loss)
+    fade = max(-1.0_dp, min(1.0_dp, s / swirl_sine))
+    g = axial(s, share * c, loss)
+    h = c - fade * (1.5_dp - 0.5_dp * fade**2) * share
+  end subroutine balance
+
+  real(dp) function prandtl(f, s)
+    real(dp), intent(in) :: f, s
+
+    prandtl = 2 / pi * acos(exp(-f / abs(s)))
+  end function prandtl
+
+  ! Momentum theory, Buhl above k = 2/3 (k2 is k s^2), the propeller brake for s < 0.
+  real(dp) function axial(s, k2, loss)
+    real(dp), intent(in) :: s, k2, loss
+    real(dp) :: slope
+
+    if (s < 0) then
+      slope = 20.0_dp / 3 - 4 * loss
+      axial = min(s - k2 / s, 0.25_dp * (sqrt(max(0.0_dp, (slope * s)**2 + 32 * loss * k2)) + slope * s))
+    else if (k2 > 2 * s**2 / 3) then
+      axial = s * (5.0_dp / 3 - loss) + sqrt(loss * (2 * k2 - (4.0_dp / 3 - loss) * s**2))
+    else
+      axial = s
+      if (abs(k2) > 0) axial = s + k2 / s
+    end if
+  end function axial
+
+  ! Ridders: the secant of the residual times the exponential that makes its values at both ends and the middle lie on a line.
+  real(dp) function root_between(a, fa, b, fb) result(x)
+    real(dp), intent(in) :: a, fa, b, fb
+    real(dp) :: low, high, f_low, f_high, middle, f_middle, fx, before, spread
+    integer :: i
+
+    low = a
+    f_low = fa
+    high = b
+    f_high = fb
+    x = high
+    if (abs(f_high) <= 0) return
+    before = huge(x)
+    do i = 1, 100
+      middle = 0.5_dp * (low + high)
+      f_middle = residual(middle)
+      spread = sqrt(f_middle**2 - f_low * f_high)
+      x = middle
+      if (spread <= 0) return
+      x = middle + (middle - low) * sign(1.0_dp, f_low - f_high) * f_middle / spread
+      if (abs(x - before) <= 2 * epsilon(x) * abs(x)) return
+      before = x
+      fx = residual(x)
+      if (abs(fx) <= 0) return
+      if (f_middle * fx < 0) then
+        low = middle
+        f_low = f_middle
+        high = x
+        f_high = fx
+      else if (f_low * fx < 0) then
+        high = x
+        f_high = fx
+      else
+        low = x
+        f_low = fx
+      end if
+    end do
+  end function root_between
+
+  ! Linear between the rows, and round once more where the angle is beyond the table of a full turn.
+  subroutine look_up(p, angle, cl, cd, cm)
+    integer, intent(in) :: p
+    real(dp), intent(in) :: angle
+    real(dp), intent(out) :: cl
+    real(dp), intent(out), optional :: cd, cm
+    real(dp) :: a, t
+    integer :: i, low, high
+
+    low = 1
+    high = polar_rows(p)
+    a = angle
+    if (a < polar_alpha(low,p) .or. a > polar_alpha(high,p)) then
+      a = a - 2 * pi * floor((a - polar_alpha(low,p)) / (2 * pi))
+      a = max(polar_alpha(low,p), min(polar_alpha(high,p), a))
+    end if
+    do while (high - low > 1)
+      i = (low + high) / 2
+      if (polar_alpha(i,p) > a) then
+        high = i
+      else
+        low = i
+      end if
+    end do
+    t = (a - polar_alpha(low,p)) / (polar_alpha(high,p) - polar_alpha(low,p))
+    cl = polar_cl(low,p) + t * (polar_cl(high,p) - polar_cl(low,p))
+    if (present(cd)) cd = polar_cd(low,p) + t * (polar_cd(high,p) - polar_cd(low,p))
+    if (present(cm)) cm = polar_cm(low,p) + t * (polar_cm(high,p) - polar_cm(low,p))
+  end subroutine look_up
+end module bemt
+
+!-----------------------------------------------------------------------------------------------------------------------
+! The coupled run: spar has the blades, this host has the wind.
+module host
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+#ifdef SPAR_WITH_MPI
+  use mpi
+#endif
+  use spar
+  use turbine
+  use bemt
+  implicit none
+  integer, parameter :: per_blade = 4, before_blades = 7
+  integer :: rank = 0, ranks = 1
+
+  ! options
+  real(dp) :: seconds = 30, dt = 0.01_dp, tolerance = 1e-6_dp
+  integer(c_int) :: elements = 1, nodes = 10, iterations_most = 20
+  character(1024) :: data_folder = '', history_file = '', compare_file = ''
+
+  ! the structure on every rank, the fluid where its blades are
+  type(spar_session) :: session
+  type(spar_member) :: blade(max_blades)
+  type(spar_fluid) :: fluid(max_blades)
+  integer :: nb = 0, blade_of(max_blades) ! blades of this rank
+  integer :: node_count = 0
+  real(dp) :: extra_twist(max_sections), interval(max_sections,max_blades), loss_radius(max_sections,max_blades)
+  real(dp) :: thrust = 0, torque = 0
+  real(dp), allocatable :: history(:,:)
+
+contains
+
+  subroutine start_ranks()
+#ifdef SPAR_WITH_MPI
+    integer :: status
+
+    call MPI_Init(status)
+    call MPI_Comm_rank(MPI_COMM_WORLD, rank, status)
+    call MPI_Comm_size(MPI_COMM_WORLD, ranks, status)
+#endif
+  end subroutine start_ranks
+
+  subroutine end_ranks()
+#ifdef SPAR_WITH_MPI
+    integer :: status
+
+    call MPI_Finalize(status)
+#endif
+  end subroutine end_ranks
+
+#ifdef SPAR_WITH_MPI
+  subroutine sum_over_ranks(x)
+    real(dp), intent(inout) :: x(2)
+    real(dp) :: part(2)
+    integer :: status
+
+    part = x
+    call MPI_Allreduce(part, x, size(x), MPI_DOUBLE_PRECISION, MPI_SUM, MPI_COMM_WORLD, status)
+  end subroutine sum_over_ranks
+#endif
+
+  subroutine start_session()
+#ifdef SPAR_WITH_MPI
+    if (ranks > 1) call session%create(MPI_COMM_WORLD)
+#endif
+    if (.not. session%exists()) call session%create()
+    call session%set_gravity([0.0_dp, 0.0_dp, -9.80665_dp])
+    call session%set_integrator(0.8_dp, 1)
+    call session%set_predictor(1)
+    call session%set_coupling(SPAR_COUPLING_FIXED_POINT, 0.0_dp, tolerance, iterations_most)
+  end subroutine start_session
+
+  ! Every rank describes every blade; blade b is solved on, and its sections live on, rank mod(b - 1, ranks).
+  subroutine make_blades()
+    real(dp) :: x(3), r(3,3)
+    character(8) :: name
+    integer :: b
+
+    do b = 1, blades
+      write (name, '(a,i0)') 'blade', b
+      call root_at(b, 0.0_dp, x, r)
+      call blade(b)%create_beam(session, name, elements, nodes)
+      call blade(b)%set_axis(axis_eta(1:n_axis), axis_xyz(:,1:n_axis), axis_twist(1:n_axis))
+      call blade(b)%set_sections(structure_eta(1:n_structure), stiffness(:,:,1:n_structure), mass(:,:,1:n_structure))
+      call blade(b)%set_damping(damping)
+      call blade(b)%set_placement(x, quaternion_of(r))
+      call blade(b)%set_root(SPAR_ROOT_DRIVEN)
+      call blade(b)%set_owner(mod(b - 1, ranks))
+      call blade(b)%commit()
+      call spin(b)
+      if (mod(b - 1, ranks) == rank) then
+        nb = nb + 1
+        blade_of(nb) = b
+        call make_sections(nb, x, r)
+      end if
+    end do
+    call blade(1)%get_count(node_count)
+  end subroutine make_blades
+
+  ! Every point of the blade turns with the rotor, from where it is.
+  subroutine spin(b)
+    integer, intent(in) :: b
+
+    call blade(b)%set_velocity(x0=hub, omega=speed * shaft)
+  end subroutine spin
+
+  ! Sections on the line first, to learn the frames there; then with the aerodynamic centres in these frames.
+  subroutine make_sections(k, root, r)
+    integer, intent(in) :: k
+    real(dp), intent(in) :: root(3), r(3,3)
+    real(dp) :: xi(ns), foot(3,ns), q(4,ns), offset(3,ns), own(3,3), arm(3)
+    character(12) :: name
+    integer :: i
+
+    write (name, '(a,i0)') 'sections', blade_of(k)
+    xi = 2 * span(1:ns) / length - 1
+    call fluid(k)%create(blade(blade_of(k)), name)
+    call fluid(k)%set_sections(xi)
+    call fluid(k)%map()
+    call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, q)
+    do i = 1, ns
+      own = frame_of(q(:,i))
+      arm = root + span(i) * r(:,1) + sweep(i) * r(:,2) - curve(i) * r(:,3) - foot(:,i)
+      offset(:,i) = matmul(arm, own)
+      extra_twist(i) = aero_twist(i) + atan2(dot_product(own(:,2), r(:,3)), dot_product(own(:,2), r(:,2)))
+    end do
+    call fluid(k)%set_sections(xi, offset)
+    call fluid(k)%map()
+    call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, con=offset)
+    foot = foot + offset
+    do i = 1, ns
+      loss_radius(i,k) = distance_from_shaft(foot(:,i))
+      if (i < ns) interval(i,k) = norm2(foot(:,i+1) - foot(:,i))
+    end do
+  end subroutine make_sections
+
+  ! Motion out, loads per length, loads in: linear between the sections, each interval shared consistently between its ends.
+  subroutine fluid_loads(t)
+    real(dp), intent(in) :: t
+    real(dp), dimension(3,ns) :: x, v, force, moment
+    real(dp) :: q(4,ns), load(6,ns), ends(6,2), u(3)
+    integer :: i, k
+
+    thrust = 0
+    torque = 0
+    u = [wind_at(t), 0.0_dp, 0.0_dp]
+    do k = 1, nb
+      call fluid(k)%pull_motion(1.0_dp, x, v)
+      call fluid(k)%pull_sections(1.0_dp, q)
+      do i = 1, ns
+        call element_loads(i, x(:,i), q(:,i), v(:,i), u, loss_radius(i,k), extra_twist(i), load(:,i))
+      end do
+      force = 0
+      moment = 0
+      do i = 1, ns - 1
+        ends(:,1) = interval(i,k) / 6 * (2 * load(:,i) + load(:,i+1))
+        ends(:,2) = interval(i,k) / 6 * (load(:,i) + 2 * load(:,i+1))
+        force(:,i:i+1) = force(:,i:i+1) + ends(1:3,:)
+        moment(:,i:i+1) = moment(:,i:i+1) + ends(4:6,:)
+      end do
+      call fluid(k)%push_forces(force, moment)
+      do i = 1, ns
+        thrust = thrust + dot_product(shaft, force(:,i))
+        torque = torque + dot_product(shaft, cross(x(:,i) - hub, force(:,i)) + moment(:,i))
+      end do
+    end do
+  end subroutine fluid_loads
+
+  ! Blades bent to where wind and gravity would hold them at rest: straight ones would rush downwind at first.
+  subroutine bend()
+    integer :: b, round
+
+    do round = 1, 4
+      call fluid_loads(0.0_dp)
+      do b = 1, blades
+        call blade(b)%solve_static(4)
+      end do
+      do b = 1, blades
+        call spin(b)
+      end do
+    end do
+  end subroutine bend
+
+  subroutine step(t, t_next, iterations)
+    real(dp), intent(in) :: t, t_next
+    integer, intent(out) :: iterations
+    real(dp) :: q(7), v(6), a(6)
+    logical :: done
+    integer :: b
+
+    do b = 1, blades
+      call root_motion(b, speed * t_next, q, v, a)
+      call blade(b)%drive_root(q, v, a)
+    end do
+    call session%step_begin(t_next - t)
+    iterations = 0
+    do
+      call session%step_solve()
+      call fluid_loads(t_next)
+      call session%step_check(done)
+      iterations = iterations + 1
+      if (done) exit
+    end do
+    call session%step_accept()
+  end subroutine step
+
+  ! One row: the columns of the history of the C program.
+  subroutine record(row, t, iterations)
+    real(dp), intent(out) :: row(:)
+    real(dp), intent(in) :: t
+    integer, intent(in) :: iterations
+    real(dp) :: rotor(2), reference(3,node_count), q(7,node_count), reaction(6)
+    real(dp) :: x0(3), r0(3,3), x(3), r(3,3), then(3), here(3)
+    integer :: b, at
+
+    rotor = [thrust, torque]
+#ifdef SPAR_WITH_MPI
+    call sum_over_ranks(rotor)
+#endif
+    row(1:7) = [t, mod(speed * t, 2 * pi) / degree, wind_at(t), rotor(1), rotor(2), rotor(2) * speed, real(iterations, dp)]
+    do b = 1, blades
+      call blade(b)%get_reference(reference)
+      call blade(b)%get_motion(q)
+      call blade(b)%get_reaction(reaction)
+      call root_at(b, 0.0_dp, x0, r0)
+      call root_at(b, speed * t, x, r)
+      then = matmul(reference(:,node_count) - x0, r0)
+      here = matmul(reference(:,node_count) + q(1:3,node_count) - x, r)
+      at = before_blades + per_blade * (b - 1)
+      row(at+1:at+2) = [then(3) - here(3), here(2) - then(2)]                                      ! flap, edge
+      row(at+3:at+4) = [-dot_product(r(:,2), reaction(4:6)), -dot_product(r(:,3), reaction(4:6))] ! their moments on the hub
+    end do
+  end subroutine record
+
+  subroutine run()
+    integer :: i, steps, iterations, shown
+    real(dp) :: t
+
+    steps = ceiling(seconds / dt - 1e-9_dp)
+    allocate (history(before_blades + per_blade * blades, 0:steps))
+    if (rank == 0) then
+      write (output_unit, '(a,f5.2,a,f6.3,a,f6.2,a,i0,a)') 'NREL 5-MW rotor in ', wind, ' m/s;', speed * 30 / pi, &
+          ' rev/min, pitch', pitch / degree, ' deg; ', ranks, ' rank(s)'
+      write (output_unit, '(a8,a12,a14,a12,2a12,a14,a6)') 'time', 'thrust', 'torque', 'power', 'flap 1', 'edge 1', &
+          'root flap 1', 'iter', 's', 'kN', 'kN m', 'kW', 'm', 'm', 'kN m', ''
+    end if
+    call bend()
+    call fluid_loads(0.0_dp)
+    iterations = 0
+    shown = max(1, steps / 20)
+    do i = 0, steps
+      t = merge(seconds, i * dt, i == steps)
+      if (i > 0) call step((i - 1) * dt, t, iterations)
+      call record(history(:,i), t, iterations)
+      if (rank /= 0 .or. (mod(i, shown) /= 0 .and. i < steps)) cycle
+      write (output_unit, '(f8.3,f12.4,f14.4,f12.4,2f12.6,f14.4,i6)') t, history(4:6,i) * 1e-3_dp, history(8:9,i), &
+          history(10,i) * 1e-3_dp, iterations
+      flush (output_unit)
+    end do
+  end subroutine run
+
+  subroutine write_history(path)
+    character(*), intent(in) :: path
+    integer :: unit, status, b, i
+
+    open (newunit=unit, file=path, action='write', status='replace', iostat=status)
+    if (status /= 0) error stop 'rotor_fortran: ' // path // ' cannot be written'
+    write (unit, '(a)', advance='no') 'time_s,azimuth_deg,wind_m_s,thrust_N,torque_Nm,power_W,iterations'
+    do b = 1, blades
+      write (unit, '(4(a,i0,a))', advance='no') ',tip_flap', b, '_m', ',tip_edge', b, '_m', ',root_flap', b, '_Nm', &
+          ',root_edge', b, '_Nm'
+    end do
+    write (unit, '(a)') ''
+    do i = 0, ubound(history, 2)
+      write (unit, '(*(g0,:,","))') history(:,i)
+    end do
+    close (unit)
+  end subroutine write_history
+
+  ! Against the history of a reference run: the largest difference of each column, relative to its largest entry.
+  subroutine compare_history(path)
+    character(*), intent(in) :: path
+    real(dp), parameter :: allowed = 1e-10_dp
+    real(dp) :: reference(size(history, 1), 0:ubound(history, 2)), difference(size(history, 1)), largest(size(history, 1))
+    character(4096) :: line
+    integer :: unit, status, i
+
+    open (newunit=unit, file=path, action='read', status='old', iostat=status)
+    if (status /= 0) error stop 'rotor_fortran: ' // path // ' cannot be opened'
+    read (unit, '(a)') line
+    do i = 0, ubound(history, 2)
+      read (unit, *, iostat=status) reference(:,i)
+      if (status /= 0) error stop 'rotor_fortran: ' // path // ' is not the history of the same run'
+    end do
+    read (unit, *, iostat=status) line
+    if (status == 0) error stop 'rotor_fortran: ' // path // ' is longer than this run'
+    close (unit)
+    largest = maxval(abs(reference), dim=2)
+    difference = maxval(abs(history - reference), dim=2) / merge(largest, 1.0_dp, largest > 0)
+    write (output_unit, '(a,es8.1,a,i0)') 'against ' // trim(path) // ': differences up to ', maxval(difference), &
+        ' of the largest entry of the column, in column ', maxloc(difference, dim=1)
+    flush (output_unit)
+    if (maxval(difference) > allowed) error stop 'rotor_fortran: the runs differ'
+  end subroutine compare_history
+end module host
+
+!-----------------------------------------------------------------------------------------------------------------------
+program rotor_fortran
+  use host
+  use tables
+  implicit none
+  real(dp) :: rpm = -1, pitch_given = -1000, rpm_table, pitch_table
+
+  data_folder = &
+    SPAR_DATA_DIR
+  data_folder = trim(data_folder) // '/nrel5mw'
+  if (.not. options_read()) stop
+  call start_ranks()
+  call read_turbine(trim(data_folder))
+  call operating_point(wind, rpm_table, pitch_table)
+  speed = merge(rpm, rpm_table, rpm >= 0) * pi / 30
+  pitch = merge(pitch_given, pitch_table, pitch_given > -1000) * degree
+  shaft = [cos(tilt), 0.0_dp, -sin(tilt)]
+  call start_session()
+  call make_blades()
+  call run()
+  if (rank == 0 .and. history_file /= '') call write_history(trim(history_file))
+  if (rank == 0 .and. compare_file /= '') call compare_history(trim(compare_file))
+  call session%destroy()
+  call end_ranks()
+
+contains
+
+  logical function options_read() result(go_on)
+    character(1024) :: name, value
+    integer :: i
+
+    go_on = .true.
+    i = 1
+    do while (i <= command_argument_count() .and. go_on)
+      call get_command_argument(i, name)
+      call get_command_argument(i + 1, value)
+      if (name /= '--help' .and. value == '') error stop 'rotor_fortran: ' // trim(name) // ' needs a value'
+      i = i + 2
+      select case (name)
+      case ('--wind')
+        call number(name, value, wind)
+      case ('--rpm')
+        call number(name, value, rpm)
+      case ('--pitch')
+        call number(name, value, pitch_given)
+      case ('--gust')
+        call number(name, value, gust)
+      case ('--gust-start')
+        call number(name, value, gust_start)
+      case ('--gust-length')
+        call number(name, value, gust_length)
+      case ('--seconds')
+        call number(name, value, seconds)
+      case ('--dt')
+        call number(name, value, dt)
+      case ('--tolerance')
+        call number(name, value, tolerance)
+      case ('--elements')
+        call whole(name, value, elements)
+      case ('--nodes')
+        call whole(name, value, nodes)
+      case ('--iterations')
+        call whole(name, value, iterations_most)
+      case ('--data')
+        data_folder = value
+      case ('--history')
+        history_file = value
+      case ('--compare')
+        compare_file = value
+      case ('--help')
+        call help()
+        go_on = .false.
+      case default
+        error stop 'rotor_fortran: ' // trim(name) // ' is no option; --help lists them'
+      end select
+    end do
+    if (.not. (seconds > 0 .and. dt > 0 .and. gust_length > 0)) error stop 'rotor_fortran: times are positive'
+  end function options_read
+
+  subroutine number(name, text, x)
+    character(*), intent(in) :: name, text
+    real(dp), intent(out) :: x
+    integer :: status
+
+    read (text, *, iostat=status) x
+    if (status /= 0) error stop 'rotor_fortran: ' // trim(name) // ' ' // trim(text) // ': a number is wanted'
+  end subroutine number
+
+  subroutine whole(name, text, i)
+    character(*), intent(in) :: name, text
+    integer(c_int), intent(out) :: i
+    integer :: status
+
+    read (text, *, iostat=status) i
+    if (status /= 0) error stop 'rotor_fortran: ' // trim(name) // ' ' // trim(text) // ': a whole number is wanted'
+  end subroutine whole
+
+  subroutine help()
+    write (output_unit, '(a)') 'usage: rotor_fortran [options]', '', &
+        'The NREL 5-MW rotor from a Fortran host with its own blade element momentum theory.', '', &
+        '  --wind M/S            wind speed [8]', &
+        '  --rpm REV/MIN         rotor speed [that of the turbine at this wind]', &
+        '  --pitch DEG           blade pitch [that of the turbine at this wind]', &
+        '  --gust M/S            height of a 1-cos gust [0]', &
+        '  --gust-start S        when it begins [10]', &
+        '  --gust-length S       how long it lasts [10]', &
+        '  --seconds S           time to simulate [30]', &
+        '  --dt S                coupling step [0.01]', &
+        '  --elements N          beam elements per blade [1]', &
+        '  --nodes N             nodes per element [10]', &
+        '  --tolerance R         change of the loads that ends the iteration [1e-6]', &
+        '  --iterations N        coupling iterations at most [20]', &
+        '  --data FOLDER         the tables of the turbine', &
+        '  --history FILE        writes the history, in the columns of the program rotor', &
+        '  --compare FILE        compares with the history of such a run; fails beyond 1e-10'
+  end subroutine help
+end program rotor_fortran
