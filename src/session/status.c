@@ -73,7 +73,7 @@ int spar_has(const char *feature) {
     return 0;
 }
 
-int spari_fail(spar_session *session, int status, const char *format, ...) {
+int(spari_fail)(spar_session *session, int status, const char *format, ...) {
     /* Formatted aside first: an argument may point into the message that is about to be replaced. */
     char text[SPARI_MESSAGE_SIZE];
     va_list arguments;
