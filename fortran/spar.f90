@@ -55,8 +55,7 @@ module spar
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
-  public :: SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER
-  public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
+  public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
 
   type :: spar_session
     private
@@ -457,7 +456,8 @@ contains
     call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
   end subroutine session_get_time
 
-  ! residual, size: room for the iterations set_coupling allows; report: SPAR_REPORT_COUNT numbers, entry k at report(k + 1)
+  ! residual and size, by iteration from 1, have room for all iterations of the step: as many as set_coupling allows is always
+  ! enough. Entry SPAR_REPORT_x of the report is report(SPAR_REPORT_x + 1).
   subroutine session_get_coupling(self, iterations, residual, size, report, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int), intent(inout), optional :: iterations
@@ -465,7 +465,20 @@ contains
     real(c_double), intent(inout), optional :: report(SPAR_REPORT_COUNT)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: n, status
 
+    status = spar_session_get_coupling(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%handle, stat, errmsg)
+      return
+    end if
+    if (present(residual)) call need_room(fault, 'session%get_coupling', 'residual', ubound(residual, 1, c_int64_t), n)
+    if (present(size)) call need_room(fault, 'session%get_coupling', 'size', ubound(size, 1, c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
     call finish(spar_session_get_coupling(self%handle, iterations, residual, size, report), self%handle, stat, errmsg)
   end subroutine session_get_coupling
 
@@ -905,6 +918,19 @@ contains
     call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
   end subroutine member_drive_root
 
+  ! Of a member that is there; what is not, the library refuses.
+  subroutine need_node(fault, member, verb, node)
+    character(:), allocatable, intent(inout) :: fault
+    class(spar_member), intent(in) :: member
+    character(*), intent(in) :: verb
+    integer(c_int64_t), intent(in) :: node
+    integer(c_int64_t) :: n
+
+    if (spar_member_get_count(member%handle, n) /= SPAR_OK) return
+    if (node >= 1 .and. node <= n) return
+    fault = member%place(verb) // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+  end subroutine need_node
+
   subroutine member_add_load_64(self, node, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int64_t), intent(in) :: node
@@ -912,16 +938,9 @@ contains
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
-    integer(c_int64_t) :: n
-    integer(c_int) :: status
 
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (node < 1 .or. node > n) then
-      fault = self%place('add_load') // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+    call need_node(fault, self, 'add_load', node)
+    if (allocated(fault)) then
       call refuse(fault, stat, errmsg)
       return
     end if
@@ -945,16 +964,9 @@ contains
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
-    integer(c_int64_t) :: n
-    integer(c_int) :: status
 
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (node < 1 .or. node > n) then
-      fault = self%place('add_follower') // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+    call need_node(fault, self, 'add_follower', node)
+    if (allocated(fault)) then
       call refuse(fault, stat, errmsg)
       return
     end if
@@ -980,8 +992,8 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_line_load'), 'load', shape(load, kind=c_int64_t), [6_c_int64_t, &
-        size(eta, kind=c_int64_t)])
+    call need(fault, self%place('set_line_load'), 'load', shape(load, kind=c_int64_t), &
+        [6_c_int64_t, size(eta, kind=c_int64_t)])
     if (allocated(fault)) then
       call refuse(fault, stat, errmsg)
       return
@@ -1838,6 +1850,16 @@ contains
     if (allocated(fault) .or. all(has == needs) .or. (product(has) == 0 .and. product(needs) == 0)) return
     fault = place // ': ' // array // ' has the shape ' // extents(has) // '; it must be ' // extents(needs)
   end subroutine need
+
+  subroutine need_room(fault, place, array, has, needs)
+    character(:), allocatable, intent(inout) :: fault
+    character(*), intent(in) :: place, array
+    integer(c_int64_t), intent(in) :: has
+    integer(c_int), intent(in) :: needs
+
+    if (allocated(fault) .or. has >= needs) return
+    fault = place // ': ' // array // ' has room for ' // text_of(has) // ' of ' // text_of(int(needs, c_int64_t))
+  end subroutine need_room
 
   function extents(shape) result(text)
     integer(c_int64_t), intent(in) :: shape(:)

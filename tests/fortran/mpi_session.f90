@@ -31,8 +31,8 @@ contains
     write (*, '(a,i0,2a)') 'wrong on rank ', rank, ': ', what
   end subroutine check
 
-  ! Every rank but the last of several pushes 1 N at x = 1 + rank on a body of 2 kg: the sum of the forces moves it, and the moment
-  ! about its node is the sum of the places.
+  ! Every rank but the last of several pushes 1 N at x = 1 + rank on a body of 2 kg: the sum of the forces moves it, and the
+  ! moment about its node is the sum of the places.
   subroutine shared_load()
     type(spar_member) :: body
     type(spar_fluid) :: fluid

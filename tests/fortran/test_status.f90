@@ -361,6 +361,10 @@ contains
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'nodes 1 to 8') > 0, 'there is no node 0')
     call beam%add_load(9_c_int64_t, stiffness(:,1,1), stat, errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'no node 9') > 0, 'there is no node 9')
+    call beam%add_follower(9, stiffness(:,1,1), stat, errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'member%add_follower') > 0, 'nor for a load that turns')
+    call beam%set_line_load([0.0_c_double, 1.0_c_double], stiffness(:,1:3,1), SPAR_LOAD_DEAD, stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'a line load of three stations at two places')
     call beam%add_load(8, stiffness(:,2,1), stat)
     call beam%get_loads(loads)
     call check(stat == SPAR_OK .and. same(loads(2,8), 1) .and. same(sum(abs(loads)), 1), &
