@@ -54,14 +54,17 @@ static void matrix6_times(const double *c, const double e[6], double s[6]) {
 
 /* ---- life ---- */
 
-/* Fields of a node as the elements sum them: u and its two rates, q and its two rates. */
-enum { U = 0, Q = 3, UD = 7, QD = 10, UDD = 14, QDD = 17, FIELDS = 21 };
-/* The same at a quadrature point: values, then derivatives along the line of u, q and their rates. */
-enum { DU = 21, DQ = 24, DUD = 28, DQD = 31, POINT = 35 };
+/* Fields of a node as the elements sum them: u and its two rates, q and its two rates. Rows are padded to whole
+ * vectors. */
+enum { U = 0, Q = 3, UD = 7, QD = 10, UDD = 14, QDD = 17, ROW = 24 };
+/* A row at a quadrature point: values, then derivatives along the line of u, q and their rates. */
+enum { DU = ROW, DQ = ROW + 3, DUD = ROW + 7, DQD = ROW + 10, POINT_ROW = ROW + 16 };
+/* What a point gives back: what multiplies phi (u, Q), then what multiplies phi' (u', Q'). */
+enum { BACK = 8, BACK_ROW = 2 * BACK };
 
 static int64_t scratch_size(int P, int points) {
     int64_t p = P, n = points;
-    return p * FIELDS + 4 * p * p * 49 + 2 * n * p * 2 * 49 + n * 2 * p;
+    return p * (ROW + BACK) + n * (POINT_ROW + BACK_ROW) + 4 * p * p * 49 + 2 * n * p * 2 * 49 + n * 2 * p;
 }
 
 spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive) {
@@ -122,10 +125,10 @@ static void gather(const spari_body *body, int e, const double *q, const double 
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)e * (P - 1) + l;
         const double *qn = q + 7 * node;
-        double *zn = z + FIELDS * l, *ql = zn + Q;
-        memset(zn, 0, FIELDS * sizeof *zn);
+        double *zn = z + ROW * l, *ql = zn + Q;
+        memset(zn, 0, ROW * sizeof *zn);
         memcpy(zn + U, qn, 3 * sizeof *zn);
-        double sign = l > 0 && spari_quat_dot(qn + 3, ql - FIELDS) < 0 ? -1.0 : 1.0;
+        double sign = l > 0 && spari_quat_dot(qn + 3, ql - ROW) < 0 ? -1.0 : 1.0;
         for (int i = 0; i < 4; i++) {
             ql[i] = sign * qn[3 + i];
         }
@@ -148,9 +151,99 @@ static void gather(const spari_body *body, int e, const double *q, const double 
     }
 }
 
+/* ---- sums over nodes and over points, the two loops that grow with P times points ---- */
+
+#if defined(__GNUC__)
+#define SPARI_ALWAYS_INLINE __attribute__((always_inline)) inline
+#else
+#define SPARI_ALWAYS_INLINE inline
+#endif
+
+/* f[n][POINT_ROW]: the first `width` fields and the first `slopes` derivatives at n points. */
+static SPARI_ALWAYS_INLINE void interpolate_rows(int P, int n, const double *phi, const double *dphi, int width,
+                                                 int slopes, const double *z, double *f) {
+    for (int k = 0; k < n; k++) {
+        double row[POINT_ROW] = {0};
+        for (int l = 0; l < P; l++) {
+            double a = phi[(int64_t)k * P + l], b = dphi[(int64_t)k * P + l];
+            const double *zl = z + ROW * l;
+            for (int i = 0; i < width; i++) {
+                row[i] += a * zl[i];
+            }
+            for (int i = 0; i < slopes; i++) {
+                row[ROW + i] += b * zl[i];
+            }
+        }
+        memcpy(f + (int64_t)POINT_ROW * k, row, sizeof row);
+    }
+}
+
+/* g[P][BACK] = sum over points of phi_l times the first half of each row and phi'_l times the second. */
+static SPARI_ALWAYS_INLINE void collect_rows(int P, int n, const double *phi, const double *dphi, const double *back,
+                                             double *g) {
+    for (int l = 0; l < P; l++) {
+        double sum[BACK] = {0};
+        for (int k = 0; k < n; k++) {
+            double a = phi[(int64_t)k * P + l], b = dphi[(int64_t)k * P + l];
+            const double *row = back + (int64_t)BACK_ROW * k;
+            for (int i = 0; i < BACK; i++) {
+                sum[i] += a * row[i];
+            }
+            for (int i = 0; i < BACK; i++) {
+                sum[i] += b * row[BACK + i];
+            }
+        }
+        memcpy(g + BACK * l, sum, sizeof sum);
+    }
+}
+
+/* The widths that occur, as constants, so that the inner loops are whole vectors. */
+#define SPARI_SUMS(NAME, TARGET)                                                                                       \
+    TARGET static void interpolate_##NAME(int P, int n, const double *phi, const double *dphi, int moving, int slopes, \
+                                          const double *z, double *f) {                                                \
+        if (moving && slopes == UDD) {                                                                                 \
+            interpolate_rows(P, n, phi, dphi, ROW, 16, z, f);                                                          \
+        } else if (moving && slopes) {                                                                                 \
+            interpolate_rows(P, n, phi, dphi, ROW, 8, z, f);                                                           \
+        } else if (moving) {                                                                                           \
+            interpolate_rows(P, n, phi, dphi, ROW, 0, z, f);                                                           \
+        } else {                                                                                                       \
+            interpolate_rows(P, n, phi, dphi, 8, 8, z, f);                                                             \
+        }                                                                                                              \
+    }                                                                                                                  \
+    TARGET static void collect_##NAME(int P, int n, const double *phi, const double *dphi, const double *back,         \
+                                      double *g) {                                                                     \
+        collect_rows(P, n, phi, dphi, back, g);                                                                        \
+    }
+
+SPARI_SUMS(plain, )
+#if defined(__GNUC__) && defined(__x86_64__)
+SPARI_SUMS(avx2, __attribute__((target("avx2"))))
+#define SPARI_CHOOSE(name) (__builtin_cpu_supports("avx2") ? name##_avx2 : name##_plain)
+#else
+#define SPARI_CHOOSE(name) name##_plain
+#endif
+
+/* All fields at all points of element e, from its nodes' rows. */
+static void interpolate(const spari_body *body, int e, const double *z, int moving, double *f) {
+    int P = body->per_element, first = body->first[e];
+    int slopes = !body->C ? 0 : body->D && moving ? UDD : UD;
+    SPARI_CHOOSE(interpolate)
+    (P, body->first[e + 1] - first, body->phi + (int64_t)first * P, body->dphi + (int64_t)first * P, moving, slopes, z,
+     f);
+}
+
+static void collect(const spari_body *body, int e, const double *back, double *g) {
+    int P = body->per_element, first = body->first[e];
+    SPARI_CHOOSE(collect)
+    (P, body->first[e + 1] - first, body->phi + (int64_t)first * P, body->dphi + (int64_t)first * P, back, g);
+}
+
+/* ---- one point ---- */
+
 /* What the fields are at one point, quaternion parts divided by |Q|. */
 typedef struct point_state {
-    double f[POINT];
+    const double *f;  /* its row of fields */
     double N;         /* |Q| */
     double r[4];      /* Q / N, unit */
     double p[4];      /* dQ/ds / N */
@@ -159,36 +252,22 @@ typedef struct point_state {
     double T[3];      /* R^T (x0' + u') */
     double e[6];      /* strains */
     double ed[6];     /* strain rates */
-    double s[6];      /* section force and moment, reference axes turned back */
+    double s[6];      /* section force and moment, turned back to the reference */
     double b;         /* r . d */
     double z[4];      /* dQd/ds / N */
     double t_rate[3]; /* R^T u'-dot */
     double kd0[3];    /* 2 Im(d* p + r* z) */
 } point_state;
 
-static void point_fields(const spari_body *body, int k, const double *z, int moving, point_state *s) {
-    int P = body->per_element, fields = moving ? FIELDS : UD;
-    const double *phi = body->phi + (int64_t)k * P, *dphi = body->dphi + (int64_t)k * P;
-    double f[FIELDS] = {0}, df[UDD] = {0};
-    int slopes = !body->C ? 0 : body->D && moving ? UDD : UD;
-    for (int l = 0; l < P; l++) {
-        const double *zn = z + FIELDS * l;
-        for (int i = 0; i < fields; i++) {
-            f[i] += phi[l] * zn[i];
-        }
-        for (int i = 0; i < slopes; i++) {
-            df[i] += dphi[l] * zn[i];
-        }
-    }
-    memcpy(s->f, f, sizeof f);
-    memcpy(s->f + DU, df, sizeof df);
+static void point_fields(const double *f, point_state *s) {
+    s->f = f;
     s->N = sqrt(spari_quat_dot(f + Q, f + Q));
     double inv = 1 / s->N;
     for (int i = 0; i < 4; i++) {
         s->r[i] = f[Q + i] * inv;
-        s->p[i] = df[Q + i] * inv;
+        s->p[i] = f[DQ + i] * inv;
         s->d[i] = f[QD + i] * inv;
-        s->z[i] = df[QD + i] * inv;
+        s->z[i] = f[DQD + i] * inv;
     }
     s->b = spari_quat_dot(s->r, s->d);
     imag_conj_mul(s->r, s->d, s->omega);
@@ -275,6 +354,21 @@ static void point_inertia_forces(const spari_body *body, int k, double factor, c
 static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                               double *r);
 
+/* Forces that the strains of a point do work on: gradients of s . e by (u, Q) and (u', Q'). */
+static void elastic_forces(const point_state *s, double *value, double *slope) {
+    double x[3], n4[4], k4[4], pk[4];
+    spari_rotate(s->r, s->s, slope);
+    spari_cross(s->s, s->T, x); /* moment of the section force about the section */
+    quat_vec(s->r, x, n4);
+    quat_vec(s->r, s->s + 3, k4);
+    quat_vec(s->p, s->s + 3, pk);
+    double dots = spari_dot(s->e + 3, s->s + 3);
+    for (int i = 0; i < 4; i++) {
+        slope[3 + i] = 2 * k4[i] / s->N;
+        value[3 + i] = (2 * n4[i] - 2 * pk[i] - 2 * dots * s->r[i]) / s->N;
+    }
+}
+
 /* Nodal force of the 4-vector g: delta q . g = delta theta . 1/2 Im(g q*) */
 static void add_moment(const double g[4], const double q[4], double m[3]) {
     double c[4], p[4];
@@ -285,69 +379,66 @@ static void add_moment(const double g[4], const double q[4], double m[3]) {
     }
 }
 
+/* What the point gives back, times its weight: value (u, Q), slope (u', Q'). Returns the size of its forces. */
+static double point_forces(const spari_body *body, int k, double factor, int moving, const double *f, double *back) {
+    point_state s;
+    double *value = back, *slope = back + BACK, w = body->weight[k], scale = 0;
+    memset(back, 0, BACK_ROW * sizeof *back);
+    point_fields(f, &s);
+    if (body->C) {
+        point_strain(body, k, moving, &s);
+        elastic_forces(&s, value, slope);
+        scale = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
+    }
+    if (body->mass) {
+        point_inertia n;
+        double force[3], m4[4];
+        point_inertia_forces(body, k, factor, &s, &n);
+        for (int i = 0; i < 3; i++) {
+            force[i] = n.y[i] + body->mass[10 * (int64_t)k] * n.h[i];
+        }
+        spari_rotate(s.r, force, force);
+        quat_vec(s.r, n.mb, m4);
+        for (int i = 0; i < 3; i++) {
+            value[i] += force[i];
+        }
+        for (int i = 0; i < 4; i++) {
+            value[3 + i] += 2 * m4[i] / s.N;
+        }
+        double size = w * (spari_norm(force) + spari_norm(n.mb) / body->length);
+        scale = size > scale ? size : scale;
+    }
+    for (int i = 0; i < BACK_ROW; i++) {
+        back[i] *= w;
+    }
+    return scale;
+}
+
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                            double *r) {
     if (body->linear[0]) {
         return linear_residual(body, q, v, a, factor, r);
     }
     int P = body->per_element, moving = v != NULL;
-    double *z = body->scratch, *g = z + (int64_t)P * FIELDS, scale = 0;
+    double *z = body->scratch, *g = z + (int64_t)P * ROW, *f = g + (int64_t)P * BACK, scale = 0;
     memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
     for (int e = 0; e < body->elements; e++) {
+        int first = body->first[e], n = body->first[e + 1] - first;
+        double *back = f + (int64_t)n * POINT_ROW;
         gather(body, e, q, v, a, z);
-        memset(g, 0, (size_t)P * 7 * sizeof *g);
-        for (int k = body->first[e]; k < body->first[e + 1]; k++) {
-            point_state s;
-            double value[7] = {0}, slope[7] = {0}, w = body->weight[k];
-            point_fields(body, k, z, moving, &s);
-            if (body->C) {
-                double x[3], n4[4], k4[4], pk[4], dots = 0;
-                point_strain(body, k, moving, &s);
-                spari_rotate(s.r, s.s, slope);
-                spari_cross(s.s, s.T, x); /* moment of the section force about the section */
-                quat_vec(s.r, x, n4);
-                quat_vec(s.r, s.s + 3, k4);
-                quat_vec(s.p, s.s + 3, pk);
-                dots = spari_dot(s.e + 3, s.s + 3);
-                for (int i = 0; i < 4; i++) {
-                    slope[3 + i] = 2 * k4[i] / s.N;
-                    value[3 + i] = (2 * n4[i] - 2 * pk[i] - 2 * dots * s.r[i]) / s.N;
-                }
-                double size = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
-                scale = size > scale ? size : scale;
-            }
-            if (body->mass) {
-                point_inertia n;
-                double f[3], m4[4];
-                point_inertia_forces(body, k, factor, &s, &n);
-                for (int i = 0; i < 3; i++) {
-                    f[i] = n.y[i] + body->mass[10 * (int64_t)k] * n.h[i];
-                }
-                spari_rotate(s.r, f, f);
-                quat_vec(s.r, n.mb, m4);
-                for (int i = 0; i < 3; i++) {
-                    value[i] += f[i];
-                }
-                for (int i = 0; i < 4; i++) {
-                    value[3 + i] += 2 * m4[i] / s.N;
-                }
-                double size = w * (spari_norm(f) + spari_norm(n.mb) / body->length);
-                scale = size > scale ? size : scale;
-            }
-            const double *phi = body->phi + (int64_t)k * P, *dphi = body->dphi + (int64_t)k * P;
-            for (int l = 0; l < P; l++) {
-                double wl = w * phi[l], dwl = w * dphi[l];
-                for (int i = 0; i < 7; i++) {
-                    g[7 * l + i] += wl * value[i] + dwl * slope[i];
-                }
-            }
+        interpolate(body, e, z, moving, f);
+        for (int k = 0; k < n; k++) {
+            double size =
+                point_forces(body, first + k, factor, moving, f + (int64_t)POINT_ROW * k, back + (int64_t)BACK_ROW * k);
+            scale = size > scale ? size : scale;
         }
+        collect(body, e, back, g);
         for (int l = 0; l < P; l++) {
             double *rl = r + 6 * ((int64_t)e * (P - 1) + l);
             for (int i = 0; i < 3; i++) {
-                rl[i] += g[7 * l + i];
+                rl[i] += g[BACK * l + i];
             }
-            add_moment(g + 7 * l + 3, z + FIELDS * l + Q, rl + 3);
+            add_moment(g + BACK * l + 3, z + ROW * l + Q, rl + 3);
         }
     }
     return scale;
@@ -725,9 +816,11 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first, moving = v != NULL;
     int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
     int rates = (cv != 0 || v) && (body->D || body->mass), masses = (cm != 0 || a) && body->mass;
-    double *z = body->scratch, *K7 = z + (int64_t)P * FIELDS, *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
+    double *z = body->scratch, *f = z + (int64_t)P * (ROW + BACK), *K7 = f + (int64_t)n * (POINT_ROW + BACK_ROW),
+           *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
     double *XK = g + pp, *XB = XK + 2 * n * row, *table = XB + 2 * n * row;
     gather(body, e, q, v, a, z);
+    interpolate(body, e, z, moving, f);
     memset(g, 0, (size_t)P * 4 * sizeof *g);
     double *XM = XB + n * row; /* B has no slopes unless damped: its second half is then free for M */
     memset(M7, 0, (size_t)pp * sizeof *M7);
@@ -739,21 +832,12 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         memset(&m, 0, sizeof m);
         double w = body->weight[at];
         const double *phi = body->phi + (int64_t)at * P, *dphi = body->dphi + (int64_t)at * P;
-        point_fields(body, at, z, moving, &s);
-        double value[4] = {0}, slope[4] = {0};
+        point_fields(f + (int64_t)POINT_ROW * k, &s);
+        double value[BACK] = {0}, slope[BACK] = {0};
         if (body->C) {
-            double x[3], n4[4], k4[4], pk[4];
             point_strain(body, at, moving, &s);
             add_elastic(body, at, moving, w, &s, &m);
-            spari_cross(s.s, s.T, x);
-            quat_vec(s.r, x, n4);
-            quat_vec(s.r, s.s + 3, k4);
-            quat_vec(s.p, s.s + 3, pk);
-            double dots = spari_dot(s.e + 3, s.s + 3);
-            for (int i = 0; i < 4; i++) {
-                slope[i] = 2 * k4[i] / s.N;
-                value[i] = (2 * n4[i] - 2 * pk[i] - 2 * dots * s.r[i]) / s.N;
-            }
+            elastic_forces(&s, value, slope);
         }
         if (body->mass) {
             point_inertia in;
@@ -762,12 +846,12 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
             point_inertia_forces(body, at, factor, &s, &in);
             quat_vec(s.r, in.mb, m4);
             for (int i = 0; i < 4; i++) {
-                value[i] += 2 * m4[i] / s.N;
+                value[3 + i] += 2 * m4[i] / s.N;
             }
         }
         for (int l = 0; l < P; l++) {
             for (int i = 0; i < 4; i++) {
-                g[4 * l + i] += w * (phi[l] * value[i] + dphi[l] * slope[i]);
+                g[4 * l + i] += w * (phi[l] * value[3 + i] + dphi[l] * slope[3 + i]);
             }
             table[2 * n * l + k] = phi[l];
             table[2 * n * l + n + k] = dphi[l];
@@ -785,9 +869,9 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         } else if (masses) {
             for (int i = 0; i < P; i++) {
                 for (int j = 0; j < P; j++) {
-                    double f = phi[i] * phi[j], *to = M7 + ((int64_t)i * P + j) * 49;
+                    double fij = phi[i] * phi[j], *to = M7 + ((int64_t)i * P + j) * 49;
                     for (int c = 0; c < 49; c++) {
-                        to[c] += f * m.M[c];
+                        to[c] += fij * m.M[c];
                     }
                 }
             }
@@ -807,8 +891,8 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     double E[SPARI_MAX_NODES][4][3], F[SPARI_MAX_NODES][4][3], H[SPARI_MAX_NODES][4][3];
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)e * (P - 1) + l;
-        node_maps(z + FIELDS * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv,
-                  tinv ? tinv + 9 * node : NULL, E[l], F[l], H[l]);
+        node_maps(z + ROW * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv, tinv ? tinv + 9 * node : NULL,
+                  E[l], F[l], H[l]);
     }
     for (int i = 0; i < P; i++) {
         for (int j = 0; j < P; j++) {
@@ -824,7 +908,7 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         }
         /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
         double c[4], p[4], wx[3][3];
-        spari_quat_conj(z + FIELDS * i + Q, c);
+        spari_quat_conj(z + ROW * i + Q, c);
         spari_quat_mul(g + 4 * i, c, p);
         skew(p + 1, wx);
         for (int r = 0; r < 3; r++) {
@@ -839,14 +923,15 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
 
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
     int moving = v != NULL;
-    double *z = body->scratch;
+    double *z = body->scratch, *f = z + (int64_t)body->per_element * (ROW + BACK);
     memset(energy, 0, 4 * sizeof *energy);
     for (int e = 0; e < body->elements; e++) {
         gather(body, e, q, v, NULL, z);
+        interpolate(body, e, z, moving, f);
         for (int k = body->first[e]; k < body->first[e + 1]; k++) {
             point_state s;
             double w = body->weight[k];
-            point_fields(body, k, z, moving, &s);
+            point_fields(f + (int64_t)POINT_ROW * (k - body->first[e]), &s);
             if (body->C) {
                 double n[6];
                 point_strain(body, k, moving, &s);
