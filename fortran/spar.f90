@@ -127,6 +127,7 @@ module spar
     procedure :: set_line_load => member_set_line_load
     procedure :: get_loads => member_get_loads
     procedure :: get_reaction => member_get_reaction
+    procedure :: get_section => member_get_section
     procedure :: get_energy => member_get_energy
     procedure :: solve_static => member_solve_static
     procedure :: get_modes => member_get_modes
@@ -1032,6 +1033,28 @@ contains
 
     call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
   end subroutine member_get_reaction
+
+  subroutine member_get_section(self, eta, strain, force, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault, place
+    integer(c_int64_t) :: n
+
+    n = size(eta, kind=c_int64_t)
+    place = self%place('get_section')
+    if (present(strain)) call need(fault, place, 'strain', shape(strain, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(force)) call need(fault, place, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(x)) call need(fault, place, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, place, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_beam_get_section(self%handle, n, eta, strain, force, x, q), self%session, stat, errmsg)
+  end subroutine member_get_section
 
   subroutine member_get_energy(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self

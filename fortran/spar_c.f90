@@ -347,6 +347,15 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_get_reaction
 
+    function spar_beam_get_section(beam, n, eta, strain, force, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*)
+      real(c_double), intent(inout), optional :: strain(*), force(*), x(*), q(*)
+      integer(c_int) :: status
+    end function spar_beam_get_section
+
     function spar_member_get_energy(member, energy) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member

@@ -318,6 +318,16 @@ SPAR_API int spar_beam_set_line_load(spar_member *beam, int64_t n, const double 
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 /* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */
 SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);
+/* Sections of a beam now. n: in; eta[n]: in, places in [0, 1], a joint belongs to the element before it. Out, NULL: not
+   wanted: strain[n][6] (stretch, shears, twist, curvatures beyond the reference) and force[n][6] (N, N m, what the part
+   beyond gives, damping included), both in section axes (x tangent, y, z), order axial, shear y, shear z, torsion,
+   bending y, bending z; x[n][3] place; q[n][4] orientation. force is the section's stiffness times its strain and
+   converges with the nodes as the strains do, one order behind the displacements; the reaction and the nodal balance
+   are exact to rounding. In static equilibrium under loads at element ends, with Gauss quadrature of P - 1 points in a
+   straight element, the forces (turned to global axes) at those points balance the loads to rounding too. Local.
+   SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
+SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
+                                   double *x, double *q);
 /* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
    since t = 0 (up to t^n). Members spar does not solve for give zeros. */
 SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);

@@ -56,6 +56,7 @@ program test_bindings
   call refused(spar_beam_set_line_load(none, 0_c_int64_t, kind=0_c_int), 'spar_beam_set_line_load')
   call refused(spar_member_get_loads(none), 'spar_member_get_loads')
   call refused(spar_member_get_reaction(none), 'spar_member_get_reaction')
+  call refused(spar_beam_get_section(none, 0_c_int64_t), 'spar_beam_get_section')
   call refused(spar_member_get_energy(none), 'spar_member_get_energy')
   call refused(spar_member_solve_static(none, 0_c_int), 'spar_member_solve_static')
   call refused(spar_member_get_modes(none, 0_c_int64_t), 'spar_member_get_modes')

@@ -1,0 +1,185 @@
+/* What a section of a beam feels: strains and section forces anywhere along the line, from the element's own field, as
+   the quadrature points take them (body.c). */
+#include "../math/rotation.h"
+#include "../session/session.h"
+#include "beam.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The field at a place: u' and its rate, Q/|Q| and the derivatives of Q over |Q| along the line (p), in time (d), both
+   (z). */
+typedef struct section_field {
+    double u[3], du[3], dud[3], N, r[4], p[4], d[4], z[4];
+} section_field;
+
+static void imaginary(const double a[4], const double b[4], double c[3]) { /* 2 Im(a* b) */
+    double conj[4], m[4];
+    spari_quat_conj(a, conj);
+    spari_quat_mul(conj, b, m);
+    for (int i = 0; i < 3; i++) {
+        c[i] = 2 * m[1 + i];
+    }
+}
+
+static void field_at(const spar_member *m, const spari_station *s, section_field *f) {
+    int P = m->per_element;
+    const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
+    double last[4] = {0}, Q[4] = {0};
+    memset(f, 0, sizeof *f);
+    for (int l = 0; l < P; l++) {
+        double ql[4], qd[4], half[4] = {0}, sign = spari_quat_dot(q + 7 * l + 3, last) < 0 ? -1 : 1;
+        for (int i = 0; i < 4; i++) {
+            ql[i] = last[i] = sign * q[7 * l + 3 + i];
+        }
+        for (int i = 0; i < 3; i++) {
+            half[1 + i] = 0.5 * v[6 * l + 3 + i];
+            f->u[i] += s->phi[l] * q[7 * l + i];
+            f->du[i] += s->dphi[l] * q[7 * l + i];
+            f->dud[i] += s->dphi[l] * v[6 * l + i];
+        }
+        spari_quat_mul(half, ql, qd);
+        for (int i = 0; i < 4; i++) {
+            Q[i] += s->phi[l] * ql[i];
+            f->p[i] += s->dphi[l] * ql[i];
+            f->d[i] += s->phi[l] * qd[i];
+            f->z[i] += s->dphi[l] * qd[i];
+        }
+    }
+    f->N = sqrt(spari_quat_dot(Q, Q));
+    for (int i = 0; i < 4; i++) {
+        f->r[i] = Q[i] / f->N;
+        f->p[i] /= f->N;
+        f->d[i] /= f->N;
+        f->z[i] /= f->N;
+    }
+}
+
+/* Strains e and their rates ed, reference axes: (R^T (x0' + u') - x0', 2 Im(Q* Q')/|Q|^2) */
+static void strains(const spari_station *s, const section_field *f, double e[6], double ed[6]) {
+    double t[3], T[3], omega[3], turn[3], rate[3], a[3], b[3], along = spari_quat_dot(f->r, f->d);
+    for (int i = 0; i < 3; i++) {
+        t[i] = s->t[i] + f->du[i];
+    }
+    spari_rotate_back(f->r, t, T);
+    imaginary(f->r, f->p, e + 3);
+    imaginary(f->r, f->d, omega);
+    imaginary(f->d, f->p, a);
+    imaginary(f->r, f->z, b);
+    spari_rotate_back(f->r, f->dud, rate);
+    spari_cross(T, omega, turn);
+    for (int i = 0; i < 3; i++) {
+        e[i] = T[i] - s->t[i];
+        ed[i] = rate[i] + turn[i];
+        ed[3 + i] = a[i] + b[i] - 2 * e[3 + i] * along;
+    }
+}
+
+/* The same of a member that is linear about its reference: (u' - theta x x0', theta'). */
+static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
+    int P = m->per_element;
+    const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
+    double theta[3] = {0}, omega[3] = {0}, c[3];
+    memset(e, 0, 6 * sizeof *e);
+    memset(ed, 0, 6 * sizeof *ed);
+    for (int l = 0; l < P; l++) {
+        double psi[3];
+        spari_quat_log(q + 7 * l + 3, psi);
+        for (int i = 0; i < 3; i++) {
+            e[i] += s->dphi[l] * q[7 * l + i];
+            e[3 + i] += s->dphi[l] * psi[i];
+            theta[i] += s->phi[l] * psi[i];
+            ed[i] += s->dphi[l] * v[6 * l + i];
+            ed[3 + i] += s->dphi[l] * v[6 * l + 3 + i];
+            omega[i] += s->phi[l] * v[6 * l + 3 + i];
+        }
+    }
+    spari_cross(theta, s->t, c);
+    for (int i = 0; i < 3; i++) {
+        e[i] -= c[i];
+    }
+    spari_cross(omega, s->t, c);
+    for (int i = 0; i < 3; i++) {
+        ed[i] -= c[i];
+    }
+}
+
+/* Into the section's axes: R^T of both triples. */
+static void to_local(const double R[9], const double x[6], double y[6]) {
+    for (int b = 0; b < 6; b += 3) {
+        for (int i = 0; i < 3; i++) {
+            y[b + i] = R[i] * x[b] + R[3 + i] * x[b + 1] + R[6 + i] * x[b + 2];
+        }
+    }
+}
+
+static void section_output(const spar_member *m, const spari_station *s, double eta, double *strain, double *force,
+                           double *x, double *q) {
+    section_field f;
+    double e[6], ed[6], local[6], rate[6], C[36], q0[4];
+    field_at(m, s, &f);
+    if (m->effects & SPAR_EFFECT_LARGE_ROTATION) {
+        strains(s, &f, e, ed);
+    } else {
+        linear_strains(m, s, e, ed);
+    }
+    to_local(s->R, e, local);
+    to_local(s->R, ed, rate);
+    if (strain) {
+        memcpy(strain, local, sizeof local);
+    }
+    if (force) {
+        int damped = m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
+        const double *mu = m->beam->mu;
+        spari_beam_section_at(m->beam, m->beam->stiffness, eta, C);
+        for (int i = 0; i < 6; i++) {
+            force[i] = 0;
+            for (int j = 0; j < 6; j++) {
+                force[i] += C[6 * i + j] * (local[j] + (damped ? sqrt(mu[i] * mu[j]) * rate[j] : 0));
+            }
+        }
+    }
+    for (int i = 0; i < 3 && x; i++) {
+        x[i] = s->x[i] + f.u[i];
+    }
+    if (q) {
+        spari_matrix_quat(s->R, q0);
+        spari_quat_mul(f.r, q0, q);
+        spari_quat_normalise(q);
+    }
+}
+
+int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
+                          double *x, double *q) {
+    const char *call = "spar_beam_get_section";
+    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    spar_session *session = beam->session;
+    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,
+                  beam->name);
+    SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is not committed; call spar_member_commit first", call, beam->name);
+    SPARI_REQUIRE(session, n >= 0 && (eta || n == 0), SPAR_ERR_ARGUMENT, "%s: '%s': %s", call, beam->name,
+                  n < 0 ? "n is negative" : "eta is NULL");
+    SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s' has no sections, its forces are not known", call, beam->name);
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, beam->name, (long long)i, eta[i]);
+    }
+    spari_station *s = spari_zalloc(n, sizeof *s);
+    SPARI_REQUIRE(session, s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, beam->name);
+    int E = beam->elements;
+    for (int64_t i = 0; i < n; i++) { /* a joint belongs to the element before it */
+        int e = (int)ceil(eta[i] * E - 1e-9) - 1;
+        e = e < 0 ? 0 : e > E - 1 ? E - 1 : e;
+        s[i].element = e;
+        s[i].xi = fmin(fmax(2 * (eta[i] * E - e) - 1, -1), 1);
+    }
+    int status = spari_beam_stations(beam, n, s);
+    for (int64_t i = 0; i < n && status == SPAR_OK; i++) {
+        section_output(beam, s + i, eta[i], strain ? strain + 6 * i : NULL, force ? force + 6 * i : NULL,
+                       x ? x + 3 * i : NULL, q ? q + 4 * i : NULL);
+    }
+    free(s);
+    return status;
+}
