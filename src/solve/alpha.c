@@ -55,10 +55,13 @@ static void place_node(const scheme *c, const spari_state *from, spari_state *to
     }
 }
 
+/* What stays over the step in the starting values of Newton. */
+typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
+
 /* Starting values of Newton. Smooth motion: the acceleration stays; in the frame of a root that turns, that is the
    acceleration that turns with it. Where stiff parts ring, their acceleration says nothing of the next: the velocity
-   stays. */
-static void predict(const spar_member *member, const scheme *c, const double turn[4], int smooth,
+   stays. Where the step is longer than the motion lasts: the place stays. */
+static void predict(const spar_member *member, const scheme *c, const double turn[4], guess stays,
                     const spari_state *from, spari_state *to, double *x) {
     int n = member->solver->n;
     double h = c->h;
@@ -68,10 +71,10 @@ static void predict(const spar_member *member, const scheme *c, const double tur
         }
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             double b = from->b[k], a = from->a[k];
-            if (smooth) {
+            if (stays == ACCELERATION) {
                 to->b[k] = ((1 - c->alpha_f) * to->a[k] + c->alpha_f * a - c->alpha_m * b) / (1 - c->alpha_m);
-            } else { /* the b that makes x = h v, and the a that goes with it */
-                to->b[k] = (1 - 0.5 / c->beta) * b;
+            } else { /* the b that makes x = h v or 0, and the a that goes with it */
+                to->b[k] = (1 - 0.5 / c->beta) * b - (stays == PLACE ? from->v[k] / (h * c->beta) : 0);
                 to->a[k] = ((1 - c->alpha_m) * to->b[k] + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
             }
             x[k] = c->still ? 0 : h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
@@ -297,9 +300,13 @@ static int newton(spar_member *member, const scheme *c, const double *root, cons
                   const spari_state *from, spari_state *to, double *x) {
     const char *wrong = NULL;
     int iterations = 0;
-    for (effort how = member->solver->factored ? KEPT : FRESH; how <= FULL; how++) {
-        predict(member, c, turn, how != FULL, from, to, x);
-        wrong = attempt(member, c, root, how, from, to, x, &iterations);
+    static const struct {
+        effort how;
+        guess stays;
+    } attempts[] = {{KEPT, ACCELERATION}, {FRESH, ACCELERATION}, {FULL, VELOCITY}, {FULL, PLACE}};
+    for (size_t k = member->solver->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
+        predict(member, c, turn, attempts[k].stays, from, to, x);
+        wrong = attempt(member, c, root, attempts[k].how, from, to, x, &iterations);
         if (!wrong) {
             return SPAR_OK;
         }
