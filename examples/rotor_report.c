@@ -143,7 +143,12 @@ static void spread(int64_t n, const double *span, const double *f, double *densi
 /* ---- the table ---- */
 
 static void print_row(FILE *file, const char *name, const char *unit, double scale, const double s[3]) {
-    fprintf(file, "  %-24s %-6s %12.4f %12.4f %12.4f\n", name, unit, s[0] * scale, s[1] * scale, s[2] * scale);
+    fprintf(file, "  %-24s %-6s", name, unit);
+    for (int i = 0; i < 3; i++) { /* no zero with a sign */
+        double x = s[i] * scale;
+        fprintf(file, " %12.4f", fabs(x) < 5e-5 ? 0 : x);
+    }
+    fputc('\n', file);
 }
 
 static void print_scene(const rotor_report *r, FILE *file) {
@@ -219,7 +224,7 @@ static void print_figures(const rotor_report *r, FILE *file) {
         most = fmax(most, f.lumped[i]);
     }
     if (f.axial > 0) {
-        fprintf(file, "  %-31s %12.4f %12.4f %11.3f%%\n", "span load, kN: worst, most", worst * 1e-3, most * 1e-3,
+        fprintf(file, "  axial load of the sections: off by %.4f kN at most, %.3f%% of the largest\n", worst * 1e-3,
                 100 * worst / most);
     }
 }
