@@ -388,6 +388,7 @@ contains
     character(300) :: errmsg
     integer :: i
 
+    inflow = 0
     call session%create()
     call beam%create_beam(session, 'beam', 1, 3)
     stiffness = 0
