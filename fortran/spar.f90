@@ -405,10 +405,11 @@ contains
   ! The library's messages go to log from now on; without log it is silent, as at first. Unlike the other calls this one keeps
   ! what it is given: log must be a module procedure or an external one, and context must live as long as the session, or until
   ! the next set_log.
+  ! No intent for context: gfortran takes intent(in) as leave to keep the target's old values in registers.
   subroutine session_set_log(self, log, context, stat, errmsg)
     class(spar_session), intent(inout) :: self
     procedure(spar_log), optional :: log
-    class(*), pointer, intent(in), optional :: context
+    class(*), pointer, optional :: context
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(log_record), pointer :: record
