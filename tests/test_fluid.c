@@ -246,6 +246,122 @@ static void bodies_carry_their_nodes(void **state) {
     }
 }
 
+/* All of a section's motion from one call: the same bits as from the others; alpha of the consistent kind is the
+   derivative of omega (checked with the kernels). Matrices: columns, or rows, are the turned axes. */
+static void poses_and_matrices(void **state) {
+    (void)state;
+    enum { N = 5 };
+    const double xi[N] = {-1, -0.4, 0, 0.6, 1}, offset[N][3] = {{0, 0.1, 0}, {0, 0.2, 0.1}};
+    double x[2][N][3], q[2][N][4], v[2][N][3], omega[2][N][3], accel[2][N][3], alpha[N][3], m[N][9], t[N][9], axis[3];
+    rig r;
+    rig_start(&r, 0);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "sections", &f));
+    OK(spar_fluid_set_sections(f, N, xi, offset[0]));
+    OK(spar_fluid_map(f));
+    bend(&r, 0.8);
+    OK(spar_fluid_pull_poses(f, 1, x[0][0], q[0][0], v[0][0], omega[0][0], accel[0][0], alpha[0]));
+    OK(spar_fluid_pull_motion(f, 1, x[1][0], v[1][0]));
+    OK(spar_fluid_pull_sections(f, 1, q[1][0], omega[1][0], accel[1][0]));
+    assert_memory_equal(x[0], x[1], sizeof x[0]);
+    assert_memory_equal(q[0], q[1], sizeof q[0]);
+    assert_memory_equal(v[0], v[1], sizeof v[0]);
+    assert_memory_equal(omega[0], omega[1], sizeof omega[0]);
+    assert_memory_equal(accel[0], accel[1], sizeof accel[0]);
+    for (int i = 0; i < 3; i++) {
+        CLOSE(alpha[0][i], r.a[0][3 + i], 1e-14); /* at the root node */
+    }
+    OK(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]));
+    OK(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_GLOBAL_TO_LOCAL, t[0]));
+    for (int j = 0; j < N; j++) {
+        for (int k = 0; k < 3; k++) {
+            double unit[3] = {k == 0, k == 1, k == 2};
+            spari_rotate(q[0][j], unit, axis);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(m[j][3 * i + k], axis[i], 1e-15);
+                CLOSE(t[j][3 * k + i], axis[i], 1e-15);
+            }
+        }
+    }
+    /* the self-test tells what is wrong */
+    OK(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]));
+    OK(spar_fluid_check_matrices(f, SPAR_MATRIX_GLOBAL_TO_LOCAL, t[0]));
+    assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, t[0]), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "node 0") && says(&r, "transposed"));
+    for (int i = 0; i < 3; i++) {
+        m[3][3 * i] *= -1;
+    }
+    assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "node 3") && says(&r, "determinant -1"));
+    OK(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]));
+    memcpy(m[1], m[4], sizeof m[1]);
+    assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "node 1") && says(&r, "not this section's"));
+    m[1][4] = NAN;
+    assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "is not a number"));
+    assert_int_equal(spar_fluid_pull_matrices(f, 1, 2, m[0]), SPAR_ERR_ARGUMENT);
+    rig_end(&r);
+}
+
+/* Single precision at the edge: what comes out is the double rounded; what goes in gives the load of the same numbers
+ * in double. */
+static void single_precision_at_the_edge(void **state) {
+    (void)state;
+    enum { N = 21 };
+    rig r;
+    unsigned long long seed = 6;
+    double node[N][3], x[N][3], v[N][3], q[N][4], omega[N][3], accel[N][3], force[N][3], load[2][MOST][6], back[N][3];
+    float xs[N][3], vs[N][3], qs[N][4], omegas[N][3], accels[N][3], forces[N][3], backs[N][3];
+    rig_start(&r, SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_FLUID_MOMENT);
+    scatter(node, N, &seed);
+    spar_fluid *f;
+    OK(spar_fluid_create(r.member, "surface", &f));
+    OK(spar_fluid_set_motion_nodes(f, N, node[0]));
+    OK(spar_fluid_set_force_nodes(f, N, node[0]));
+    OK(spar_fluid_map(f));
+    bend(&r, 0.5);
+    OK(spar_fluid_pull_motion(f, 1, x[0], v[0]));
+    OK(spar_fluid_pull_motion_f32(f, 1, xs[0], vs[0]));
+    OK(spar_fluid_pull_sections(f, 1, q[0], omega[0], accel[0]));
+    OK(spar_fluid_pull_sections_f32(f, 1, qs[0], omegas[0], accels[0]));
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 4; i++) {
+            assert_true(qs[j][i] == (float)q[j][i]);
+        }
+        for (int i = 0; i < 3; i++) {
+            assert_true(xs[j][i] == (float)x[j][i] && vs[j][i] == (float)v[j][i]);
+            assert_true(omegas[j][i] == (float)omega[j][i] && accels[j][i] == (float)accel[j][i]);
+            forces[j][i] = (float)line_random(&seed);
+            force[j][i] = forces[j][i];
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        OK(k ? spar_fluid_push_forces(f, force[0], force[0]) : spar_fluid_push_forces_f32(f, forces[0], forces[0]));
+        OK(spar_step_begin(r.session, 0.1));
+        OK(spar_member_get_loads(r.member, load[k][0]));
+        OK(spar_fluid_pull_forces(f, 1, back[0]));
+        OK(spar_fluid_pull_forces_f32(f, 1, backs[0]));
+        assert_memory_equal(back, force, sizeof back);
+        assert_memory_equal(backs, forces, sizeof backs);
+        if (k == 0) { /* again from the start, as nothing has been accepted */
+            OK(spar_step_solve(r.session));
+            OK(spar_step_reject(r.session));
+            rig_end(&r);
+            rig_start(&r, SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_FLUID_MOMENT);
+            OK(spar_fluid_create(r.member, "surface", &f));
+            OK(spar_fluid_set_force_nodes(f, N, node[0]));
+            OK(spar_fluid_map(f));
+            bend(&r, 0.5);
+        }
+    }
+    assert_memory_equal(load[0], load[1], sizeof(double) * 6 * 16);
+    forces[2][1] = NAN;
+    assert_int_equal(spar_fluid_push_forces_f32(f, forces[0], NULL), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "force of node 2, component 1"));
+    rig_end(&r);
+}
+
 /* ---- time ---- */
 
 /* The spec's average at theta, the ends exactly; on the group a quarter turn about z halves to an eighth turn. */
@@ -461,6 +577,11 @@ static void far_nodes_are_flagged_or_refused(void **state) {
     assert_int_equal(flags[0], 0);
     assert_int_equal(flags[1], SPAR_MAP_FAR);
     assert_int_equal(flags[2], SPAR_MAP_FAR | SPAR_MAP_END);
+    int64_t count;
+    OK(spar_fluid_get_flag_count(f, SPAR_NODES_MOTION, SPAR_MAP_FAR, &count));
+    assert_int_equal(count, 2);
+    OK(spar_fluid_get_flag_count(f, SPAR_NODES_MOTION, SPAR_MAP_END, &count));
+    assert_int_equal(count, 1);
     OK(spar_session_set_option(r.session, "fluid.far", "refuse"));
     OK(spar_fluid_set_motion_nodes(f, 3, node[0]));
     assert_int_equal(spar_fluid_map(f), SPAR_ERR_MAPPING);
@@ -557,6 +678,8 @@ int main(void) {
         cmocka_unit_test(map_hangs_together),
         cmocka_unit_test(sections_stand_where_asked),
         cmocka_unit_test(bodies_carry_their_nodes),
+        cmocka_unit_test(poses_and_matrices),
+        cmocka_unit_test(single_precision_at_the_edge),
         cmocka_unit_test(theta_lies_between_the_times),
         cmocka_unit_test(group_interpolation_keeps_the_radius),
         cmocka_unit_test(node_forces_are_kept_and_predicted),

@@ -104,7 +104,9 @@ static double check(const char *name, problem *p, double e) {
         double allowed = reach(p, p->z[k], multiplicity(p, p->z[k]), e) + 4 * DBL_EPSILON * (double)cabsl(p->z[k]);
         worst = fmax(worst, (double)least / allowed);
     }
-    { print_message("%s: worst zero at %.2g of what its condition allows\n", name, worst); }
+    if (worst > 1) {
+        print_message("%s: worst zero at %.2g of what its condition allows\n", name, worst);
+    }
     return worst;
 }
 

@@ -329,8 +329,8 @@ static void signs_do_not_matter(void **unused) {
             for (int k = 0; k < 3; k++) {
                 collect(&s, consistent, SPARI_UPTO_ACCEL, row[k], x[turn > 0][k]);
             }
-            spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], s.force[0], s.moment[0], work,
-                               load[turn > 0][0], NULL);
+            spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], (spari_source){.d = s.force[0]},
+                               (spari_source){.d = s.moment[0]}, work, load[turn > 0][0], NULL);
             if (turn > 0) {
                 assert_memory_equal(x[0], x[1], sizeof x[0]);
                 assert_memory_equal(load[0], load[1], sizeof(double) * 6 * 18);
@@ -476,8 +476,8 @@ static void loads_are_the_formula(void **unused) {
                 loads_by_formula(&s, consistent, has_moment, want);
                 for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
                     s.set->lanes = widths[w];
-                    spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], s.force[0],
-                                       has_moment ? s.moment[0] : NULL, work, got[0], NULL);
+                    spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], (spari_source){.d = s.force[0]},
+                                       (spari_source){.d = has_moment ? s.moment[0] : NULL}, work, got[0], NULL);
                     expect(got[0], want[0], 6 * elements * nodes, 1e-13 * (1 + n) * 10);
                 }
             }
@@ -501,8 +501,8 @@ static void force_moment_and_power_are_kept(void **unused) {
             set_motion(&s, 0.1 * kind, 0.2 * kind); /* bent by up to 2.4 rad */
             fill(&s, consistent, SPARI_UPTO_RATE);
             spari_audit audit;
-            spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], s.force[0], s.moment[0], work, load[0],
-                               &audit);
+            spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], (spari_source){.d = s.force[0]},
+                               (spari_source){.d = s.moment[0]}, work, load[0], &audit);
             double in[7] = {0}, out[7] = {0}, size[3] = {0}, t[3];
             for (int64_t j = 0; j < n; j++) {
                 state o;

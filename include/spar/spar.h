@@ -355,7 +355,7 @@ enum {
 enum { SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1 };
 /* Flags of a mapped node. */
 enum {
-    SPAR_MAP_END = 1,       /* its foot is an end of the line */
+    SPAR_MAP_END = 1,       /* it lies beyond an end of the line, which is its foot */
     SPAR_MAP_AMBIGUOUS = 2, /* two places are equally near: smallest xi taken */
     SPAR_MAP_FAR = 4        /* farther than max_distance */
 };
@@ -380,11 +380,16 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
 /* kind: in, SPAR_INTERPOLATE_*, default nodal. */
 SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind);
-/* Finds the foot of every node on the reference line (the spec's map). The member must be committed. A joint belongs
-   to the lower element. SPAR_ERR_MAPPING: see fluid.far; the earlier map stays. */
+/* Finds the foot of every node on the reference line (the spec's map): the nearest place of all, of equally near ones
+   the first along the line. The member must be committed; the feet of a point or rigid body are its node. A joint
+   belongs to the lower element. To be called after nodes are set or replaced; sets that were not replaced are mapped
+   again where they were. A map is not saved with a session: it is found again, a million nodes in half a second.
+   SPAR_ERR_MAPPING: see fluid.far; the nodes then stay unmapped. */
 SPAR_API int spar_fluid_map(spar_fluid *fluid);
 /* which: in, SPAR_NODES_*; n: out, its nodes on this rank. */
 SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);
+/* flag: in, one SPAR_MAP_*; n: out, how many mapped nodes of the set bear it. */
+SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
 /* xi[n]: out, of the foot, over the whole beam; distance[n]: out, m; flags[n]: out, SPAR_MAP_* or-ed. NULL: not
    wanted. */
 SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags);
@@ -401,6 +406,22 @@ SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, 
 /* At the same nodes and time. q[n][4]: out, orientation of the section now, scalar part >= 0; omega[n][3]: out,
    rad/s; accel[n][3]: out, acceleration of the node, m/s^2. NULL: not wanted. */
 SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
+/* All of a section's motion at once, for blade element hosts, at the motion nodes: x[n][3], m; q[n][4] as above;
+   v[n][3], m/s; omega[n][3], rad/s; accel[n][3], m/s^2; alpha[n][3], rad/s^2; all out, NULL: not wanted. */
+SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
+                                   double *accel, double *alpha);
+/* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
+   m(column, row, n), that is the transpose. */
+enum {
+    SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, /* times local components gives global ones: columns are the section's axes */
+    SPAR_MATRIX_GLOBAL_TO_LOCAL = 1  /* its transpose: rows are the section's axes (OpenFAST's) */
+};
+/* convention: in, SPAR_MATRIX_*; matrix[n][9]: out. */
+SPAR_API int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix);
+/* Self-test for a host that keeps matrices of its own: matrix[n][9]: in, what it holds for the motion nodes at t^{n+1}.
+   SPAR_ERR_ARGUMENT if one is not what pull_matrices gives (to 1e-5); the message tells a transposed matrix, one with
+   determinant -1, one that is no rotation, and one that is another rotation apart. Allocates; not for every step. */
+SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix);
 /* The fluid's own node forces at t^n + theta dt, for an actuator line: pushed at t^n; at t^{n+1} pushed, or predicted
    as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: asked for
    the first time after a push without SPAR_EFFECT_FLUID_HISTORY. */
@@ -410,6 +431,11 @@ SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *for
    refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
    follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
+/* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
+SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
+SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);
+SPAR_API int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force);
+SPAR_API int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment);
 /* Of the last push. audit[8]: out, |force| N, |moment| about the origin N m and power W that came in from the nodes;
    their errors after the transfer, relative to the sum of their parts' sizes; largest |x| of a node, m; n. */
 SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]);

@@ -287,15 +287,22 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
 }
 
 /* Triples of the host's [n][3] as rows in storage order, and back. */
-static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, const double *x,
+static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
                        double (*f)[SPARI_ROW]) {
-    if (!s->place) {
-        kernel->load(x + 3 * first, count, f);
+    if (x.d && !s->place) {
+        kernel->load(x.d + 3 * first, count, f);
         return;
     }
     for (int i = 0; i < count; i++) {
+        int64_t node = spari_nodes_node(s, first + i);
         double t[3];
-        memcpy(t, x + 3 * (first + s->place[first + i]), sizeof t); /* the host's array may lie anywhere */
+        if (x.d) {
+            memcpy(t, x.d + 3 * node, sizeof t); /* the host's array may lie anywhere */
+        } else {
+            float single[3];
+            memcpy(single, x.f + 3 * node, sizeof single);
+            t[0] = single[0], t[1] = single[1], t[2] = single[2];
+        }
         f[0][i] = t[0], f[1][i] = t[1], f[2][i] = t[2];
     }
 }
@@ -309,6 +316,14 @@ void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_R
     for (int i = 0; i < count; i++) {
         double t[3] = {row[0][i], row[1][i], row[2][i]};
         memcpy(x + 3 * (first + s->place[first + i]), t, sizeof t);
+    }
+}
+
+void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
+    int count = spari_tile_count(s, first);
+    for (int i = 0; i < count; i++) {
+        float t[3] = {(float)row[0][i], (float)row[1][i], (float)row[2][i]};
+        memcpy(x + 3 * spari_nodes_node(s, first + i), t, sizeof t);
     }
 }
 
@@ -354,15 +369,16 @@ static void finish_audit(const double sums[18], const double tops[3], spari_audi
 }
 
 double spari_gather_loads(const spari_nodes *s, const double *modal, const double *c, int consistent, const double *q,
-                          const double *force, const double *moment, double *work, double *load, spari_audit *audit) {
+                          spari_source force, spari_source moment, double *work, double *load, spari_audit *audit) {
     const kernels kernel = choose_kernels(s);
     double f[6][SPARI_ROW], sums[18] = {0}, tops[3] = {0}, least = HUGE_VAL;
     ptrdiff_t nodes = (ptrdiff_t)s->elements * s->per_element;
+    const int has_moment = moment.d || moment.f;
     memset(work, 0, sizeof *work * (size_t)nodes * 14);
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
         int count = spari_tile_count(s, first);
         fetch_rows(&kernel, s, first, count, force, f);
-        if (moment) {
+        if (has_moment) {
             fetch_rows(&kernel, s, first, count, moment, f + 3);
         }
         for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
@@ -371,7 +387,7 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
         for (int at = 0; at < count;) {
             int run = run_length(s, first + at, count - at);
             ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-            double d = kernel.loads(s, first + at, run, c + node * SPARI_FIELDS, consistent, moment != NULL, f, at,
+            double d = kernel.loads(s, first + at, run, c + node * SPARI_FIELDS, consistent, has_moment, f, at,
                                     audit != NULL, work + node * 14, sums, tops);
             least = d < least ? d : least;
             at += run;

@@ -49,6 +49,12 @@ enum {
     SPARI_ROWS = 19
 };
 
+/* Triples of the host, [n][3]: one of the two, or neither. */
+typedef struct spari_source {
+    const double *d;
+    const float *f;
+} spari_source;
+
 /* Sums the loads leave behind for the audit: fluid-side totals. */
 typedef struct spari_audit {
     double force[3], moment[3], power; /* moment about the origin, in the current configuration */
@@ -92,11 +98,12 @@ double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *
 
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
 void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
+void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], float *x);
 
-/* Loads: force, moment (NULL: none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
+/* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
    quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */
 double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,
-                          const double *q, const double *force, const double *moment, double *work, double *load,
+                          const double *q, spari_source force, spari_source moment, double *work, double *load,
                           spari_audit *audit);
 
 #endif

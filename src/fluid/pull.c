@@ -1,0 +1,328 @@
+#include "../math/rotation.h"
+#include "state.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller) {
+    if (!(theta >= 0 && theta <= 1)) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", theta);
+    }
+    return SPAR_OK;
+}
+
+/* Node motion between the two times on the group R^3 x SO(3): the chord of places, the geodesic of rotations. */
+static void blend_motion(const spar_fluid *fluid, double theta) {
+    const spari_motion *now = &fluid->member->now, *after = &fluid->member->after;
+    for (int64_t l = 0; l < fluid->member->nodes; l++) {
+        const double *q0 = now->q + 7 * l, *q1 = after->q + 7 * l;
+        double *q = fluid->blend[0] + 7 * l, back[4], turn[4], psi[3];
+        for (int i = 0; i < 3; i++) {
+            q[i] = (1 - theta) * q0[i] + theta * q1[i];
+        }
+        spari_quat_conj(q0 + 3, back);
+        spari_quat_mul(back, q1 + 3, turn);
+        spari_quat_log(turn, psi);
+        for (int i = 0; i < 3; i++) {
+            psi[i] *= theta;
+        }
+        spari_quat_exp(psi, turn);
+        spari_quat_mul(q0 + 3, turn, q + 3);
+        spari_quat_normalise(q + 3);
+        for (int64_t i = 6 * l; i < 6 * l + 6; i++) {
+            fluid->blend[1][i] = (1 - theta) * now->v[i] + theta * after->v[i];
+            fluid->blend[2][i] = (1 - theta) * now->a[i] + theta * after->a[i];
+        }
+    }
+}
+
+/* Coefficients of the one or two states that make up time theta, and their shares. Returns their number. */
+static int fill_states(const spar_fluid *fluid, double theta, int upto, double share[2]) {
+    const spar_member *m = fluid->member;
+    spari_motion blended = {fluid->blend[0], fluid->blend[1], fluid->blend[2]};
+    const spari_motion *state[2] = {theta == 0 ? &m->now : &m->after, &m->now};
+    int n = theta > 0 && theta < 1 ? 2 : 1;
+    share[0] = n == 2 ? theta : 1, share[1] = 1 - theta;
+    if (n == 2 && m->session->theta_on_group) {
+        blend_motion(fluid, theta);
+        state[0] = &blended, share[0] = 1, n = 1;
+    }
+    for (int i = 0; i < n; i++) {
+        spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, state[i]->q,
+                         state[i]->v, state[i]->a, fluid->field[i]);
+    }
+    return n;
+}
+
+int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {
+    if (least < 1e-12) {
+        return spari_fluid_refuse(
+            fluid, SPAR_ERR_NUMERIC, caller,
+            "rotations within an element cancel each other, so that there is none to interpolate; use more "
+            "nodes or elements");
+    }
+    return SPAR_OK;
+}
+
+/* Where an answer goes: one of the two, or nowhere. */
+typedef struct sink {
+    double *d;
+    float *f;
+} sink;
+
+/* What a pull is asked for, all by node. */
+typedef struct wanted {
+    sink x, v, omega, accel, alpha; /* [n][3] */
+    sink q;                         /* [n][4] */
+    sink matrix;                    /* [n][9] */
+    int convention;                 /* of the matrices */
+} wanted;
+
+static int is_wanted(sink s) {
+    return s.d || s.f;
+}
+
+static int upto_of(const wanted *w) {
+    if (is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->accel) || is_wanted(w->alpha)) {
+        return SPARI_UPTO_ACCEL;
+    }
+    return is_wanted(w->v) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE;
+}
+
+/* The tiles of the one or two states that make up a time. */
+typedef struct states {
+    int n;
+    double share[2];
+    double (*buf[2])[SPARI_ROW];
+} states;
+
+/* Three rows of the tile to the host's triples; rows of two states become those of the time between them, in the
+ * first's place. */
+static void emit(const spari_nodes *s, int64_t first, const states *t, int row, sink out) {
+    if (!is_wanted(out)) {
+        return;
+    }
+    int count = spari_tile_count(s, first);
+    for (int k = row; k < row + 3 && t->n == 2; k++) {
+        for (int i = 0; i < count; i++) {
+            t->buf[0][k][i] = t->share[0] * t->buf[0][k][i] + t->share[1] * t->buf[1][k][i];
+        }
+    }
+    if (out.d) {
+        spari_tile_store(s, first, t->buf[0] + row, out.d);
+    } else {
+        spari_tile_store_f32(s, first, t->buf[0] + row, out.f);
+    }
+}
+
+static void put(sink out, int64_t node, int width, const double *x) {
+    if (out.d) {
+        memcpy(out.d + node * width, x, (size_t)width * sizeof *x);
+    }
+    for (int i = 0; i < width && out.f; i++) {
+        out.f[node * width + i] = (float)x[i];
+    }
+}
+
+/* Orientation of a section now, scalar part >= 0: the states' rotations, averaged where there are two, times the
+ * reference's. */
+static void orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t p, int i, const states *t,
+                        double now[4]) {
+    double q[2][4] = {{0}}, x[3], reference[4];
+    for (int k = 0; k < t->n; k++) {
+        for (int c = 0; c < 4; c++) {
+            q[k][c] = t->buf[k][SPARI_R_QUAT + c][i];
+        }
+        spari_quat_normalise(q[k]);
+    }
+    if (t->n == 2) {
+        double sign = spari_quat_dot(q[0], q[1]) < 0 ? -1 : 1;
+        for (int c = 0; c < 4; c++) {
+            q[0][c] = t->share[0] * q[0][c] + sign * t->share[1] * q[1][c];
+        }
+    }
+    spari_fluid_reference(fluid, spari_nodes_element(s, p), s->xi[p], x, reference);
+    spari_quat_mul(q[0], reference, now);
+    spari_quat_normalise(now);
+    double sign = now[0] < 0 ? -1 : 1;
+    for (int c = 0; c < 4; c++) {
+        now[c] *= sign;
+    }
+}
+
+/* The matrix of a convention, row by row: R(q) takes local components to global ones. */
+static void matrix_of(const double q[4], int convention, double m[9]) {
+    double r[9];
+    spari_quat_matrix(q, r);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            m[3 * i + k] = convention == SPAR_MATRIX_LOCAL_TO_GLOBAL ? r[3 * i + k] : r[3 * k + i];
+        }
+    }
+}
+
+static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int64_t first, const states *t,
+                              const wanted *w) {
+    int count = is_wanted(w->q) || is_wanted(w->matrix) ? spari_tile_count(s, first) : 0;
+    for (int i = 0; i < count; i++) {
+        double q[4], m[9];
+        int64_t node = spari_nodes_node(s, first + i);
+        orientation(fluid, s, first + i, i, t, q);
+        put(w->q, node, 4, q);
+        if (is_wanted(w->matrix)) {
+            matrix_of(q, w->convention, m);
+            put(w->matrix, node, 9, m);
+        }
+    }
+}
+
+/* All pulls: the nodes of one set at t^n + theta dt. */
+static int pull(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
+    double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], least = HUGE_VAL;
+    states t = {.buf = {a, b}};
+    const spari_nodes *s;
+    int upto = upto_of(w);
+    SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
+    SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &s));
+    if (!s || s->n == 0) {
+        return SPAR_OK;
+    }
+    t.n = fill_states(fluid, theta, upto, t.share);
+    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
+        for (int i = 0; i < t.n; i++) {
+            least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, upto, t.buf[i]));
+        }
+        emit(s, first, &t, SPARI_R_PLACE, w->x);
+        emit(s, first, &t, SPARI_R_RATE, w->v);
+        emit(s, first, &t, SPARI_R_OMEGA, w->omega);
+        emit(s, first, &t, SPARI_R_ACCEL, w->accel);
+        emit(s, first, &t, SPARI_R_ALPHA, w->alpha);
+        emit_orientations(fluid, s, first, &t, w);
+    }
+    return spari_fluid_check_rotation(fluid, least, caller);
+}
+
+int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.x.d = x, .v.d = v};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v) {
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.x.f = x, .v.f = v};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.q.d = q, .omega.d = omega, .accel.d = accel};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.q.f = q, .omega.f = omega, .accel.f = accel};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
+                          double *accel, double *alpha) {
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.x.d = x, .q.d = q, .v.d = v, .omega.d = omega, .accel.d = accel, .alpha.d = alpha};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
+    if (convention != SPAR_MATRIX_LOCAL_TO_GLOBAL && convention != SPAR_MATRIX_GLOBAL_TO_LOCAL) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "matrix convention %d is not known; SPAR_MATRIX_LOCAL_TO_GLOBAL or "
+                                  "SPAR_MATRIX_GLOBAL_TO_LOCAL",
+                                  convention);
+    }
+    return SPAR_OK;
+}
+
+int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(check_convention(fluid, convention, __func__));
+    wanted w = {.matrix.d = matrix, .convention = convention};
+    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+}
+
+/* Largest entry of a - b, b transposed on demand. */
+static double apart(const double a[9], const double b[9], int transposed) {
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            most = fmax(most, fabs(a[3 * i + k] - b[transposed ? 3 * k + i : 3 * i + k]));
+        }
+    }
+    return most;
+}
+
+static double determinant(const double m[9]) {
+    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
+
+/* What is wrong with a host's matrix `m` that should be `right`; NULL: nothing. */
+static const char *wrong_with(const double m[9], const double right[9]) {
+    const double tolerance = 1e-5; /* hosts may hold them in single precision */
+    double mirrored[9];
+    for (int i = 0; i < 9; i++) {
+        mirrored[i] = -m[i];
+    }
+    if (spari_first_nonfinite(m, 9) >= 0) {
+        return "is not a number";
+    }
+    if (apart(m, right, 0) <= tolerance) {
+        return NULL;
+    }
+    if (apart(m, right, 1) <= tolerance) {
+        return "is transposed: the other convention, or rows and columns swapped on the way from one language to "
+               "another";
+    }
+    if (determinant(m) < 0) {
+        return apart(mirrored, right, 0) <= tolerance || apart(mirrored, right, 1) <= tolerance
+                   ? "has determinant -1: all its axes are reversed"
+                   : "has determinant -1: an axis is reversed, or two are swapped";
+    }
+    return fabs(determinant(m) - 1) > tolerance ? "is not a rotation: its determinant is not 1"
+                                                : "is a rotation, but not this section's";
+}
+
+int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(check_convention(fluid, convention, __func__));
+    const spari_nodes *s;
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, __func__, &s));
+    int64_t n = s ? s->n : 0;
+    SPARI_FLUID_REQUIRE(fluid, n == 0 || matrix, SPAR_ERR_ARGUMENT, "the matrices are NULL");
+    double *right = spari_zalloc(9 * n, sizeof *right);
+    SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
+    wanted w = {.matrix.d = right, .convention = convention};
+    int status = pull(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
+    for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
+        const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
+        if (why) {
+            status =
+                spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, __func__, "the matrix of node %lld %s", (long long)j, why);
+        }
+    }
+    free(right);
+    return status;
+}
+
+int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q) {
+    wanted w = {.x.d = x, .v.d = v, .q.d = q};
+    return pull(fluid, which, 1, &w, "spar_fluid_write_vtk");
+}
+
+int spari_fluid_has_sections(const spar_fluid *fluid) {
+    return fluid->shared;
+}
+
+const double *spari_fluid_forces(const spar_fluid *fluid) {
+    return fluid->history->on ? fluid->history->after : NULL;
+}

@@ -1,0 +1,263 @@
+#include "../math/rotation.h"
+#include "state.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- loads in ---- */
+
+/* Node forces are kept from now on, if they can still be kept from the beginning. */
+static int start_history(spar_fluid *fluid, int64_t n, const char *caller) {
+    if (fluid->history->on) {
+        return SPAR_OK;
+    }
+    if (fluid->pushes > 0) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
+                                  "node forces were not kept; set SPAR_EFFECT_FLUID_HISTORY on the member before it is "
+                                  "committed, or call spar_fluid_pull_forces once before the first push");
+    }
+    if (spari_fluid_renew_history(fluid, n) != SPAR_OK) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the node forces");
+    }
+    return SPAR_OK;
+}
+
+static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, const char *caller) {
+    SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
+    const spari_nodes *s;
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
+    int64_t n = s ? s->n : 0;
+    if (n > 0 && !d && !f) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the place for the forces is NULL");
+    }
+    SPARI_TRY(start_history(fluid, n, caller));
+    const spari_history *h = fluid->history;
+    for (int64_t i = 0; i < 3 * n; i++) {
+        double x = (1 - theta) * h->past[0][i] + theta * h->after[i];
+        if (d) {
+            d[i] = x;
+        } else {
+            f[i] = (float)x;
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force) {
+    SPARI_FLUID_HANDLE(fluid);
+    return pull_forces(fluid, theta, force, NULL, __func__);
+}
+
+int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
+    SPARI_FLUID_HANDLE(fluid);
+    return pull_forces(fluid, theta, NULL, force, __func__);
+}
+
+static void keep_forces(spari_history *h, spari_source force, int before_start) {
+    if (!h->on || h->n == 0) {
+        return;
+    }
+    for (int64_t i = 0; i < 3 * h->n; i++) {
+        h->after[i] = force.d ? force.d[i] : (double)force.f[i];
+    }
+    if (before_start) {
+        memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
+    }
+    h->pushed = 1;
+}
+
+/* What came out of the map, against what went in (spar.h says what the numbers are). */
+static void write_audit(spar_fluid *fluid, const spari_audit *in, int64_t n) {
+    const spar_member *m = fluid->member;
+    double force[3] = {0}, moment[3] = {0}, power = 0, t[3], d[3];
+    for (int64_t l = 0; l < m->nodes; l++) {
+        const double *load = fluid->load + 6 * l, *q = m->after.q + 7 * l, *v = m->after.v + 6 * l;
+        double x[3] = {m->xr[3 * l] + q[0], m->xr[3 * l + 1] + q[1], m->xr[3 * l + 2] + q[2]};
+        spari_cross(x, load, t);
+        for (int i = 0; i < 3; i++) {
+            force[i] += load[i];
+            moment[i] += t[i] + load[3 + i];
+            power += load[i] * v[i] + load[3 + i] * v[3 + i];
+        }
+    }
+    double force_scale = in->force_sum, moment_scale = in->force_sum * in->x_max + in->moment_sum;
+    double power_scale = in->force_sum * in->v_max + in->moment_sum * in->omega_max;
+    double *a = fluid->audit;
+    a[0] = spari_norm(in->force), a[1] = spari_norm(in->moment), a[2] = in->power;
+    for (int i = 0; i < 3; i++) {
+        d[i] = force[i] - in->force[i], t[i] = moment[i] - in->moment[i];
+    }
+    a[3] = force_scale > 0 ? spari_norm(d) / force_scale : 0;
+    a[4] = moment_scale > 0 ? spari_norm(t) / moment_scale : 0;
+    a[5] = power_scale > 0 ? fabs(power - in->power) / power_scale : 0;
+    a[6] = in->x_max, a[7] = (double)n;
+}
+
+/* Names the first number of the host's that is none. */
+static int check_source(const spar_fluid *fluid, const char *caller, const char *what, spari_source x, int64_t n) {
+    for (int64_t i = 0; i < 3 * n && x.f; i++) {
+        double value = x.f[i];
+        if (!isfinite(value)) {
+            return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                      "%s %lld, component %d, is %g; give finite numbers", what, (long long)(i / 3),
+                                      (int)(i % 3), value);
+        }
+    }
+    return x.d ? spari_fluid_check_values(fluid, caller, what, x.d, n, 3) : SPAR_OK;
+}
+
+/* The load of the nodes in load_new; SPAR_OK if it can be used. */
+static int gather(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, spari_audit *audit,
+                  const char *caller) {
+    const spar_member *m = fluid->member;
+    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
+                     audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
+                     fluid->field[0]);
+    double least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,
+                                      fluid->work, fluid->load_new, audit);
+    if (spari_first_nonfinite(fluid->load_new, 6 * m->nodes) >= 0) { /* only now look where it came from */
+        SPARI_TRY(check_source(fluid, caller, "force of node", force, s->n));
+        SPARI_TRY(check_source(fluid, caller, "moment of node", moment, s->n));
+        SPARI_TRY(spari_fluid_check_rotation(fluid, least, caller));
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "the loads are too large for a double; check their unit");
+    }
+    return spari_fluid_check_rotation(fluid, least, caller);
+}
+
+static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, const char *caller) {
+    spari_audit audit = {0};
+    int audited = !fluid->member->session->audit_off;
+    if (s->n > 0 && !force.d && !force.f) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "the force array is NULL though there are %lld force nodes", (long long)s->n);
+    }
+    if (!(fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT)) {
+        moment = (spari_source){0};
+    }
+    SPARI_TRY(gather(fluid, s, force, moment, audited ? &audit : NULL, caller));
+    double *old = fluid->load;
+    fluid->load = fluid->load_new, fluid->load_new = old;
+    if (audited) {
+        write_audit(fluid, &audit, s->n);
+    } else {
+        memset(fluid->audit, 0, sizeof fluid->audit);
+    }
+    return SPAR_OK;
+}
+
+static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
+    spar_session *session = fluid->member->session;
+    if (session->phase == SPARI_IDLE && session->started) {
+        return spari_fluid_refuse(
+            fluid, SPAR_ERR_STATE, caller,
+            "no step is under way; loads are pushed between spar_step_begin and spar_step_accept, or "
+            "before the first step");
+    }
+    const spari_nodes *s;
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
+    if (!s) {
+        return SPAR_OK;
+    }
+    fluid->refused = push(fluid, s, force, moment, caller);
+    session->refused = fluid->refused;
+    if (fluid->refused != SPAR_OK) {
+        return fluid->refused;
+    }
+    for (const spar_fluid *f = session->fluids; f && session->refused == SPAR_OK; f = f->next) {
+        session->refused = f->refused; /* a good push mends its own fluid's, not another's */
+    }
+    fluid->pushes++;
+    int before_start = session->phase == SPARI_IDLE;
+    if (before_start) {
+        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
+    }
+    keep_forces(fluid->history, force, before_start);
+    return SPAR_OK;
+}
+
+int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment) {
+    SPARI_FLUID_HANDLE(fluid);
+    return push_forces(fluid, (spari_source){.d = force}, (spari_source){.d = moment}, __func__);
+}
+
+int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment) {
+    SPARI_FLUID_HANDLE(fluid);
+    return push_forces(fluid, (spari_source){.f = force}, (spari_source){.f = moment}, __func__);
+}
+
+int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_FLUID_REQUIRE(fluid, audit, SPAR_ERR_ARGUMENT, "the place for the audit is NULL");
+    memcpy(audit, fluid->audit, sizeof fluid->audit);
+    return SPAR_OK;
+}
+
+/* ---- what the session asks ---- */
+
+void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
+    for (int64_t i = 0; fluid->load && i < 6 * fluid->member->nodes; i++) {
+        load[i] += fluid->load[i];
+    }
+}
+
+/* Weights of the polynomial through t^n, t^{n-1}, t^{n-2} at t^{n+1} (Lagrange, steps of any length). */
+static void predictor(int order, double dt, const double dt_last[2], double w[3]) {
+    double a = dt_last[0], b = dt_last[0] + dt_last[1];
+    w[0] = 1, w[1] = w[2] = 0;
+    if (order == 1) {
+        w[1] = -dt / a;
+        w[0] = 1 - w[1];
+    } else if (order == 2) {
+        w[0] = (dt + a) * (dt + b) / (a * b);
+        w[1] = -dt * (dt + b) / (a * (b - a));
+        w[2] = dt * (dt + a) / (b * (b - a));
+    }
+}
+
+void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]) {
+    spari_history *h = fluid->history;
+    double w[3];
+    fluid->refused = SPAR_OK;
+    h->pushed = 0;
+    if (!h->on) {
+        return;
+    }
+    predictor(order, dt, dt_last, w);
+    for (int64_t i = 0; i < 3 * h->n; i++) {
+        h->after[i] = w[0] * h->past[0][i];
+        for (int k = 1; k <= order; k++) {
+            h->after[i] += w[k] * h->past[k][i];
+        }
+    }
+}
+
+void spari_fluid_accept(spar_fluid *fluid) {
+    spari_history *h = fluid->history;
+    fluid->refused = SPAR_OK;
+    if (fluid->load) {
+        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
+    }
+    if (!h->on || h->n == 0) {
+        return;
+    }
+    size_t size = sizeof *h->after * 3 * (size_t)h->n;
+    if (!h->pushed) { /* loads not given anew stay as they were */
+        memcpy(h->after, h->past[0], size);
+    }
+    double *oldest = h->past[2];
+    h->past[2] = h->past[1], h->past[1] = h->past[0], h->past[0] = oldest;
+    memcpy(h->past[0], h->after, size);
+}
+
+void spari_fluid_reject(spar_fluid *fluid) {
+    spari_history *h = fluid->history;
+    fluid->refused = SPAR_OK;
+    if (fluid->load) {
+        memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
+    }
+    if (h->on && h->n > 0) {
+        memcpy(h->after, h->past[0], sizeof *h->after * 3 * (size_t)h->n);
+    }
+    h->pushed = 0;
+}

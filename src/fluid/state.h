@@ -1,0 +1,81 @@
+/* What a fluid is made of, for the files of this room: fluid.c (life, nodes, map), pull.c (motion out), push.c (loads
+ * in). */
+#ifndef SPARI_FLUID_STATE_H
+#define SPARI_FLUID_STATE_H
+
+#include "../session/session.h"
+#include "fluid.h"
+#include "transfer.h"
+
+/* A set of nodes as the host gave it, until the map ties it to the line, and as it is kept afterwards. */
+typedef struct spari_node_set {
+    int pending;  /* given, not mapped yet */
+    int sections; /* given by coordinate, not by place */
+    int64_t n;
+    double *x;          /* [n][3]: places, or offsets in the section frame; while pending */
+    double *xi;         /* [n]: sections only; while pending */
+    spari_nodes *nodes; /* once mapped */
+} spari_node_set;
+
+/* Node forces over time, for hosts that want them back between the steps (SPAR_EFFECT_FLUID_HISTORY). */
+typedef struct spari_history {
+    int on, pushed; /* pushed: a push came in the step under way */
+    int64_t n;
+    double *after;   /* [n][3] at t^{n+1}: predicted, then pushed */
+    double *past[3]; /* at t^n, t^{n-1}, t^{n-2} */
+} spari_history;
+
+struct spar_fluid {
+    spar_member *member;
+    spar_fluid *next;
+    char *name;
+    int method, consistent;
+    double max_distance;
+    int shared; /* sections: the motion set serves both */
+    spari_node_set set[2];
+    int64_t pushes;
+    int refused; /* status of the last push of this step */
+
+    /* allocated by the map */
+    double *modal;                           /* [P][P] */
+    double *field[2];                        /* coefficients of two states [nodes][SPARI_FIELDS] */
+    double *reference;                       /* of the reference configuration */
+    double *blend[3];                        /* node motion at theta */
+    double *work;                            /* [nodes][14] */
+    double *load, *load_new, *load_accepted; /* [nodes][6] */
+    double audit[8];
+    spari_history *history;
+};
+
+/* Message with the caller, the fluid and its member in front; gives back status. */
+int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...)
+    SPARI_PRINTF(4, 5);
+
+#define SPARI_FLUID_REQUIRE(fluid, condition, status, ...)                                                             \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            return spari_fluid_refuse(fluid, status, __func__, __VA_ARGS__);                                           \
+        }                                                                                                              \
+    } while (0)
+#define SPARI_FLUID_HANDLE(fluid)                                                                                      \
+    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__)
+
+static inline const spari_node_set *spari_fluid_set(const spar_fluid *fluid, int which) {
+    return &fluid->set[fluid->shared ? SPAR_NODES_MOTION : which];
+}
+
+/* The mapped set, or a refusal; *nodes NULL: there is none and nothing to do. */
+int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes);
+/* Finite numbers x [n][width]. */
+int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
+                             int width);
+int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller);
+/* least: least |Q|^2 the kernels met. */
+int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
+/* Reference foot and its orientation (the spec's normalised sum of the nodes' quaternions). */
+void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
+/* Keeps node forces for n nodes from now on, beginning with zeros. */
+int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);
+void spari_fluid_clear_history(spari_history *history);
+
+#endif
