@@ -32,7 +32,7 @@
 ! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
 ! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
 module spar
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_int, c_int64_t, &
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_int, c_int64_t, &
       c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
       c_series_add => spar_vtk_series_add
@@ -51,6 +51,7 @@ module spar
   public :: SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN, SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO
   public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
   public :: SPAR_INTERPOLATE_CONSISTENT, SPAR_NODES_MOTION, SPAR_NODES_FORCE, SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
+  public :: SPAR_MATRIX_LOCAL_TO_GLOBAL, SPAR_MATRIX_GLOBAL_TO_LOCAL
   public :: SPAR_MAP_FAR, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
@@ -153,13 +154,21 @@ module spar
     procedure :: map => fluid_map
     procedure, private :: fluid_get_count_64, fluid_get_count_32
     generic :: get_count => fluid_get_count_64, fluid_get_count_32
+    procedure :: get_flag_count => fluid_get_flag_count
     procedure :: get_map => fluid_get_map
     procedure :: get_feet => fluid_get_feet
     procedure :: get_basis => fluid_get_basis
     procedure :: pull_motion => fluid_pull_motion
     procedure :: pull_sections => fluid_pull_sections
+    procedure :: pull_poses => fluid_pull_poses
+    procedure :: pull_matrices => fluid_pull_matrices
+    procedure :: check_matrices => fluid_check_matrices
     procedure :: pull_forces => fluid_pull_forces
     procedure :: push_forces => fluid_push_forces
+    procedure :: pull_motion_f32 => fluid_pull_motion_f32
+    procedure :: pull_sections_f32 => fluid_pull_sections_f32
+    procedure :: pull_forces_f32 => fluid_pull_forces_f32
+    procedure :: push_forces_f32 => fluid_push_forces_f32
     procedure :: get_audit => fluid_get_audit
     procedure :: write_vtk => fluid_write_vtk
     procedure, private :: place => fluid_place
@@ -1266,6 +1275,16 @@ contains
     call narrow(status, long, n, self%place('get_count'), self%session, stat, errmsg)
   end subroutine fluid_get_count_32
 
+  subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which, flag
+    integer(c_int64_t), intent(inout) :: n
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_flag_count(self%handle, which, flag, n), self%session, stat, errmsg)
+  end subroutine fluid_get_flag_count
+
   subroutine fluid_get_map(self, which, xi, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer(c_int), intent(in) :: which
@@ -1398,6 +1417,91 @@ contains
     call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
   end subroutine fluid_pull_sections
 
+  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, self%place('pull_poses'), 'x', shape(x, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(q)) call need(fault, self%place('pull_poses'), 'q', shape(q, kind=c_int64_t), &
+        [4_c_int64_t, n])
+    if (present(v)) call need(fault, self%place('pull_poses'), 'v', shape(v, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(omega)) call need(fault, self%place('pull_poses'), 'omega', shape(omega, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(accel)) call need(fault, self%place('pull_poses'), 'accel', shape(accel, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(alpha)) call need(fault, self%place('pull_poses'), 'alpha', shape(alpha, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
+  end subroutine fluid_pull_poses
+
+  ! matrix(row, column, n): the convention as its name says. C fills row by row, so the transpose of what C's name says is asked for.
+  subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    integer(c_int), intent(in) :: convention
+    real(c_double), contiguous, intent(inout) :: matrix(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('pull_matrices'), 'matrix', shape(matrix, kind=c_int64_t), &
+        [3_c_int64_t, 3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_matrices(self%handle, theta, 1 - convention, matrix), self%session, stat, errmsg)
+  end subroutine fluid_pull_matrices
+
+  ! matrix(row, column, n), as above.
+  subroutine fluid_check_matrices(self, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: convention
+    real(c_double), contiguous, intent(in) :: matrix(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('check_matrices'), 'matrix', shape(matrix, kind=c_int64_t), &
+        [3_c_int64_t, 3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_check_matrices(self%handle, 1 - convention, matrix), self%session, stat, errmsg)
+  end subroutine fluid_check_matrices
+
   subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
@@ -1446,6 +1550,111 @@ contains
     end if
     call finish(spar_fluid_push_forces(self%handle, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces
+
+  subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, self%place('pull_motion_f32'), 'x', shape(x, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(v)) call need(fault, self%place('pull_motion_f32'), 'v', shape(v, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion_f32
+
+  subroutine fluid_pull_sections_f32(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, self%place('pull_sections_f32'), 'q', shape(q, kind=c_int64_t), &
+        [4_c_int64_t, n])
+    if (present(omega)) call need(fault, self%place('pull_sections_f32'), 'omega', shape(omega, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(accel)) call need(fault, self%place('pull_sections_f32'), 'accel', shape(accel, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_sections_f32(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
+  end subroutine fluid_pull_sections_f32
+
+  subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: force(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('pull_forces_f32'), 'force', shape(force, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_pull_forces_f32(self%handle, theta, force), self%session, stat, errmsg)
+  end subroutine fluid_pull_forces_f32
+
+  subroutine fluid_push_forces_f32(self, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), contiguous, intent(in) :: force(:,:)
+    real(c_float), contiguous, intent(in), optional :: moment(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, self%place('push_forces_f32'), 'force', shape(force, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (present(moment)) call need(fault, self%place('push_forces_f32'), 'moment', shape(moment, kind=c_int64_t), &
+        [3_c_int64_t, n])
+    if (allocated(fault)) then
+      status = spar_fluid_push_forces_f32(self%handle) ! as in push_forces
+      call refuse(fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_fluid_push_forces_f32(self%handle, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_push_forces_f32
 
   subroutine fluid_get_audit(self, audit, stat, errmsg)
     class(spar_fluid), intent(in) :: self

@@ -5,7 +5,7 @@
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
 ! pointer to text of the library. Results are intent(inout): a refused call leaves them as they were. Counting is C's, from 0.
 module spar_c
-  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int, c_int64_t, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   implicit none
   private :: c_char, c_double, c_funptr, c_int, c_int64_t, c_ptr
   public
@@ -28,6 +28,7 @@ module spar_c
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, &
       SPAR_EFFECT_GRAVITY = 4, SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
@@ -444,6 +445,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_get_count
 
+    function spar_fluid_get_flag_count(fluid, which, flag, n) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which, flag
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int) :: status
+    end function spar_fluid_get_flag_count
+
     function spar_fluid_get_map(fluid, which, xi, distance, flags) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -486,6 +495,31 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_pull_sections
 
+    function spar_fluid_pull_poses(fluid, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_poses
+
+    function spar_fluid_pull_matrices(fluid, theta, convention, matrix) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      integer(c_int), value :: convention
+      real(c_double), intent(inout), optional :: matrix(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_matrices
+
+    function spar_fluid_check_matrices(fluid, convention, matrix) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: convention
+      real(c_double), intent(in), optional :: matrix(*)
+      integer(c_int) :: status
+    end function spar_fluid_check_matrices
+
     function spar_fluid_pull_forces(fluid, theta, force) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -500,6 +534,37 @@ module spar_c
       real(c_double), intent(in), optional :: force(*), moment(*)
       integer(c_int) :: status
     end function spar_fluid_push_forces
+
+    function spar_fluid_pull_motion_f32(fluid, theta, x, v) bind(c) result(status)
+      import :: c_double, c_float, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_float), intent(inout), optional :: x(*), v(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_motion_f32
+
+    function spar_fluid_pull_sections_f32(fluid, theta, q, omega, accel) bind(c) result(status)
+      import :: c_double, c_float, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_float), intent(inout), optional :: q(*), omega(*), accel(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_sections_f32
+
+    function spar_fluid_pull_forces_f32(fluid, theta, force) bind(c) result(status)
+      import :: c_double, c_float, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_float), intent(inout), optional :: force(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_forces_f32
+
+    function spar_fluid_push_forces_f32(fluid, force, moment) bind(c) result(status)
+      import :: c_float, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_float), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces_f32
 
     function spar_fluid_get_audit(fluid, audit) bind(c) result(status)
       import :: c_double, c_int, c_ptr
