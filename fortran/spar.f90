@@ -133,7 +133,6 @@ module spar
     procedure :: solve_static => member_solve_static
     procedure :: get_modes => member_get_modes
     procedure :: write_vtk => member_write_vtk
-    procedure, private :: place => member_place
   end type spar_member
 
   type :: spar_fluid
@@ -171,7 +170,6 @@ module spar
     procedure :: push_forces_f32 => fluid_push_forces_f32
     procedure :: get_audit => fluid_get_audit
     procedure :: write_vtk => fluid_write_vtk
-    procedure, private :: place => fluid_place
     procedure, private :: fluid_assign
     generic :: assignment(=) => fluid_assign
   end type spar_fluid
@@ -211,7 +209,6 @@ module spar
     procedure :: get_sections => aero_get_sections
     procedure :: get_flags => aero_get_flags
     procedure :: get_loads => aero_get_loads
-    procedure, private :: place => aero_place
     procedure, private :: aero_assign
     generic :: assignment(=) => aero_assign
     final :: aero_final
@@ -331,7 +328,7 @@ contains
     class(spar_session), intent(in) :: self
     character(:), allocatable :: text
 
-    text = f_text(spar_session_message(self%handle))
+    call copy_text(spar_session_message(self%handle), text)
   end function session_message
 
   subroutine session_set_gravity(self, g, stat, errmsg)
@@ -446,13 +443,15 @@ contains
     type(c_ptr), value :: session, text, context
     integer(c_int), value :: level
     type(log_record), pointer :: record
+    character(:), allocatable :: words
 
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
+    call copy_text(text, words)
     if (associated(record%context)) then
-      call record%log(level, f_text(text), record%context)
+      call record%log(level, words, record%context)
     else
-      call record%log(level, f_text(text))
+      call record%log(level, words)
     end if
   end subroutine call_log
 
@@ -484,10 +483,10 @@ contains
       call finish(status, self%handle, stat, errmsg)
       return
     end if
-    if (present(residual)) call need_room(fault, 'session%get_coupling', 'residual', ubound(residual, 1, c_int64_t), n)
-    if (present(size)) call need_room(fault, 'session%get_coupling', 'size', ubound(size, 1, c_int64_t), n)
+    if (present(residual)) call need_room(fault, 'residual', ubound(residual, 1, c_int64_t), n)
+    if (present(size)) call need_room(fault, 'size', ubound(size, 1, c_int64_t), n)
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('session%get_coupling', fault, stat, errmsg)
       return
     end if
     call finish(spar_session_get_coupling(self%handle, iterations, residual, size, report), self%handle, stat, errmsg)
@@ -678,14 +677,6 @@ contains
     handle = self%handle
   end function member_handle
 
-  function member_place(self, verb) result(text)
-    class(spar_member), intent(in) :: self
-    character(*), intent(in) :: verb
-    character(:), allocatable :: text
-
-    text = 'member%' // verb // ': member ''' // name_of(self%name) // ''''
-  end function member_place
-
   subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
@@ -695,12 +686,10 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_axis'), 'xyz', shape(xyz, kind=c_int64_t), [3_c_int64_t, size(eta, &
-        kind=c_int64_t)])
-    if (present(twist)) call need(fault, self%place('set_axis'), 'twist', shape(twist, kind=c_int64_t), &
-        [size(eta, kind=c_int64_t)])
+    call need(fault, 'xyz', shape(xyz, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
+    if (present(twist)) call need(fault, 'twist', shape(twist, kind=c_int64_t), [size(eta, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%set_axis', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, &
@@ -715,12 +704,10 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
-        kind=c_int64_t)])
-    if (present(q)) call need(fault, self%place('set_nodes'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, &
-        size(x, 2, kind=c_int64_t)])
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(x, 2, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%set_nodes', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
@@ -735,12 +722,11 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_sections'), 'stiffness', shape(stiffness, kind=c_int64_t), [6_c_int64_t, &
-        6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (present(mass)) call need(fault, self%place('set_sections'), 'mass', shape(mass, kind=c_int64_t), &
+    call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
         [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%set_sections', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), &
@@ -845,7 +831,7 @@ contains
     integer(c_int) :: status
 
     status = spar_member_get_count(self%handle, n)
-    call narrow(status, n, nodes, self%place('get_count'), self%session, stat, errmsg)
+    call narrow(status, n, nodes, 'member%get_count', self%session, stat, errmsg)
   end subroutine member_get_count_32
 
   subroutine member_get_reference(self, x, q, stat, errmsg)
@@ -862,10 +848,10 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, self%place('get_reference'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, self%place('get_reference'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%get_reference', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
@@ -885,11 +871,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(q)) call need(fault, self%place('get_motion'), 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, self%place('get_motion'), 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, self%place('get_motion'), 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%get_motion', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
@@ -909,11 +895,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(q)) call need(fault, self%place('set_motion'), 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, self%place('set_motion'), 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, self%place('set_motion'), 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%set_motion', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
@@ -930,16 +916,15 @@ contains
   end subroutine member_drive_root
 
   ! Of a member that is there; what is not, the library refuses.
-  subroutine need_node(fault, member, verb, node)
+  subroutine need_node(fault, member, node)
     character(:), allocatable, intent(inout) :: fault
     class(spar_member), intent(in) :: member
-    character(*), intent(in) :: verb
     integer(c_int64_t), intent(in) :: node
     integer(c_int64_t) :: n
 
     if (spar_member_get_count(member%handle, n) /= SPAR_OK) return
     if (node >= 1 .and. node <= n) return
-    fault = member%place(verb) // ' has nodes 1 to ' // text_of(n) // '; there is no node ' // text_of(node)
+    fault = 'nodes are 1 to ' // trim(text_of(n)) // '; there is no node ' // trim(text_of(node))
   end subroutine need_node
 
   subroutine member_add_load_64(self, node, load, stat, errmsg)
@@ -950,9 +935,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need_node(fault, self, 'add_load', node)
+    call need_node(fault, self, node)
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%add_load', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_add_load(self%handle, node - 1, load), self%session, stat, errmsg)
@@ -976,9 +961,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need_node(fault, self, 'add_follower', node)
+    call need_node(fault, self, node)
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%add_follower', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_add_follower(self%handle, node - 1, load), self%session, stat, errmsg)
@@ -1003,10 +988,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_line_load'), 'load', shape(load, kind=c_int64_t), &
-        [6_c_int64_t, size(eta, kind=c_int64_t)])
+    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, size(eta, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%set_line_load', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_beam_set_line_load(self%handle, size(eta, kind=c_int64_t), eta, load, kind), &
@@ -1027,9 +1011,9 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('get_loads'), 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
+    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%get_loads', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
@@ -1050,17 +1034,16 @@ contains
     real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault, place
+    character(:), allocatable :: fault
     integer(c_int64_t) :: n
 
     n = size(eta, kind=c_int64_t)
-    place = self%place('get_section')
-    if (present(strain)) call need(fault, place, 'strain', shape(strain, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(force)) call need(fault, place, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(x)) call need(fault, place, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, place, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(strain)) call need(fault, 'strain', shape(strain, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%get_section', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_beam_get_section(self%handle, n, eta, strain, force, x, q), self%session, stat, errmsg)
@@ -1099,10 +1082,10 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(shapes)) call need(fault, self%place('get_modes'), 'shapes', shape(shapes, kind=c_int64_t), &
+    if (present(shapes)) call need(fault, 'shapes', shape(shapes, kind=c_int64_t), &
         [6_c_int64_t, n, size(frequency_hz, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('member%get_modes', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_member_get_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
@@ -1167,14 +1150,6 @@ contains
     handle = self%handle
   end function fluid_handle
 
-  function fluid_place(self, verb) result(text)
-    class(spar_fluid), intent(in) :: self
-    character(*), intent(in) :: verb
-    character(:), allocatable :: text
-
-    text = 'fluid%' // verb // ': fluid ''' // name_of(self%name) // ''''
-  end function fluid_place
-
   subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
@@ -1182,10 +1157,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_motion_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
-        kind=c_int64_t)])
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%set_motion_nodes', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
@@ -1198,10 +1172,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('set_force_nodes'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, &
-        kind=c_int64_t)])
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%set_force_nodes', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
@@ -1215,10 +1188,10 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(offset)) call need(fault, self%place('set_sections'), 'offset', shape(offset, kind=c_int64_t), &
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), &
         [3_c_int64_t, size(xi, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%set_sections', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_set_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
@@ -1272,7 +1245,7 @@ contains
     integer(c_int) :: status
 
     status = spar_fluid_get_count(self%handle, which, long)
-    call narrow(status, long, n, self%place('get_count'), self%session, stat, errmsg)
+    call narrow(status, long, n, 'fluid%get_count', self%session, stat, errmsg)
   end subroutine fluid_get_count_32
 
   subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
@@ -1301,11 +1274,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(xi)) call need(fault, self%place('get_map'), 'xi', shape(xi, kind=c_int64_t), [n])
-    if (present(distance)) call need(fault, self%place('get_map'), 'distance', shape(distance, kind=c_int64_t), [n])
-    if (present(flags)) call need(fault, self%place('get_map'), 'flags', shape(flags, kind=c_int64_t), [n])
+    if (present(xi)) call need(fault, 'xi', shape(xi, kind=c_int64_t), [n])
+    if (present(distance)) call need(fault, 'distance', shape(distance, kind=c_int64_t), [n])
+    if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%get_map', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_get_map(self%handle, which, xi, distance, flags), self%session, stat, errmsg)
@@ -1326,13 +1299,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x_map)) call need(fault, self%place('get_feet'), 'x_map', shape(x_map, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(q_map)) call need(fault, self%place('get_feet'), 'q_map', shape(q_map, kind=c_int64_t), &
-        [4_c_int64_t, n])
-    if (present(con)) call need(fault, self%place('get_feet'), 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x_map)) call need(fault, 'x_map', shape(x_map, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q_map)) call need(fault, 'q_map', shape(q_map, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(con)) call need(fault, 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%get_feet', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_get_feet(self%handle, which, x_map, q_map, con), self%session, stat, errmsg)
@@ -1355,10 +1326,10 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(first_node)) call need(fault, self%place('get_basis'), 'first_node', shape(first_node, kind=c_int64_t), [n])
-    if (present(phi)) call need(fault, self%place('get_basis'), 'phi', shape(phi, kind=c_int64_t), [self%per_element, n])
+    if (present(first_node)) call need(fault, 'first_node', shape(first_node, kind=c_int64_t), [n])
+    if (present(phi)) call need(fault, 'phi', shape(phi, kind=c_int64_t), [self%per_element, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%get_basis', fault, stat, errmsg, self%name)
       return
     end if
     status = spar_fluid_get_basis(self%handle, which, first_node, phi)
@@ -1381,10 +1352,10 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, self%place('pull_motion'), 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, self%place('pull_motion'), 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
@@ -1405,13 +1376,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(q)) call need(fault, self%place('pull_sections'), 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need(fault, self%place('pull_sections'), 'omega', shape(omega, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(accel)) call need(fault, self%place('pull_sections'), 'accel', shape(accel, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_sections', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
@@ -1517,9 +1486,9 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('pull_forces'), 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_forces', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_forces(self%handle, theta, force), self%session, stat, errmsg)
@@ -1540,12 +1509,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('push_forces'), 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(moment)) call need(fault, self%place('push_forces'), 'moment', shape(moment, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
       status = spar_fluid_push_forces(self%handle) ! no forces: the step must not go on with those of the push before
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%push_forces', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_push_forces(self%handle, force, moment), self%session, stat, errmsg)
@@ -1691,11 +1659,11 @@ contains
       call occupied('polar%create', stat, errmsg)
       return
     end if
-    call need(fault, 'polar%create', 'cl', shape(cl, kind=c_int64_t), [n])
-    call need(fault, 'polar%create', 'cd', shape(cd, kind=c_int64_t), [n])
-    if (present(cm)) call need(fault, 'polar%create', 'cm', shape(cm, kind=c_int64_t), [n])
+    call need(fault, 'cl', shape(cl, kind=c_int64_t), [n])
+    call need(fault, 'cd', shape(cd, kind=c_int64_t), [n])
+    if (present(cm)) call need(fault, 'cm', shape(cm, kind=c_int64_t), [n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('polar%create', fault, stat, errmsg)
       return
     end if
     call finish(spar_polar_create(n, alpha_rad, cl, cd, cm, self%handle), c_null_ptr, stat, errmsg)
@@ -1820,14 +1788,6 @@ contains
     handle = self%handle
   end function aero_handle
 
-  function aero_place(self, verb) result(text)
-    class(spar_aero), intent(in) :: self
-    character(*), intent(in) :: verb
-    character(:), allocatable :: text
-
-    text = 'aero%' // verb // ': ' // text_of(self%blades) // ' blades of ' // text_of(self%sections) // ' sections'
-  end function aero_place
-
   ! Section i, from 1, of every blade.
   subroutine aero_set_section_64(self, i, chord, twist, polar, stat, errmsg)
     class(spar_aero), intent(inout) :: self
@@ -1838,7 +1798,8 @@ contains
     character(*), intent(inout), optional :: errmsg
 
     if (c_associated(self%handle) .and. (i < 1 .or. (self%blades > 0 .and. i > self%sections))) then
-      call refuse(self%place('set_section') // '; there is no section ' // text_of(i), stat, errmsg)
+      call refuse('aero%set_section', 'sections are 1 to ' // trim(text_of(self%sections)) // '; there is no section ' // &
+          text_of(i), stat, errmsg)
       return
     end if
     call finish(spar_aero_set_section(self%handle, i - 1, chord, twist, polar%handle), self%session, stat, errmsg)
@@ -1900,10 +1861,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    call need(fault, self%place('solve'), 'inflow', shape(inflow, kind=c_int64_t), [3_c_int64_t, self%sections, &
-        self%blades])
+    call need(fault, 'inflow', shape(inflow, kind=c_int64_t), [3_c_int64_t, self%sections, self%blades])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('aero%solve', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_solve(self%handle, density, inflow, theta), self%session, stat, errmsg)
@@ -1925,18 +1885,14 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(alpha)) call need(fault, self%place('get_sections'), 'alpha', shape(alpha, kind=c_int64_t), &
+    if (present(alpha)) call need(fault, 'alpha', shape(alpha, kind=c_int64_t), [self%sections, self%blades])
+    if (present(cl)) call need(fault, 'cl', shape(cl, kind=c_int64_t), [self%sections, self%blades])
+    if (present(cd)) call need(fault, 'cd', shape(cd, kind=c_int64_t), [self%sections, self%blades])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [self%sections, self%blades])
+    if (present(a_tangential)) call need(fault, 'a_tangential', shape(a_tangential, kind=c_int64_t), &
         [self%sections, self%blades])
-    if (present(cl)) call need(fault, self%place('get_sections'), 'cl', shape(cl, kind=c_int64_t), &
-        [self%sections, self%blades])
-    if (present(cd)) call need(fault, self%place('get_sections'), 'cd', shape(cd, kind=c_int64_t), &
-        [self%sections, self%blades])
-    if (present(a)) call need(fault, self%place('get_sections'), 'a', shape(a, kind=c_int64_t), [self%sections, &
-        self%blades])
-    if (present(a_tangential)) call need(fault, self%place('get_sections'), 'a_tangential', shape(a_tangential, &
-        kind=c_int64_t), [self%sections, self%blades])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('aero%get_sections', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_get_sections(self%handle, alpha, cl, cd, a, a_tangential), self%session, stat, errmsg)
@@ -1950,10 +1906,9 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(flags)) call need(fault, self%place('get_flags'), 'flags', shape(flags, kind=c_int64_t), &
-        [self%sections, self%blades])
+    if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [self%sections, self%blades])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('aero%get_flags', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_get_flags(self%handle, flags, no_root), self%session, stat, errmsg)
@@ -1966,14 +1921,13 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(per_length)) call need(fault, self%place('get_loads'), 'per_length', shape(per_length, &
-        kind=c_int64_t), [6_c_int64_t, self%sections, self%blades])
-    if (present(force)) call need(fault, self%place('get_loads'), 'force', shape(force, kind=c_int64_t), &
-        [3_c_int64_t, self%sections, self%blades])
-    if (present(moment)) call need(fault, self%place('get_loads'), 'moment', shape(moment, kind=c_int64_t), &
+    if (present(per_length)) call need(fault, 'per_length', shape(per_length, kind=c_int64_t), &
+        [6_c_int64_t, self%sections, self%blades])
+    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, self%sections, self%blades])
+    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), &
         [3_c_int64_t, self%sections, self%blades])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('aero%get_loads', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
@@ -1985,13 +1939,13 @@ contains
     integer(c_int), intent(in) :: status
     character(:), allocatable :: text
 
-    text = f_text(c_status_text(status))
+    call copy_text(c_status_text(status), text)
   end function status_text
 
   function version() result(text)
     character(:), allocatable :: text
 
-    text = f_text(c_version())
+    call copy_text(c_version(), text)
   end function version
 
   ! Whether this build of the library has a feature: 'mpi', ...
@@ -2025,28 +1979,33 @@ contains
 
     if (present(stat)) stat = status
     if (status == SPAR_OK) return
-    text = f_text(spar_session_message(session))
-    if (len(text) == 0) text = f_text(c_status_text(status))
+    call copy_text(spar_session_message(session), text)
+    if (len(text) == 0) call copy_text(c_status_text(status), text)
     call tell(text, present(stat), errmsg)
   end subroutine finish
 
   ! How a call ends whose arguments the library has not seen.
-  subroutine refuse(text, stat, errmsg)
-    character(*), intent(in) :: text
+  subroutine refuse(place, fault, stat, errmsg, name)
+    character(*), intent(in) :: place, fault
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    character(*), intent(in), optional :: name
 
     if (present(stat)) stat = SPAR_ERR_ARGUMENT
-    call tell(text, present(stat), errmsg)
+    if (present(name)) then
+      call tell(place // ': ''' // name // ''': ' // trim(fault), present(stat), errmsg)
+    else
+      call tell(place // ': ' // trim(fault), present(stat), errmsg)
+    end if
   end subroutine refuse
 
-  subroutine occupied(call, stat, errmsg)
-    character(*), intent(in) :: call
+  subroutine occupied(place, stat, errmsg)
+    character(*), intent(in) :: place
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     if (present(stat)) stat = SPAR_ERR_STATE
-    call tell(call // ': the variable holds one already; destroy it first, or use another variable', present(stat), errmsg)
+    call tell(place // ': the variable holds one already; destroy it first, or use another variable', present(stat), errmsg)
   end subroutine occupied
 
   subroutine tell(text, taken, errmsg)
@@ -2075,45 +2034,44 @@ contains
 
   ! Puts into fault what is wrong with the shape of an array, unless something is there already. Where there is nothing to be
   ! read or written, any array without elements will do.
-  subroutine need(fault, place, array, has, needs)
+  subroutine need(fault, array, has, needs)
     character(:), allocatable, intent(inout) :: fault
-    character(*), intent(in) :: place, array
+    character(*), intent(in) :: array
     integer(c_int64_t), intent(in) :: has(:), needs(:)
 
     if (allocated(fault) .or. all(has == needs) .or. (product(has) == 0 .and. product(needs) == 0)) return
-    fault = place // ': ' // array // ' has the shape ' // extents(has) // '; it must be ' // extents(needs)
+    fault = array // ' has the shape '
+    call append_extents(fault, has)
+    fault = fault // '; it must be '
+    call append_extents(fault, needs)
   end subroutine need
 
-  subroutine need_room(fault, place, array, has, needs)
+  subroutine append_extents(text, extents)
+    character(:), allocatable, intent(inout) :: text
+    integer(c_int64_t), intent(in) :: extents(:)
+    integer :: i
+
+    do i = 1, size(extents)
+      text = text // merge('(', ',', i == 1) // trim(text_of(extents(i)))
+    end do
+    text = text // ')'
+  end subroutine append_extents
+
+  subroutine need_room(fault, array, has, needs)
     character(:), allocatable, intent(inout) :: fault
-    character(*), intent(in) :: place, array
+    character(*), intent(in) :: array
     integer(c_int64_t), intent(in) :: has
     integer(c_int), intent(in) :: needs
 
     if (allocated(fault) .or. has >= needs) return
-    fault = place // ': ' // array // ' has room for ' // text_of(has) // ' of ' // text_of(int(needs, c_int64_t))
+    fault = array // ' has room for ' // trim(text_of(has)) // ' of ' // trim(text_of(int(needs, c_int64_t)))
   end subroutine need_room
 
-  function extents(shape) result(text)
-    integer(c_int64_t), intent(in) :: shape(:)
-    character(:), allocatable :: text
-    integer :: i
-
-    text = '('
-    do i = 1, size(shape)
-      if (i > 1) text = text // ','
-      text = text // text_of(shape(i))
-    end do
-    text = text // ')'
-  end function extents
-
-  function text_of(number) result(text)
+  pure function text_of(number) result(text)
     integer(c_int64_t), intent(in) :: number
-    character(:), allocatable :: text
-    character(24) :: buffer
+    character(20) :: text
 
-    write (buffer, '(i0)') number
-    text = trim(buffer)
+    write (text, '(i0)') number
   end function text_of
 
   ! A count for a caller with 32-bit integers.
@@ -2128,7 +2086,7 @@ contains
 
     if (status == SPAR_OK) then
       if (from > huge(to)) then
-        call refuse(place // ': ' // text_of(from) // ' does not fit; take a 64-bit integer', stat, errmsg)
+        call refuse(place, trim(text_of(from)) // ' does not fit; take a 64-bit integer', stat, errmsg)
         return
       end if
       to = int(from, c_int)
@@ -2144,16 +2102,17 @@ contains
 
   ! ---- text across the border ----
 
-  function c_text(text) result(c)
+  pure function c_text(text) result(c)
     character(*), intent(in) :: text
-    character(kind=c_char, len=:), allocatable :: c
+    character(kind=c_char, len=len_trim(text) + 1) :: c
 
     c = trim(text) // c_null_char
   end function c_text
 
-  function f_text(c) result(text)
+  ! Not a function: gfortran keeps the length of what a function allocates in one place for all threads.
+  subroutine copy_text(c, text)
     type(c_ptr), intent(in) :: c
-    character(kind=c_char, len=:), allocatable :: text
+    character(kind=c_char, len=:), allocatable, intent(out) :: text
     character(kind=c_char), pointer :: letters(:)
     integer(c_int64_t) :: i, n
 
@@ -2165,13 +2124,5 @@ contains
     do i = 1, n
       text(i:i) = letters(i)
     end do
-  end function f_text
-
-  function name_of(name) result(text)
-    character(:), allocatable, intent(in) :: name
-    character(:), allocatable :: text
-
-    text = ''
-    if (allocated(name)) text = name
-  end function name_of
+  end subroutine copy_text
 end module spar
