@@ -362,10 +362,21 @@ static void test_fluids(void **state) {
     OK(m.session, spar_fluid_pull_motion(sections, 1, x, v));
     OK(m.session, spar_fluid_write_vtk(sections, "output_fluid.vtp"));
     document *d = read_document("output_fluid.vtp");
-    assert_memory_equal(numbers(d, "Points", "Points", 3, 3), x, sizeof x);
-    assert_memory_equal(numbers(d, "PointData", "velocity", 3, 3), v, sizeof v);
-    assert_memory_equal(numbers(d, "PointData", "force", 3, 3), force, sizeof force);
-    assert_int_equal(integers(d, "Lines", "offsets", 1)[0], 3);
+    const double *at = numbers(d, "Points", "Points", 3, 6);
+    assert_memory_equal(at, x, sizeof x);
+    assert_memory_equal(numbers(d, "PointData", "velocity", 3, 6), v, sizeof v);
+    assert_memory_equal(numbers(d, "PointData", "force", 3, 6), force, sizeof force);
+    for (int i = 0; i < 3; i++) { /* the first and the last foot are the beam's ends */
+        NEAR(at[9 + i], m.x[i] + m.q[i], 1e-14);
+        NEAR(at[15 + i], m.x[3 * (NODES - 1) + i] + m.q[7 * (NODES - 1) + i], 1e-14);
+        NEAR(numbers(d, "PointData", "distance", 1, 6)[i], offset[3 * i + 1], 1e-15);
+        NEAR(numbers(d, "PointData", "xi", 1, 6)[i], xi[i], 1e-15);
+        assert_true(numbers(d, "PointData", "set", 1, 6)[3 + i] == 2);
+    }
+    /* the row of sections, then a connector each from node to foot */
+    const int64_t ends[4] = {3, 5, 7, 9}, joined[9] = {0, 1, 2, 0, 3, 1, 4, 2, 5};
+    assert_memory_equal(integers(d, "Lines", "offsets", 4), ends, sizeof ends);
+    assert_memory_equal(integers(d, "Lines", "connectivity", 9), joined, sizeof joined);
     free_document(d);
 
     OK(m.session, spar_fluid_create(m.beam, "mesh", &mesh));
@@ -377,13 +388,17 @@ static void test_fluids(void **state) {
     OK(m.session, spar_fluid_pull_motion(mesh, 1, x, NULL));
     OK(m.session, spar_fluid_write_vtk(mesh, "output_fluid.vtp"));
     d = read_document("output_fluid.vtp");
-    const double *at = numbers(d, "Points", "Points", 3, 3), *set = numbers(d, "PointData", "set", 1, 3);
+    at = numbers(d, "Points", "Points", 3, 6);
+    const double *set = numbers(d, "PointData", "set", 1, 6), *flags = numbers(d, "PointData", "flags", 1, 6);
+    int flagged[2];
+    OK(m.session, spar_fluid_get_map(mesh, SPAR_NODES_MOTION, NULL, NULL, flagged));
+    assert_true(flags[0] == flagged[0] && flags[1] == flagged[1] && flags[3] == flagged[0]);
     assert_memory_equal(at, x, 6 * sizeof *x);
     assert_memory_equal(at + 6, x, 3 * sizeof *x); /* the force node is the first motion node */
     assert_true(set[0] == 0 && set[1] == 0 && set[2] == 1);
-    const double *pushed = numbers(d, "PointData", "force", 3, 3);
+    const double *pushed = numbers(d, "PointData", "force", 3, 6);
     assert_true(pushed[0] == 0 && pushed[5] == 0 && pushed[6] == 1 && pushed[8] == 3);
-    integers(d, "Lines", "offsets", 0);
+    integers(d, "Lines", "offsets", 3);
     free_document(d);
 
     /* a rank without nodes writes a picture without points */

@@ -1,4 +1,4 @@
-/* A picture of a fluid's nodes on this rank. */
+/* A picture of a fluid's nodes on this rank: where they are, where their feet are, and what the map thinks of them. */
 #include "../fluid/fluid.h"
 #include "../math/rotation.h"
 #include "vtk.h"
@@ -6,64 +6,139 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns of the table of nodes, each field [n][components] at table + column * n. */
-enum { X, V = 3, AXES = 6, FORCE = 15, SET = 18, QUATERNION = 19, COLUMNS = 23 };
+/* Columns of the table of points, each field [points][components] at table + column * points. First come the nodes,
+   then their feet in the same order. */
+enum { X, V = 3, AXES = 6, FORCE = 15, SET = 18, XI = 19, DISTANCE = 20, FLAGS = 21, COLUMNS = 22 };
+static const struct {
+    const char *name;
+    int column, components;
+} field_of[] = {{"velocity", V, 3},         {"section_x", AXES, 3}, {"section_y", AXES + 3, 3},
+                {"section_z", AXES + 6, 3}, {"set", SET, 1},        {"xi", XI, 1},
+                {"distance", DISTANCE, 1},  {"flags", FLAGS, 1},    {"force", FORCE, 3}};
+enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
-/* Fills the columns of one set's nodes, which stand at `first` of all n. */
-static int fill_set(const spar_fluid *fluid, int which, int64_t first, int64_t count, int64_t n, double *table) {
-    static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    double *q = table + QUATERNION * n + 4 * first;
-    SPARI_TRY(spari_fluid_look(fluid, which, table + X * n + 3 * first, table + V * n + 3 * first, q));
-    for (int64_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) {
-            spari_rotate(q + 4 * i, unit[k], table + (AXES + 3 * k) * n + 3 * (first + i));
-        }
-        table[SET * n + first + i] = which;
+typedef struct sketch {
+    int64_t count[2], n; /* nodes of the sets, and of both */
+    double *table;       /* 2 n points */
+    double *q, *q_map, *con;
+    int *flags;
+    int64_t *line_end, *line_point;
+} sketch;
+
+static double *at(const sketch *s, int column, int components, int64_t point) {
+    return s->table + column * 2 * s->n + components * point;
+}
+
+/* The foot now: back from the node along its arm as the section has turned it. */
+static void put_foot(const sketch *s, int64_t i) {
+    double back[4], turn[4], arm[3];
+    spari_quat_conj(s->q_map + 4 * i, back);
+    spari_quat_mul(s->q + 4 * i, back, turn);
+    spari_rotate(turn, s->con + 3 * i, arm);
+    for (int k = 0; k < 3; k++) {
+        at(s, X, 3, s->n + i)[k] = at(s, X, 3, i)[k] - arm[k];
     }
+}
+
+/* Fills the nodes of one set, which stand at `first` of all. */
+static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
+    static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    SPARI_TRY(spari_fluid_look(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first));
+    SPARI_TRY(spar_fluid_get_feet(fluid, which, NULL, s->q_map + 4 * first, s->con + 3 * first));
+    SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     const double *force = spari_fluid_forces(fluid);
     if (force && (which == SPAR_NODES_FORCE || spari_fluid_has_sections(fluid))) {
-        memcpy(table + FORCE * n + 3 * first, force, (size_t)(3 * count) * sizeof *force);
+        memcpy(at(s, FORCE, 3, first), force, (size_t)(3 * s->count[which]) * sizeof *force);
+    }
+    for (int64_t i = first; i < first + s->count[which]; i++) {
+        for (int k = 0; k < 3; k++) {
+            spari_rotate(s->q + 4 * i, unit[k], at(s, AXES + 3 * k, 3, i));
+        }
+        *at(s, SET, 1, i) = which;
+        *at(s, FLAGS, 1, i) = s->flags[i];
+        put_foot(s, i);
     }
     return SPAR_OK;
 }
 
-static int write_picture(const spar_fluid *fluid, int64_t n, const double *table, const char *path) {
-    spari_vtk_field field[] = {{"velocity", 3, table + V * n},
-                               {"section_x", 3, table + AXES * n},
-                               {"section_y", 3, table + (AXES + 3) * n},
-                               {"section_z", 3, table + (AXES + 6) * n},
-                               {"set", 1, table + SET * n},
-                               {"force", 3, table + FORCE * n}};
-    spari_vtk_picture picture = {.points = n,
-                                 .x = table + X * n,
-                                 .verts = n,
-                                 .lines = spari_fluid_has_sections(fluid) && n > 1,
-                                 .line_end = &n,
-                                 .fields = spari_fluid_forces(fluid) ? 6 : 5,
+/* Feet bear what their nodes bear, but for the place and the set. */
+static void copy_to_feet(const sketch *s) {
+    for (int f = 0; f < FIELDS; f++) {
+        size_t size = (size_t)s->n * (size_t)field_of[f].components * sizeof(double);
+        memcpy(at(s, field_of[f].column, field_of[f].components, s->n), at(s, field_of[f].column, 1, 0), size);
+    }
+    for (int64_t i = 0; i < s->n; i++) {
+        *at(s, SET, 1, s->n + i) += 2;
+    }
+}
+
+/* Sections in a row, then a connector from every node to its foot. Returns how many lines. */
+static int64_t draw_lines(const spar_fluid *fluid, const sketch *s) {
+    int64_t lines = 0, end = 0;
+    if (spari_fluid_has_sections(fluid) && s->n > 1) {
+        for (; end < s->n; end++) {
+            s->line_point[end] = end;
+        }
+        s->line_end[lines++] = end;
+    }
+    for (int64_t i = 0; i < s->n; i++) {
+        s->line_point[end++] = i;
+        s->line_point[end++] = s->n + i;
+        s->line_end[lines++] = end;
+    }
+    return lines;
+}
+
+static int write_picture(const spar_fluid *fluid, const sketch *s, const char *path) {
+    spari_vtk_field field[FIELDS];
+    for (int f = 0; f < FIELDS; f++) {
+        field[f] = (spari_vtk_field){field_of[f].name, field_of[f].components, at(s, field_of[f].column, 1, 0)};
+    }
+    spari_vtk_picture picture = {.points = 2 * s->n,
+                                 .x = at(s, X, 3, 0),
+                                 .verts = s->n,
+                                 .lines = draw_lines(fluid, s),
+                                 .line_end = s->line_end,
+                                 .line_point = s->line_point,
+                                 .fields = spari_fluid_forces(fluid) ? FIELDS : FIELDS - 1,
                                  .field = field};
     spar_session *session = spari_fluid_session(fluid);
     SPARI_TRY(spar_session_get_time(session, &picture.time, NULL, NULL));
     return spari_vtk_write(session, "spar_fluid_write_vtk", path, &picture);
 }
 
+static int draw(const spar_fluid *fluid, const sketch *s, const char *path) {
+    SPARI_TRY(fill_set(fluid, SPAR_NODES_MOTION, 0, s));
+    if (!spari_fluid_has_sections(fluid)) {
+        SPARI_TRY(fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s));
+    }
+    copy_to_feet(s);
+    return write_picture(fluid, s, path);
+}
+
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_write_vtk: the fluid is NULL; create it first");
-    int64_t count[2] = {0, 0};
-    SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &count[0]));
+    sketch s = {0};
+    SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &s.count[0]));
     if (!spari_fluid_has_sections(fluid)) {
-        SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &count[1]));
+        SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &s.count[1]));
     }
-    int64_t n = count[0] + count[1];
-    double *table = spari_zalloc(COLUMNS * n, sizeof *table);
-    SPARI_REQUIRE(spari_fluid_session(fluid), table, SPAR_ERR_MEMORY,
-                  "spar_fluid_write_vtk: no memory for the %lld nodes of '%s'", (long long)n, spari_fluid_name(fluid));
-    int status = fill_set(fluid, SPAR_NODES_MOTION, 0, count[0], n, table);
-    if (status == SPAR_OK && !spari_fluid_has_sections(fluid)) {
-        status = fill_set(fluid, SPAR_NODES_FORCE, count[0], count[1], n, table);
+    s.n = s.count[0] + s.count[1];
+    s.table = spari_zalloc(2 * COLUMNS * s.n, sizeof *s.table);
+    s.q = spari_zalloc(4 * s.n, sizeof *s.q);
+    s.q_map = spari_zalloc(4 * s.n, sizeof *s.q_map);
+    s.con = spari_zalloc(3 * s.n, sizeof *s.con);
+    s.flags = spari_zalloc(s.n, sizeof *s.flags);
+    s.line_end = spari_zalloc(s.n + 1, sizeof *s.line_end);
+    s.line_point = spari_zalloc(3 * s.n, sizeof *s.line_point);
+    int whole = s.table && s.q && s.q_map && s.con && s.flags && s.line_end && s.line_point;
+    int status = whole ? draw(fluid, &s, path)
+                       : spari_fail(spari_fluid_session(fluid), SPAR_ERR_MEMORY,
+                                    "spar_fluid_write_vtk: no memory for the %lld nodes of '%s'", (long long)s.n,
+                                    spari_fluid_name(fluid));
+    void *all[] = {s.table, s.q, s.q_map, s.con, s.flags, s.line_end, s.line_point};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        free(all[i]);
     }
-    if (status == SPAR_OK) {
-        status = write_picture(fluid, n, table, path);
-    }
-    free(table);
     return status;
 }

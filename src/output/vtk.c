@@ -107,6 +107,12 @@ static void put_count(stream *s, int64_t first, int64_t n) {
     }
 }
 
+static void put_line_numbers(stream *s, const spari_vtk_picture *p) {
+    for (int64_t i = 0; i < line_points(p); i++) {
+        put_int64(s, p->line_point ? p->line_point[i] : i);
+    }
+}
+
 static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
     fputs("<Verts>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, p->verts, 8);
@@ -117,7 +123,7 @@ static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
     end_array(s);
     fputs("</Verts>\n<Lines>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, line_points(p), 8);
-    put_count(s, 0, line_points(p));
+    put_line_numbers(s, p);
     end_array(s);
     begin_array(s, "Int64", "offsets", 1, p->lines, 8);
     put_bytes(s, p->line_end, (size_t)p->lines * sizeof *p->line_end);
@@ -130,7 +136,7 @@ static void put_grid_cells(stream *s, const spari_vtk_picture *p) {
     fputs("<Cells>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, p->verts + line_points(p), 8);
     put_vert_numbers(s, p);
-    put_count(s, 0, line_points(p));
+    put_line_numbers(s, p);
     end_array(s);
     begin_array(s, "Int64", "offsets", 1, p->verts + p->lines, 8);
     put_count(s, 1, p->verts);

@@ -18,6 +18,7 @@ typedef struct spari_vtk_picture {
     const int64_t *vert; /* their numbers; NULL: the first `verts` */
     int64_t lines;
     const int64_t *line_end; /* line k joins the points line_end[k - 1] (0 for the first) .. line_end[k] - 1 in order */
+    const int64_t *line_point; /* the points' numbers in that order; NULL: 0, 1, 2, ... */
     int fields, facts;
     const spari_vtk_field *field; /* one value per point */
     const spari_vtk_field *fact;  /* one value for the whole picture */
