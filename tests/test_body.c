@@ -133,9 +133,9 @@ static void check_tangent(int elements, int P, int damped, int gyroscopic, doubl
     double worst = 0, big = 0, h = 1e-5;
     for (int d = 0; d < N; d++) {
         disturb(&s, d, h, cm, cv, &t);
-        spari_body_residual(b, t.q, t.v, t.a, 0.7, r1);
+        spari_body_residual(b, t.q, t.v, t.a, 0.7, r1, NULL);
         disturb(&s, d, -h, cm, cv, &t);
-        spari_body_residual(b, t.q, t.v, t.a, 0.7, r2);
+        spari_body_residual(b, t.q, t.v, t.a, 0.7, r2, NULL);
         for (int i = 0; i < N; i++) {
             double fd = (r1[i] - r2[i]) / (2 * h);
             big = fmax(big, fabs(fd));
@@ -169,7 +169,7 @@ static void test_forces_are_the_gradient_of_the_energy(void **unused) {
     state s, t;
     double r[192], e1[4], e2[4], h = 1e-5;
     random_state(b->unique, 0.6, &s);
-    spari_body_residual(b, s.q, NULL, NULL, 1, r);
+    spari_body_residual(b, s.q, NULL, NULL, 1, r, NULL);
     for (int d = 0; d < 6 * b->unique; d++) {
         disturb(&s, d, h, 0, 0, &t);
         spari_body_energy(b, t.q, NULL, e1);
@@ -188,7 +188,7 @@ static void test_frame_indifference(void **unused) {
     state s, t;
     double r[192], r2[192], e1[4], e2[4], psi[3] = {1.3, -2.2, 0.7}, p[4], big = 0, gll[24];
     random_state(b->unique, 0.6, &s);
-    spari_body_residual(b, s.q, s.v, s.a, 0, r);
+    spari_body_residual(b, s.q, s.v, s.a, 0, r, NULL);
     spari_body_energy(b, s.q, s.v, e1);
     spari_quat_exp(psi, p);
     spari_gll(5, gll, NULL, NULL);
@@ -209,7 +209,7 @@ static void test_frame_indifference(void **unused) {
             spari_rotate(p, s.a + 6 * i + k, t.a + 6 * i + k);
         }
     }
-    spari_body_residual(b, t.q, t.v, t.a, 0, r2);
+    spari_body_residual(b, t.q, t.v, t.a, 0, r2, NULL);
     spari_body_energy(b, t.q, t.v, e2);
     for (int i = 0; i < 6 * b->unique; i++) {
         big = fmax(big, fabs(r[i]));
@@ -236,7 +236,7 @@ static void test_power_balance(void **unused) {
     double r[192], e0[4], e1[4], e2[4], h = 1e-5, power = 0, *out[2] = {e1, e2};
     memset(b->gravity, 0, sizeof b->gravity);
     random_state(b->unique, 0.6, &s);
-    spari_body_residual(b, s.q, s.v, s.a, 0, r);
+    spari_body_residual(b, s.q, s.v, s.a, 0, r, NULL);
     spari_body_energy(b, s.q, s.v, e0);
     for (int i = 0; i < 6 * b->unique; i++) {
         power += r[i] * s.v[i];

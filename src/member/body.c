@@ -257,6 +257,7 @@ typedef struct point_state {
     double z[4];      /* dQd/ds / N */
     double t_rate[3]; /* R^T u'-dot */
     double kd0[3];    /* 2 Im(d* p + r* z) */
+    double damped;    /* power that damping takes out, per length */
 } point_state;
 
 static void point_fields(const double *f, point_state *s) {
@@ -302,8 +303,10 @@ static void point_strain(const spari_body *body, int k, int moving, point_state 
             s->ed[3 + i] = s->kd0[i] - 2 * s->e[3 + i] * s->b;
         }
         matrix6_times(body->D + 36 * (int64_t)k, s->ed, sd);
+        s->damped = 0;
         for (int i = 0; i < 6; i++) {
             s->s[i] += sd[i];
+            s->damped += sd[i] * s->ed[i];
         }
     }
 }
@@ -352,7 +355,7 @@ static void point_inertia_forces(const spari_body *body, int k, double factor, c
 /* ---- residual ---- */
 
 static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
-                              double *r);
+                              double *r, double *power);
 
 /* Forces that the strains of a point do work on: gradients of s . e by (u, Q) and (u', Q'). */
 static void elastic_forces(const point_state *s, double *value, double *slope) {
@@ -380,7 +383,8 @@ static void add_moment(const double g[4], const double q[4], double m[3]) {
 }
 
 /* What the point gives back, times its weight: value (u, Q), slope (u', Q'). Returns the size of its forces. */
-static double point_forces(const spari_body *body, int k, double factor, int moving, const double *f, double *back) {
+static double point_forces(const spari_body *body, int k, double factor, int moving, const double *f, double *back,
+                           double *power) {
     point_state s;
     double *value = back, *slope = back + BACK, w = body->weight[k], scale = 0;
     memset(back, 0, BACK_ROW * sizeof *back);
@@ -388,6 +392,7 @@ static double point_forces(const spari_body *body, int k, double factor, int mov
     if (body->C) {
         point_strain(body, k, moving, &s);
         elastic_forces(&s, value, slope);
+        *power += body->D && moving ? w * s.damped : 0;
         scale = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
     }
     if (body->mass) {
@@ -415,12 +420,12 @@ static double point_forces(const spari_body *body, int k, double factor, int mov
 }
 
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
-                           double *r) {
+                           double *r, double *power) {
     if (body->linear[0]) {
-        return linear_residual(body, q, v, a, factor, r);
+        return linear_residual(body, q, v, a, factor, r, power);
     }
     int P = body->per_element, moving = v != NULL;
-    double *z = body->scratch, *g = z + (int64_t)P * ROW, *f = g + (int64_t)P * BACK, scale = 0;
+    double *z = body->scratch, *g = z + (int64_t)P * ROW, *f = g + (int64_t)P * BACK, scale = 0, damped = 0;
     memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
     for (int e = 0; e < body->elements; e++) {
         int first = body->first[e], n = body->first[e + 1] - first;
@@ -428,8 +433,8 @@ double spari_body_residual(const spari_body *body, const double *q, const double
         gather(body, e, q, v, a, z);
         interpolate(body, e, z, moving, f);
         for (int k = 0; k < n; k++) {
-            double size =
-                point_forces(body, first + k, factor, moving, f + (int64_t)POINT_ROW * k, back + (int64_t)BACK_ROW * k);
+            double size = point_forces(body, first + k, factor, moving, f + (int64_t)POINT_ROW * k,
+                                       back + (int64_t)BACK_ROW * k, &damped);
             scale = size > scale ? size : scale;
         }
         collect(body, e, back, g);
@@ -440,6 +445,9 @@ double spari_body_residual(const spari_body *body, const double *q, const double
             }
             add_moment(g + BACK * l + 3, z + ROW * l + Q, rl + 3);
         }
+    }
+    if (power) {
+        *power = damped;
     }
     return scale;
 }
@@ -966,7 +974,7 @@ void spari_body_gravity_changed(spari_body *body) {
     }
     double *q = body->at_rest;
     body->linear[0] = NULL; /* the nonlinear forces at the reference are the weight */
-    spari_body_residual(body, q, NULL, NULL, 1, body->weights);
+    spari_body_residual(body, q, NULL, NULL, 1, body->weights, NULL);
     body->linear[0] = stiffness;
 }
 
@@ -1006,10 +1014,16 @@ int spari_body_linearise(spari_body *body) {
     return 0;
 }
 
+/* v . B v of one element */
+static double rate_power(int n, const double *B, const double *v, double *work) {
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, B, n, v, 1, 0, work, 1);
+    return cblas_ddot(n, v, 1, work, 1);
+}
+
 static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
-                              double *r) {
+                              double *r, double *power) {
     int P = body->per_element, n = 6 * P;
-    double *x = body->scratch, scale = 0;
+    double *x = body->scratch, scale = 0, damped = 0;
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
         r[i] = factor * body->weights[i];
     }
@@ -1023,6 +1037,9 @@ static double linear_residual(const spari_body *body, const double *q, const dou
         const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
         for (int k = 0; k < 3; k++) {
             if (in[k] && (k == 0 || (k == 1 ? body->D != NULL : body->mass != NULL))) {
+                if (k == 1) {
+                    damped += rate_power(n, body->linear[1] + at, in[1], x + n);
+                }
                 cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first,
                             1);
             }
@@ -1030,6 +1047,9 @@ static double linear_residual(const spari_body *body, const double *q, const dou
     }
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
         scale = fabs(r[i]) > scale ? fabs(r[i]) : scale;
+    }
+    if (power) {
+        *power = damped;
     }
     return scale;
 }

@@ -39,10 +39,10 @@ spari_body *spari_body_create(int elements, int per_element, int points, int ela
 void spari_body_free(spari_body *body);
 
 /* Forces of the state q [unique][7], v [unique][6], a [unique][6] (v, a NULL: at rest):
-   r [unique][6] = inertia + internal - gravity * factor, global axes. Returns an estimate of the largest single
-   contribution (what rounding in r is relative to). */
+   r [unique][6] = inertia + internal - gravity * factor, global axes. *power (NULL: not wanted): the power that damping
+   takes out. Returns an estimate of the largest single contribution (what rounding in r is relative to). */
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
-                           double *r);
+                           double *r, double *power);
 
 /* Tangent of element e, row-major S [6P][6P]: dr = S (du, dtheta) with dv = cv X, da = cm X, X = (du, Tinv dtheta),
    Tinv [unique][9] or NULL for the identity; v, a NULL: at rest. */

@@ -418,13 +418,26 @@ static void restart(spar_member *m) {
     }
 }
 
+/* a's loads become b's */
+static void copy_solved(spar_member *m, int a, int b) {
+    memcpy(m->load_solved[b], m->load_solved[a], (size_t)(6 * m->nodes) * sizeof(double));
+}
+
+void spari_member_solved(spar_member *m, const double *fluid) {
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        m->load_solved[1][i] = m->dead[i] + fluid[i];
+    }
+}
+
 void spari_member_settle(spar_member *m) {
     copy_motion(m, &m->after, &m->now);
+    copy_solved(m, 1, 0);
     restart(m);
 }
 
 void spari_member_accept(spar_member *m) {
     copy_motion(m, &m->after, &m->now);
+    copy_solved(m, 1, 0);
     memcpy(m->drive[0], m->drive[1], sizeof m->drive[0]);
     m->drive_given = m->motion_given = 0;
     m->dissipated += m->dissipated_step;
@@ -436,6 +449,7 @@ void spari_member_accept(spar_member *m) {
 
 void spari_member_reject(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
+    copy_solved(m, 0, 1);
     m->motion_given = 0;
     m->dissipated_step = 0;
     if (m->solver && m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
@@ -556,8 +570,10 @@ static int allocate(spar_member *m) {
                       &m->load_pushed,
                       &m->load_history[0],
                       &m->load_history[1],
-                      &m->load_history[2]};
-    const int size[] = {3, 4, 7, 6, 6, 7, 6, 6, 6, 6, 6, 6, 6, 6};
+                      &m->load_history[2],
+                      &m->load_solved[0],
+                      &m->load_solved[1]};
+    const int size[] = {3, 4, 7, 6, 6, 7, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6};
     for (size_t k = 0; k < sizeof size / sizeof *size; k++) {
         *all[k] = spari_zalloc(size[k] * n, sizeof(double));
         SPARI_REQUIRE(m->session, *all[k], SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
@@ -579,7 +595,9 @@ static void release(spar_member *m) {
                       &m->load_pushed,
                       &m->load_history[0],
                       &m->load_history[1],
-                      &m->load_history[2]};
+                      &m->load_history[2],
+                      &m->load_solved[0],
+                      &m->load_solved[1]};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(*all[k]);
         *all[k] = NULL;
@@ -813,8 +831,7 @@ int spar_member_get_reaction(const spar_member *member, double load[6]) {
     SPARI_TRY(need_committed(member, "spar_member_get_reaction"));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_reaction: '%s': load is NULL",
                   member->name);
-    memcpy(load, member->reaction, sizeof member->reaction);
-    return SPAR_OK;
+    return spari_member_reaction(member, load);
 }
 
 /* The unknowns' view of the nodes: joints once. Node i of the public numbering is unique node i - i / P (e P + k -> e
@@ -839,6 +856,31 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
     for (int64_t i = 0; i < m->nodes; i++) {
         memcpy(nodes + width * i, unique + width * (i - i / P), (size_t)width * sizeof *nodes);
     }
+}
+
+int spari_member_reaction(const spar_member *m, double load[6]) {
+    memset(load, 0, 6 * sizeof *load);
+    const spari_body *b = m->body;
+    int held = m->root == SPAR_ROOT_FREE ? 0 : m->root == SPAR_ROOT_PINNED ? 3 : 6;
+    if (!b || held == 0) {
+        return SPAR_OK;
+    }
+    int64_t n = b->unique;
+    int still = !(m->effects & SPAR_EFFECT_INERTIA);
+    double *q = spari_zalloc(25 * n, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
+    SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    spari_member_to_unique(m, 7, m->after.q, q);
+    spari_member_to_unique(m, 6, m->after.v, v);
+    spari_member_to_unique(m, 6, m->after.a, a);
+    spari_body_residual(b, q, still && !b->D ? NULL : v, still ? NULL : a, 1, r, NULL);
+    if (m->applied) {
+        spari_applied_residual(m, q, 1, r);
+    }
+    for (int i = 0; i < held; i++) { /* the root is node 0, which no joint repeats */
+        load[i] = r[i] - m->load_solved[1][i];
+    }
+    free(q);
+    return SPAR_OK;
 }
 
 int spar_member_get_energy(const spar_member *member, double energy[4]) {

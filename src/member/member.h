@@ -47,12 +47,17 @@ struct spar_member {
     double *load_used;       /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
     double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
-    double reaction[6];
+    double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 
 void spari_member_free(spar_member *member);
+/* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
+void spari_member_solved(spar_member *member, const double *fluid);
+/* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.
+ * Returns SPAR_ERR_MEMORY or 0. */
+int spari_member_reaction(const spar_member *member, double load[6]);
 /* The latest iterate becomes the motion the clock stands at, as after a static solution. */
 void spari_member_settle(spar_member *member);
 /* The step under way is accepted, or given up. */

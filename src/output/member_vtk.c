@@ -133,7 +133,9 @@ static int write_picture(const spar_member *m, const sampled *s, const char *pat
     for (int i = 0; i < FIELDS; i++) {
         field[i] = (spari_vtk_field){field_of[i].name, field_of[i].components, s->table + field_of[i].column * s->n};
     }
-    spari_vtk_field fact[] = {{"reaction_force", 3, m->reaction}, {"reaction_moment", 3, m->reaction + 3}};
+    double reaction[6];
+    SPARI_TRY(spari_member_reaction(m, reaction));
+    spari_vtk_field fact[] = {{"reaction_force", 3, reaction}, {"reaction_moment", 3, reaction + 3}};
     spari_vtk_picture picture = {.points = s->n,
                                  .x = field[0].value,
                                  .verts = m->nodes,

@@ -287,7 +287,7 @@ int spar_session_get_time(const spar_session *session, double *t, int64_t *step,
 
 /* ---- between the ranks ---- */
 
-enum { MEMBER_EXTRA = 7 }; /* reaction, energy dissipated in the step */
+enum { MEMBER_EXTRA = 1 }; /* energy dissipated in the step */
 
 static int64_t block_size(const spar_member *m) {
     return m->body ? 19 * (int64_t)m->body->unique + MEMBER_EXTRA : 0;
@@ -353,14 +353,13 @@ int spari_session_exchange_loads(spar_session *s, int status) {
     return SPAR_OK;
 }
 
-/* One member's block: unknowns' q, v, a; reaction; dissipation. */
+/* One member's block: unknowns' q, v, a; dissipation. */
 static void pack_member(spar_member *m, double *to) {
     int64_t n = m->body->unique;
     spari_member_to_unique(m, 7, m->after.q, to);
     spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
     spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
-    memcpy(to + 19 * n, m->reaction, sizeof m->reaction);
-    to[19 * n + 6] = m->dissipated_step;
+    to[19 * n] = m->dissipated_step;
 }
 
 static void unpack_member(spar_member *m, const double *from) {
@@ -368,8 +367,7 @@ static void unpack_member(spar_member *m, const double *from) {
     spari_member_from_unique(m, 7, from, m->after.q);
     spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
     spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
-    memcpy(m->reaction, from + 19 * n, sizeof m->reaction);
-    m->dissipated_step = from[19 * n + 6];
+    m->dissipated_step = from[19 * n];
 }
 
 int spari_session_share_motion(spar_session *s, int status) {
@@ -429,6 +427,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     }
     SPARI_TRY(spari_session_share_motion(s, status));
     member->dissipated_step = 0;
+    spari_member_solved(member, member->load_pushed);
     spari_member_settle(member);
     return SPAR_OK;
 }

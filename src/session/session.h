@@ -58,7 +58,7 @@ struct spar_session {
 uint64_t spari_session_hash(const spar_session *session);
 /* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
 int spari_session_exchange_loads(spar_session *session, int status);
-/* Motion, reaction and dissipation of the members each rank has solved for, from member->after, to all ranks.
+/* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.
  * Collective. */
 int spari_session_share_motion(spar_session *session, int status);
 /* Memory for the two calls above, for the members committed by now; agrees on a status. Collective. */

@@ -148,6 +148,9 @@ int spar_step_solve(spar_session *session) {
         s->phase = SPARI_BEGUN;
         return status;
     }
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_member_solved(m, m->load_used);
+    }
     s->phase = SPARI_SOLVED;
     return SPAR_OK;
 }

@@ -114,13 +114,13 @@ static void impose_root(const spar_member *member, const double *root, const spa
     }
 }
 
-/* Residual minus loads, fixed unknowns out; the root's row goes to member->reaction. Returns the size rounding in it is
+/* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
  * relative to. */
 static double balance(spar_member *member, const scheme *c, const spari_state *s, double *r) {
     spari_solver *solver = member->solver;
     int n = solver->n, first, end;
     double scale = spari_body_residual(member->body, s->q, c->still && !member->body->D ? NULL : s->v,
-                                       c->still ? NULL : s->a, 1, r);
+                                       c->still ? NULL : s->a, 1, r, &solver->power);
     for (int i = 0; i < 6 * n; i++) {
         r[i] -= solver->load[i];
     }
@@ -128,8 +128,6 @@ static double balance(spar_member *member, const scheme *c, const spari_state *s
         scale = fmax(scale, spari_applied_residual(member, s->q, 1, r));
     }
     spari_solver_fixed(member, &first, &end);
-    memset(member->reaction, 0, sizeof member->reaction);
-    memcpy(member->reaction + first, r + first, (size_t)(end - first) * sizeof *r);
     memset(r + first, 0, (size_t)(end - first) * sizeof *r);
     return scale;
 }
@@ -371,7 +369,7 @@ static int start(spar_member *member, const scheme *c) {
     }
     int singular = spari_solver_factor(member, b->q, NULL, NULL, 0, c->cm, 0, NULL);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
-        spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r);
+        spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r, NULL);
         if (member->applied) {
             spari_applied_residual(member, b->q, 1, s->r);
         }
@@ -393,15 +391,6 @@ static int start(spar_member *member, const scheme *c) {
     memcpy(b->b, b->a, (size_t)(6 * n) * sizeof *b->b);
     s->started = 1;
     return SPAR_OK;
-}
-
-/* Power that damping takes out at a state; nothing is computed where nothing damps. */
-static double dissipation(const spar_member *member, const spari_state *state) {
-    double energy[4] = {0};
-    if (member->body->D) {
-        spari_body_energy(member->body, state->q, state->v, energy);
-    }
-    return energy[3];
 }
 
 /* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its
@@ -443,8 +432,7 @@ int spari_solver_advance(spar_member *member, double dt) {
     rescale(s, c.h);
     s->h_solved = c.h;
     memcpy(before, member->drive[0], sizeof before);
-    double reaction[6], power = dissipation(member, &s->begin);
-    memcpy(reaction, member->reaction, sizeof reaction);
+    double power = s->power_begin;
     member->dissipated_step = 0;
     for (int k = 1; k <= A; k++) {
         double f = (double)k / A, conj[4], turn[4] = {1, 0, 0, 0};
@@ -459,16 +447,13 @@ int spari_solver_advance(spar_member *member, double dt) {
         }
         int status = newton(member, &c, root, turn, &s->from, &s->to, s->increment);
         if (status != SPAR_OK) {
-            memcpy(member->reaction, reaction, sizeof reaction);
             s->factored = 0;
             return status;
         }
         memcpy(before, root, sizeof before);
-        double power_before = power;
-        power = dissipation(member, &s->to);
-        member->dissipated_step += 0.5 * c.h * (power_before + power);
+        member->dissipated_step += 0.5 * c.h * (power + s->power);
+        power = s->power;
     }
-    balance(member, &c, &s->to, s->r);
     spari_solver_publish(member, &s->to, &member->after);
     return SPAR_OK;
 }

@@ -72,6 +72,7 @@ void spari_solver_restart(spari_solver *s, const spar_member *member) {
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     s->started = 0;
     s->h_begin = 0;
+    s->power = s->power_begin = 0;
 }
 
 void spari_solver_accept(spari_solver *s) {
@@ -79,6 +80,7 @@ void spari_solver_accept(spari_solver *s) {
     s->begin = s->to;
     s->to = t;
     s->h_begin = s->h_solved;
+    s->power_begin = s->power;
 }
 
 void spari_solver_fixed(const spar_member *member, int *first, int *end) {

@@ -26,12 +26,13 @@ struct spari_solver {
     spari_linear *linear;
     /* the factored tangent, kept while it contracts */
     int factored;
-    double kept_cm, kept_cv;  /* its coefficients */
-    double *kept_q;           /* [n][4] how the nodes were turned when it was formed */
-    double *turn;             /* [n][4] their turn since */
-    double h_begin, h_solved; /* the (sub)steps that led to t^n and to t^{n+1}; 0: none yet */
-    int started;              /* accelerations at t^0 are known */
-    int64_t newton, factors;  /* totals: iterations, factorisations */
+    double kept_cm, kept_cv;   /* its coefficients */
+    double *kept_q;            /* [n][4] how the nodes were turned when it was formed */
+    double *turn;              /* [n][4] their turn since */
+    double h_begin, h_solved;  /* the (sub)steps that led to t^n and to t^{n+1}; 0: none yet */
+    double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
+    int started;               /* accelerations at t^0 are known */
+    int64_t newton, factors;   /* totals: iterations, factorisations */
 };
 
 spari_solver *spari_solver_create(const spar_member *member);

@@ -17,7 +17,7 @@ static int equilibrium(spar_member *member, double f, double *q) {
     const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
     spari_solver_fixed(member, &first, &end);
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
-        double scale = spari_body_residual(member->body, q, NULL, NULL, f, s->r);
+        double scale = spari_body_residual(member->body, q, NULL, NULL, f, s->r, NULL);
         for (int i = 0; i < 6 * n; i++) {
             s->r[i] -= f * s->load[i];
             scale = fmax(scale, fabs(f * s->load[i]));
@@ -25,7 +25,6 @@ static int equilibrium(spar_member *member, double f, double *q) {
         if (member->applied) {
             scale = fmax(scale, spari_applied_residual(member, q, f, s->r));
         }
-        memcpy(member->reaction + first, s->r + first, (size_t)(end - first) * sizeof *s->r);
         memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
         double noise = 0;
         for (int i = 0; i < 6 * n; i++) {
@@ -56,14 +55,7 @@ static int equilibrium(spar_member *member, double f, double *q) {
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
-            double check = spari_body_residual(member->body, q, NULL, NULL, f, s->r);
-            if (member->applied) {
-                spari_applied_residual(member, q, f, s->r);
-            }
-            for (int i = first; i < end; i++) {
-                member->reaction[i] = s->r[i] - f * s->load[i];
-            }
-            return !isfinite(check);
+            return 0;
         }
         last = largest;
     }
@@ -76,10 +68,8 @@ int spari_solver_static(spar_member *member, int load_steps) {
     spari_solver *s = member->solver;
     int n = s->n;
     size_t bytes = (size_t)(7 * n) * sizeof(double);
-    double reaction[6], done = 0, step = 1.0 / load_steps;
+    double done = 0, step = 1.0 / load_steps;
     int halvings = 0;
-    memcpy(reaction, member->reaction, sizeof reaction);
-    memset(member->reaction, 0, sizeof member->reaction);
     spari_solver_gather(member, member->dead, s->load);
     spari_solver_gather(member, member->load_pushed, s->r);
     for (int i = 0; i < 6 * n; i++) {
@@ -98,7 +88,6 @@ int spari_solver_static(spar_member *member, int load_steps) {
         step *= 0.5;
         if (++halvings > STATIC_HALVINGS) {
             s->factored = 0;
-            memcpy(member->reaction, reaction, sizeof reaction);
             return spari_fail(member->session, SPAR_ERR_NUMERIC,
                               "spar_member_solve_static: '%s': no equilibrium found beyond %.6g of the loads (a limit "
                               "point, or a member that nothing "
