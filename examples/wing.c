@@ -60,13 +60,15 @@ static int mesh_create(mesh *m, int rank, int ranks) {
     m->force = m->centre + 3 * m->panels;
     for (int64_t i = 0; i < m->vertices;
          i++) { /* span along x, chord along y from the leading edge, the line at y = 0 */
-        m->vertex[3 * i] = span * (double)(m->first + i / ACROSS) / STRIPS;
+        int64_t station = m->first + i / ACROSS;
+        m->vertex[3 * i] = span * (double)station / STRIPS;
         m->vertex[3 * i + 1] = chord * (chord_at((int)(i % ACROSS)) - 0.33);
     }
     for (int64_t p = 0; p < m->panels; p++) {
         double load, moment; /* a panel's force stands at its centre of pressure */
         panel_load((int)(p % PANELS), &load, &moment);
-        m->centre[3 * p] = span * (m->first + (double)(p / PANELS) + 0.5) / STRIPS;
+        int64_t strip = m->first + p / PANELS;
+        m->centre[3 * p] = span * ((double)strip + 0.5) / STRIPS;
         m->centre[3 * p + 1] = chord * (moment / load - 0.33);
     }
     return 0;
