@@ -1401,20 +1401,14 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, self%place('pull_poses'), 'x', shape(x, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(q)) call need(fault, self%place('pull_poses'), 'q', shape(q, kind=c_int64_t), &
-        [4_c_int64_t, n])
-    if (present(v)) call need(fault, self%place('pull_poses'), 'v', shape(v, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(omega)) call need(fault, self%place('pull_poses'), 'omega', shape(omega, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(accel)) call need(fault, self%place('pull_poses'), 'accel', shape(accel, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(alpha)) call need(fault, self%place('pull_poses'), 'alpha', shape(alpha, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(alpha)) call need(fault, 'alpha', shape(alpha, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
