@@ -1431,10 +1431,9 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('pull_matrices'), 'matrix', shape(matrix, kind=c_int64_t), &
-        [3_c_int64_t, 3_c_int64_t, n])
+    call need(fault, 'matrix', shape(matrix, kind=c_int64_t), [3_c_int64_t, 3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_matrices', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_matrices(self%handle, theta, 1 - convention, matrix), self%session, stat, errmsg)
@@ -1456,10 +1455,9 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('check_matrices'), 'matrix', shape(matrix, kind=c_int64_t), &
-        [3_c_int64_t, 3_c_int64_t, n])
+    call need(fault, 'matrix', shape(matrix, kind=c_int64_t), [3_c_int64_t, 3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%check_matrices', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_check_matrices(self%handle, 1 - convention, matrix), self%session, stat, errmsg)
@@ -1528,12 +1526,10 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, self%place('pull_motion_f32'), 'x', shape(x, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(v)) call need(fault, self%place('pull_motion_f32'), 'v', shape(v, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_motion_f32', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
@@ -1554,14 +1550,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(q)) call need(fault, self%place('pull_sections_f32'), 'q', shape(q, kind=c_int64_t), &
-        [4_c_int64_t, n])
-    if (present(omega)) call need(fault, self%place('pull_sections_f32'), 'omega', shape(omega, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(accel)) call need(fault, self%place('pull_sections_f32'), 'accel', shape(accel, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_sections_f32', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_sections_f32(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
@@ -1582,10 +1575,9 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('pull_forces_f32'), 'force', shape(force, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%pull_forces_f32', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_pull_forces_f32(self%handle, theta, force), self%session, stat, errmsg)
@@ -1606,13 +1598,11 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, self%place('push_forces_f32'), 'force', shape(force, kind=c_int64_t), &
-        [3_c_int64_t, n])
-    if (present(moment)) call need(fault, self%place('push_forces_f32'), 'moment', shape(moment, kind=c_int64_t), &
-        [3_c_int64_t, n])
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
       status = spar_fluid_push_forces_f32(self%handle) ! as in push_forces
-      call refuse(fault, stat, errmsg)
+      call refuse('fluid%push_forces_f32', fault, stat, errmsg, self%name)
       return
     end if
     call finish(spar_fluid_push_forces_f32(self%handle, force, moment), self%session, stat, errmsg)
