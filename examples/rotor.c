@@ -99,6 +99,7 @@ static void ranks_end(const scene *s, int failed) {
 /* Says what went wrong; a rank whose peer failed leaves that to the peer. */
 static int complain(const scene *s, int status) {
     const char *text = s->turbine.message[0] ? s->turbine.message : spar_session_message(s->session);
+    text = status == SPAR_ERR_MEMORY && !text[0] ? "no memory" : text;
     if (status != SPAR_ERR_PEER) {
         fprintf(stderr, "\nrotor: rank %d: %s: %s\n", s->rank, spar_status_text(status), text);
     }
@@ -190,6 +191,8 @@ static int allocate(scene *s) {
 static int build(scene *s) {
     double twist[256];
     if (s->turbine.aero_n > (int64_t)(sizeof twist / sizeof *twist)) {
+        snprintf(s->turbine.message, sizeof s->turbine.message, "aero.txt has %lld sections; 256 is the most",
+                 (long long)s->turbine.aero_n);
         return complain(s, SPAR_ERR_ARGUMENT);
     }
     for (int b = 0; b < s->rotor.blades; b++) {
