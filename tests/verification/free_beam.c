@@ -14,8 +14,8 @@ static void momenta(const spar_member *b, double P[3], double L[3]) {
     double q[7 * NODES], v[6 * NODES], zero[6 * NODES] = {0}, f[6 * NODES], f0[6 * NODES], x[3 * NODES];
     assert_int_equal(spar_member_get_motion(b, q, v, NULL), SPAR_OK);
     assert_int_equal(spar_member_get_reference(b, x, NULL), SPAR_OK);
-    spari_body_residual(b->body, q, zero, v, 0, f);
-    spari_body_residual(b->body, q, zero, zero, 0, f0);
+    spari_body_residual(b->body, q, zero, v, 0, f, NULL);
+    spari_body_residual(b->body, q, zero, zero, 0, f0, NULL);
     for (int k = 0; k < 3; k++) {
         P[k] = L[k] = 0;
     }
