@@ -1,13 +1,12 @@
-# The beam benchmark counts Newton iterations and quadrature points, which the shared library hides: the static one, and
+# The beam benchmarks count Newton iterations and quadrature points, which the shared library hides: the static one, and
 # the internal headers. The yardstick is GSL over its own CBLAS, so it must not see the fast one.
-if(TARGET benchmarks_beam)
-  find_library(SPAR_GSLCBLAS_LIBRARY gslcblas)
-  mark_as_advanced(SPAR_GSLCBLAS_LIBRARY)
-  set_target_properties(benchmarks_beam PROPERTIES
+find_library(SPAR_GSLCBLAS_LIBRARY gslcblas)
+mark_as_advanced(SPAR_GSLCBLAS_LIBRARY)
+foreach(program IN ITEMS benchmarks_beam benchmarks_beam_curves)
+  set_target_properties(${program} PROPERTIES
     LINK_LIBRARIES "spar_flags;spar_example_parts;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
-  target_include_directories(benchmarks_beam PRIVATE "${PROJECT_SOURCE_DIR}/src")
-  set_target_properties(benchmarks_yardstick PROPERTIES
-    LINK_LIBRARIES "spar_flags;${GSL_LIBRARY};${SPAR_GSLCBLAS_LIBRARY};m")
-  target_compile_definitions(benchmarks_beam PRIVATE SPAR_YARDSTICK="$<TARGET_FILE:benchmarks_yardstick>")
-  add_dependencies(benchmarks_beam benchmarks_yardstick)
-endif()
+  target_include_directories(${program} PRIVATE "${PROJECT_SOURCE_DIR}/src")
+endforeach()
+set_target_properties(benchmarks_yardstick PROPERTIES LINK_LIBRARIES "spar_flags;${GSL_LIBRARY};${SPAR_GSLCBLAS_LIBRARY};m")
+target_compile_definitions(benchmarks_beam PRIVATE SPAR_YARDSTICK="$<TARGET_FILE:benchmarks_yardstick>")
+add_dependencies(benchmarks_beam benchmarks_yardstick)
