@@ -41,9 +41,11 @@ endforeach()
 
 # The Fortran host, with momentum theory of its own, gives the numbers of the C program to 1e-10, on any number of ranks.
 if(TARGET examples_rotor_fortran)
-  set(run --wind 11 --gust 4 --gust-start 0 --gust-length 0.4 --seconds 0.3)
+  set(run --wind 11 --gust 4 --gust-start 0 --gust-length 0.4 --seconds 0.3 --dt 0.01 --elements 1 --nodes 10
+    --tolerance 1e-6 --iterations 20)
   add_test(NAME example_rotor_reference
-    COMMAND examples_rotor ${run} --coupling fixed-point --tolerance 1e-6 --predictor 1 --rho-inf 0.8 --vtk-every 0 --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/rotor_reference)
+    COMMAND examples_rotor ${run} --coupling fixed-point --predictor 1 --rho-inf 0.8 --vtk-every 0 --no-plots --quiet
+            --out ${PROJECT_BINARY_DIR}/tests/rotor_reference)
   list(APPEND run --compare ${PROJECT_BINARY_DIR}/tests/rotor_reference/history.csv)
   add_test(NAME example_rotor_fortran COMMAND examples_rotor_fortran ${run})
   spar_set_test(example_rotor_reference fortran 120 ${spar_example_environment})

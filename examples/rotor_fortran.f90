@@ -580,7 +580,7 @@ module host
   integer :: rank = 0, ranks = 1
 
   ! options
-  real(dp) :: seconds = 30, dt = 0.01_dp, tolerance = 1e-6_dp
+  real(dp) :: seconds = 30, dt = 0.02_dp, tolerance = 1e-6_dp
   integer(c_int) :: elements = 1, nodes = 10, iterations_most = 20
   character(1024) :: data_folder = '', history_file = '', compare_file = ''
 
@@ -977,7 +977,7 @@ contains
         '  --gust-start S        when it begins [10]', &
         '  --gust-length S       how long it lasts [10]', &
         '  --seconds S           time to simulate [30]', &
-        '  --dt S                coupling step [0.01]', &
+        '  --dt S                coupling step [0.02]', &
         '  --elements N          beam elements per blade [1]', &
         '  --nodes N             nodes per element [10]', &
         '  --tolerance R         change of the loads that ends the iteration [1e-6]', &
