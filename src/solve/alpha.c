@@ -77,8 +77,31 @@ static void predict(const spar_member *member, const scheme *c, const double tur
                 to->b[k] = (1 - 0.5 / c->beta) * b - (stays == PLACE ? from->v[k] / (h * c->beta) : 0);
                 to->a[k] = ((1 - c->alpha_m) * to->b[k] + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
             }
-            x[k] = c->still ? 0 : h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
+            x[k] = h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
             to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
+        }
+        place_node(c, from, to, x, i);
+    }
+}
+
+/* Starting values without inertia: the member goes along with its root as it stands. */
+static void carry(const spar_member *member, const scheme *c, const double *root, const double turn[4],
+                  const spari_state *from, spari_state *to, double *x) {
+    const spari_solver *s = member->solver;
+    int P = member->per_element, driven = member->root == SPAR_ROOT_DRIVEN;
+    double psi[3];
+    spari_quat_log(turn, psi);
+    for (int i = 0; i < s->n; i++) {
+        int element = P > 1 ? (i > 0 ? (i - 1) / (P - 1) : 0) : 0;
+        const double *place = member->xr + 3 * (i + element); /* node of the public numbering, joints twice */
+        double arm[3], turned[3];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = place[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
+        }
+        spari_rotate(turn, arm, turned);
+        for (int k = 0; k < 3; k++) {
+            x[6 * i + k] = driven ? root[k] - from->q[k] + turned[k] - arm[k] : 0;
+            x[6 * i + 3 + k] = driven ? psi[k] : 0;
         }
         place_node(c, from, to, x, i);
     }
@@ -303,7 +326,11 @@ static int newton(spar_member *member, const scheme *c, const double *root, cons
         guess stays;
     } attempts[] = {{KEPT, ACCELERATION}, {FRESH, ACCELERATION}, {FULL, VELOCITY}, {FULL, PLACE}};
     for (size_t k = member->solver->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
-        predict(member, c, turn, attempts[k].stays, from, to, x);
+        if (c->still) {
+            carry(member, c, root, turn, from, to, x);
+        } else {
+            predict(member, c, turn, attempts[k].stays, from, to, x);
+        }
         wrong = attempt(member, c, root, attempts[k].how, from, to, x, &iterations);
         if (!wrong) {
             return SPAR_OK;
