@@ -99,20 +99,6 @@ static void *other_thread(void *mine) {
     return NULL;
 }
 
-/* What this release does not do says so and names the file. */
-static void test_unsupported(void **state) {
-    (void)state;
-    spar_session *session = NULL;
-    assert_int_equal(spar_session_create(&session), SPAR_OK);
-    assert_int_equal(spar_session_save(session, "a.state"), SPAR_ERR_UNSUPPORTED);
-    assert_non_null(strstr(spar_session_message(session), "spar_session_save"));
-    assert_int_equal(spar_session_load(session, "b.state"), SPAR_ERR_UNSUPPORTED);
-    assert_non_null(strstr(spar_session_message(session), "spar_session_load"));
-    assert_int_equal(spar_session_save(session, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_load(NULL, "b.state"), SPAR_ERR_ARGUMENT);
-    spar_session_destroy(&session);
-}
-
 /* Without a session the message belongs to the thread. */
 static void test_thread_message(void **state) {
     (void)state;
@@ -202,7 +188,6 @@ int main(void) {
         cmocka_unit_test(test_texts),           cmocka_unit_test(test_features),
         cmocka_unit_test(test_messages),        cmocka_unit_test(test_thread_message),
         cmocka_unit_test(test_nonfinite),       cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_unsupported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -466,8 +466,13 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
    took, NULL: not wanted. Accepts, or after a failure of any part rejects and answers that part's status. */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
-/* State between steps to and from a file. path: in. load: into a session with the same members, committed.
-   Collective. */
+/* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
+   fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. path: in;
+   rank 0 writes and reads. The file is written under path.new, flushed and renamed: there is always a whole one. load:
+   into a session with the same members, committed, and the same fluids, mapped, by name, no step under way, on any
+   number of ranks: nodes may be spread over the ranks otherwise, node forces find them by their reference places. What
+   the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut off or damaged or cannot be
+   read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it was. Collective. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 

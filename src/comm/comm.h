@@ -33,6 +33,9 @@ int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
    carries its status (so every block has at least one). Returns as spari_comm_agree. */
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
 
+/* Rank 0's data[bytes] goes to all the others. */
+int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
+
 /* Whether `key` is the same on all ranks: *same is 1 or 0 everywhere. */
 int spari_comm_same(spari_comm *comm, uint64_t key, int *same);
 

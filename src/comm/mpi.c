@@ -135,6 +135,16 @@ static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int stat
     return SPAR_OK;
 }
 
+static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    SPARI_TRY(check_up(message, size));
+    for (int64_t at = 0; at < bytes; at += INT_MAX) {
+        int part = (int)(bytes - at < INT_MAX ? bytes - at : INT_MAX);
+        TRY_MPI(MPI_Bcast((char *)data + at, part, MPI_BYTE, 0, c->handle));
+    }
+    return SPAR_OK;
+}
+
 static int mpi_same(spari_comm *comm, uint64_t key, int *same) {
     mpi_comm *c = (mpi_comm *)comm;
     uint64_t mine[2] = {key, ~key}, all[2];
@@ -146,7 +156,7 @@ static int mpi_same(spari_comm *comm, uint64_t key, int *same) {
     return SPAR_OK;
 }
 
-static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree, mpi_sum, mpi_share, mpi_same};
+static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree, mpi_sum, mpi_share, mpi_broadcast, mpi_same};
 
 /* ---- create ---- */
 

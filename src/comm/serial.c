@@ -57,6 +57,10 @@ int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int stat
     return comm->ops ? comm->ops->share(comm, x, first, status, message, size) : status;
 }
 
+int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
+    return comm->ops ? comm->ops->broadcast(comm, data, bytes, message, size) : SPAR_OK;
+}
+
 int spari_comm_same(spari_comm *comm, uint64_t key, int *same) {
     *same = 1;
     return comm->ops ? comm->ops->same(comm, key, same) : SPAR_OK;

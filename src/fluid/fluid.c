@@ -347,8 +347,7 @@ static void flag_far(const spar_fluid *fluid, int64_t n, feet *f, int64_t *far) 
     }
 }
 
-/* Reference places of a mapped set, put together again from feet and arms: [n][3]. */
-static double *places_again(const spar_fluid *fluid, const spari_nodes *s) {
+double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *s) {
     double *x = spari_zalloc(3 * s->n, sizeof *x);
     for (int64_t p = 0; x && p < s->n; p++) {
         double foot[3], q[4];
@@ -366,7 +365,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     const spari_node_set *set = &fluid->set[which];
     int64_t far[2] = {0, 0}, n = set->pending ? set->n : set->nodes->n;
     feet f;
-    double *again = set->pending ? NULL : places_again(fluid, set->nodes);
+    double *again = set->pending ? NULL : spari_fluid_places(fluid, set->nodes);
     *made = spari_nodes_create(n, m->elements, m->per_element);
     if (alloc_feet(&f, n) != SPAR_OK || !*made || !(set->pending || again)) {
         free_feet(&f);

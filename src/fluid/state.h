@@ -74,6 +74,8 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
 /* Reference foot and its orientation (the spec's normalised sum of the nodes' quaternions). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
+/* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
+double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
 /* Keeps node forces for n nodes from now on, beginning with zeros. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);
 void spari_fluid_clear_history(spari_history *history);

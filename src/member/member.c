@@ -506,7 +506,7 @@ static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
 
 uint64_t spari_member_hash(const spar_member *m) {
     uint64_t h = UINT64_C(14695981039346656037);
-    int numbers[] = {m->kind,          m->external, m->root,        m->owner,         m->effects,
+    int numbers[] = {m->kind,          m->external, m->root,        m->effects,
                      m->effects_given, m->elements, m->per_element, m->velocity_given};
     h = hash_bytes(h, m->name, strlen(m->name));
     h = hash_bytes(h, numbers, sizeof numbers);
@@ -670,7 +670,7 @@ int spar_member_commit(spar_member *member) {
     }
     int agreed = spari_comm_agree(s->comm, status, s->message, sizeof s->message), same = 1;
     if (agreed == SPAR_OK) {
-        agreed = spari_comm_same(s->comm, spari_member_hash(member), &same);
+        agreed = spari_comm_same(s->comm, spari_member_hash(member) ^ (uint64_t)(member->owner + 1), &same);
         if (agreed == SPAR_OK && !same) {
             agreed = spari_fail(s, SPAR_ERR_COMM,
                                 "spar_member_commit: the ranks describe '%s' differently; make the calls that describe "

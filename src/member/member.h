@@ -65,7 +65,7 @@ void spari_member_accept(spar_member *member);
 void spari_member_reject(spar_member *member);
 /* Puts the session's gravity in force. */
 void spari_member_gravity(spar_member *member);
-/* What all ranks must agree on, as one number. */
+/* The description as one number: all but the owner. */
 uint64_t spari_member_hash(const spar_member *member);
 /* Arrays of `width` doubles a node, from the public numbering (joints twice) to the unknowns' (joints once) and back.
  */

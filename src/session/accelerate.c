@@ -476,8 +476,7 @@ static int whole_below(double x, double end) {
     return x >= 0 && x < end && x == floor(x);
 }
 
-/* Whether the numbers are a state that save could have written. */
-static int is_state(const spari_accelerator *a, const double *state, int64_t count) {
+int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count) {
     if (count < HEAD || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
         !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
         return 0;
@@ -501,7 +500,7 @@ static int is_state(const spari_accelerator *a, const double *state, int64_t cou
 }
 
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
-    if (!is_state(a, state, count)) {
+    if (!spari_accelerator_is_state(a, state, count)) {
         return 0;
     }
     int occupied = (int)state[13], used = (int)state[14];

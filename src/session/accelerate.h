@@ -45,10 +45,11 @@ int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered o
    has the derivative minus that ratio. 0 before the second iteration. */
 double spari_accelerator_ratio(const spari_accelerator *a);
 
-/* The whole state as doubles, for save and load into an accelerator of the same n and settings; load answers 0, and
-   changes nothing, where `count` doubles cannot be such a state. */
+/* The whole state as doubles, for save and load into an accelerator of the same n and settings. */
 int64_t spari_accelerator_state_size(const spari_accelerator *a);
 void spari_accelerator_save(const spari_accelerator *a, double *state);
+/* Whether `count` doubles can be such a state; load answers the same and changes nothing where they cannot. */
+int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count);
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count);
 
 #endif

@@ -56,7 +56,14 @@ static int allocate(const spar_session *s, spari_coupling *c) {
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
 
-int spari_coupling_prepare(spar_session *s) {
+void spari_coupling_settings(const spar_session *s, double settings[SPARI_COUPLING_SETTINGS]) {
+    const double all[SPARI_COUPLING_SETTINGS] = {s->scheme,           s->relaxation,     s->coupling_max,
+                                                 s->coupling_columns, s->coupling_reuse, s->coupling_filter,
+                                                 wants_motion(s)};
+    memcpy(settings, all, sizeof all);
+}
+
+int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
     spari_coupling *c = spari_zalloc(1, sizeof *c);
     for (const spar_member *m = s->members; m && c; m = m->next) {
         c->n += 6 * m->nodes;
@@ -75,6 +82,13 @@ int spari_coupling_prepare(spar_session *s) {
         (void)frexp(1 / c->length[k], &exponent);
         c->unit[k] = ldexp(1, exponent);
     }
+    *coupling = c;
+    return SPAR_OK;
+}
+
+int spari_coupling_prepare(spar_session *s) {
+    spari_coupling *c;
+    SPARI_TRY(spari_coupling_create(s, &c));
     if (s->coupling) {
         c->report[SPAR_REPORT_UNCONVERGED] = s->coupling->report[SPAR_REPORT_UNCONVERGED];
     }

@@ -26,7 +26,9 @@ typedef struct spari_coupling {
     int warned;
 } spari_coupling;
 
-/* Memory for the settings in force; what there was goes. Local. */
+/* Memory for the settings in force. Local. */
+int spari_coupling_create(spar_session *session, spari_coupling **coupling);
+/* The same into the session; what there was goes. */
 int spari_coupling_prepare(spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
@@ -35,5 +37,9 @@ int spari_coupling_check(spar_session *session, int *done);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
 void spari_coupling_reject(spar_session *session);
+
+/* The settings that a state depends on. */
+enum { SPARI_COUPLING_SETTINGS = 7 };
+void spari_coupling_settings(const spar_session *session, double settings[SPARI_COUPLING_SETTINGS]);
 
 #endif

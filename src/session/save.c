@@ -1,25 +1,632 @@
-/* State to and from a file: declared for hosts to compile against, and refused by this version. */
+/* Save and load: the whole session in one file (image.h), in this order:
+     ranks; members: name and description of each; the clock; the state of each member; the coupling;
+     then what is one rank's own, rank by rank: the solvers of its members, its fluids.
+   Every rank gets the whole image to load from, so that members and fluids may live on other ranks than before. A file
+   is taken in two passes: the first checks and gets memory, and only when all ranks can load does the second change the
+   session. */
+#include "image.h"
 #include "session.h"
 
-static int refuse(const spar_session *session, const char *call, const char *path) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    spar_session *s = (spar_session *)session; /* whose message is written; its state is not touched */
-    int status = SPAR_OK;
-    if (!path || !path[0]) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: the path is empty", call);
+#include "../solve/solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what is there on every rank: the same code writes, checks and reads ---- */
+
+typedef struct stream {
+    spari_image *image;
+    enum { WRITE, CHECK, READ } mode;
+} stream;
+
+static void pass(stream *t, void *words, int64_t n) {
+    if (t->mode == WRITE) {
+        spari_image_put(t->image, words, n);
     } else {
-        status = spari_fail(s, SPAR_ERR_UNSUPPORTED,
-                            "%s: this version of the library does not keep sessions in files; keep the host's own "
-                            "state and start the session anew",
-                            call);
+        const uint64_t *from = spari_image_get(t->image, n);
+        if (t->mode == READ && from && n > 0) {
+            memcpy(words, from, (size_t)n * sizeof *from);
+        }
     }
+}
+
+static void pass_int(stream *t, int *x) {
+    int64_t word = *x;
+    pass(t, &word, 1);
+    if (t->mode == READ) {
+        *x = (int)word;
+    }
+}
+
+static void pass_clock(stream *t, spar_session *s) {
+    int phase = (int)s->phase;
+    pass(t, &s->time, 1);
+    pass(t, &s->dt, 1);
+    pass(t, s->dt_last, 2);
+    pass(t, &s->step, 1);
+    pass_int(t, &s->iteration);
+    pass_int(t, &s->iterating);
+    pass_int(t, &s->order);
+    pass_int(t, &s->started);
+    pass_int(t, &phase);
+    if (t->mode == READ) {
+        s->phase = (spari_phase)phase;
+    }
+}
+
+static void pass_member(stream *t, spar_member *m) {
+    int64_t n = m->nodes;
+    double *motions[] = {m->now.q, m->now.v, m->now.a, m->after.q, m->after.v, m->after.a};
+    static const int width[] = {7, 6, 6, 7, 6, 6};
+    double *loads[] = {
+        m->dead,           m->load_used,     m->load_pushed, m->load_history[0], m->load_history[1], m->load_history[2],
+        m->load_solved[0], m->load_solved[1]};
+    for (int k = 0; k < 6; k++) {
+        pass(t, motions[k], width[k] * n);
+    }
+    for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
+        pass(t, loads[k], 6 * n);
+    }
+    pass(t, m->drive, 2 * 19);
+    pass(t, &m->dissipated, 1);
+    pass(t, &m->dissipated_step, 1);
+    pass_int(t, &m->motion_given);
+    pass_int(t, &m->drive_given);
+}
+
+/* c: of the settings in the image; never only checked */
+static void pass_coupling(stream *t, spari_coupling *c) {
+    pass_int(t, &c->iterations);
+    c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
+    pass(t, c->residual, c->iterations);
+    pass(t, c->size, c->iterations);
+    pass(t, &c->moved, 1);
+    pass(t, &c->travelled, 1);
+    pass(t, c->report, SPAR_REPORT_COUNT);
+    pass(t, &c->defect, 1);
+    pass_int(t, &c->grown);
+    pass_int(t, &c->warned);
+}
+
+static void put_accelerator(spari_image *image, const spari_coupling *c) {
+    int64_t n = spari_accelerator_state_size(c->accelerator);
+    double *state = spari_zalloc(n, sizeof *state);
+    if (!state) {
+        image->failed = 1;
+        return;
+    }
+    spari_accelerator_save(c->accelerator, state);
+    spari_image_put_int(image, n);
+    spari_image_put(image, state, n);
+    spari_image_put(image, c->predicted, c->n);
+    free(state);
+}
+
+static int64_t motion_words(const spari_coupling *c, const double *settings) {
+    return c->accelerator && settings[SPARI_COUPLING_SETTINGS - 1] != 0 ? 7 * (c->n / 6) : 0;
+}
+
+/* The length of the coupling comes first: it may have to be passed over. */
+static void put_coupling(spari_image *image, spar_session *s) {
+    double settings[SPARI_COUPLING_SETTINGS];
+    int64_t at = image->count;
+    spari_image_put_int(image, 0);
+    if (s->coupling && !s->coupling_stale) {
+        stream t = {image, WRITE};
+        spari_coupling_settings(s, settings);
+        spari_image_put(image, settings, SPARI_COUPLING_SETTINGS);
+        pass_coupling(&t, s->coupling);
+        if (s->coupling->accelerator) {
+            put_accelerator(image, s->coupling);
+            spari_image_put(image, s->coupling->motion, motion_words(s->coupling, settings));
+        }
+    }
+    if (!image->failed) {
+        image->word[at] = (uint64_t)(image->count - at - 1);
+    }
+}
+
+/* ---- what is one rank's own ---- */
+
+static int member_index(const spar_session *s, const spar_member *member) {
+    int k = 0;
+    for (const spar_member *m = s->members; m != member; m = m->next) {
+        k++;
+    }
+    return k;
+}
+
+static double *put_room(spari_image *image, int64_t n) {
+    double *room = spari_zalloc(n, sizeof *room);
+    image->failed |= !room;
+    return room;
+}
+
+static int put_own(spari_image *image, const spar_session *s) {
+    int64_t solvers = 0, fluids = 0;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        solvers += m->solver != NULL;
+    }
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        fluids++;
+    }
+    spari_image_put_int(image, solvers);
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        if (m->solver) {
+            int64_t n = spari_solver_state_size(m->solver);
+            double *state = put_room(image, n);
+            if (state) {
+                spari_solver_save(m->solver, state);
+                spari_image_put_int(image, k);
+                spari_image_put_int(image, n);
+                spari_image_put(image, state, n);
+                free(state);
+            }
+        }
+    }
+    spari_image_put_int(image, fluids);
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        int64_t n = spari_fluid_state_size(f);
+        double *state = put_room(image, n);
+        if (state) {
+            int status = spari_fluid_save(f, state);
+            spari_image_put_int(image, member_index(s, spari_fluid_member(f)));
+            spari_image_put_text(image, spari_fluid_name(f));
+            spari_image_put_int(image, n);
+            spari_image_put(image, state, n);
+            free(state);
+            SPARI_TRY(status);
+        }
+    }
+    return SPAR_OK;
+}
+
+/* ---- between the ranks ---- */
+
+static int agree(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
+static int no_memory(spar_session *s, const char *call) {
+    return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the state of the session", call);
+}
+
+/* The words of all ranks, rank by rank, each followed by a word of the exchange: rank r has all[first[r]] to
+   all[first[r + 1] - 2]. */
+static int gather(spar_session *s, const spari_image *mine, double **all, int64_t **first) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    double *sizes = spari_zalloc(2 * ranks, sizeof *sizes);
+    *first = spari_zalloc(ranks + 1, sizeof **first);
+    int status = agree(s, sizes && *first ? SPAR_OK : no_memory(s, "spar_session_save"));
+    if (status == SPAR_OK) {
+        for (int r = 0; r < ranks; r++) {
+            (*first)[r + 1] = 2 * (r + 1);
+        }
+        sizes[2 * rank] = (double)mine->count;
+        status = spari_comm_share(s->comm, sizes, *first, SPAR_OK, s->message, sizeof s->message);
+    }
+    if (status == SPAR_OK) {
+        for (int r = 0; r < ranks; r++) {
+            (*first)[r + 1] = (*first)[r] + (int64_t)sizes[2 * r] + 1;
+        }
+        *all = spari_zalloc((*first)[ranks], sizeof **all);
+        status = agree(s, *all ? SPAR_OK : no_memory(s, "spar_session_save"));
+    }
+    free(sizes);
+    SPARI_TRY(status);
+    memcpy(*all + (*first)[rank], mine->word, (size_t)mine->count * sizeof **all);
+    return spari_comm_share(s->comm, *all, *first, SPAR_OK, s->message, sizeof s->message);
+}
+
+/* ---- save ---- */
+
+static void put_common(spari_image *image, spar_session *s) {
+    stream t = {image, WRITE};
+    spari_image_put_int(image, spari_comm_size(s->comm));
+    spari_image_put_int(image, s->member_count);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        uint64_t hash = spari_member_hash(m);
+        spari_image_put_text(image, m->name);
+        spari_image_put(image, &hash, 1);
+    }
+    pass_clock(&t, s);
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(&t, m);
+    }
+    put_coupling(image, s);
+}
+
+static int write_file(spar_session *s, const double *all, const int64_t *first, const char *path) {
+    char why[SPARI_MESSAGE_SIZE / 2] = "";
+    spari_image image = {0};
+    put_common(&image, s);
+    for (int r = 0; r < spari_comm_size(s->comm); r++) {
+        int64_t n = first[r + 1] - first[r] - 1;
+        spari_image_put_int(&image, n);
+        spari_image_put(&image, all + first[r], n);
+    }
+    int status = image.failed ? no_memory(s, "spar_session_save") : SPAR_OK;
+    if (status == SPAR_OK) {
+        status = spari_image_write(&image, path, why, sizeof why);
+        if (status != SPAR_OK) {
+            (void)spari_fail(s, status, "spar_session_save: %s", why);
+        }
+    }
+    spari_image_free(&image);
+    return status;
+}
+
+static int check_call(spar_session *s, const char *call, const char *path) {
+    SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
+                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
+    }
+    return SPAR_OK;
+}
+
 int spar_session_save(const spar_session *session, const char *path) {
-    return refuse(session, "spar_session_save", path);
+    const char *call = "spar_session_save";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
+    spari_image own = {0};
+    double *all = NULL;
+    int64_t *first = NULL;
+    int status = check_call(s, call, path);
+    if (status == SPAR_OK && s->refused != SPAR_OK) {
+        status = spari_fail(s, SPAR_ERR_STATE,
+                            "%s: a push was refused in this step; push again, or reject the step first", call);
+    }
+    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    status = put_own(&own, s);
+    status = agree(s, status == SPAR_OK && own.failed ? no_memory(s, call) : status);
+    if (status == SPAR_OK) {
+        status = gather(s, &own, &all, &first);
+    }
+    if (status == SPAR_OK) {
+        status = agree(s, spari_comm_rank(s->comm) == 0 ? write_file(s, all, first, path) : SPAR_OK);
+    }
+    spari_image_free(&own);
+    free(all);
+    free(first);
+    return status;
+}
+
+/* ---- load: first pass ---- */
+
+/* A fluid of the saved run */
+typedef struct record {
+    int rank, member;
+    int64_t name; /* where its name begins */
+    const double *state;
+    int64_t count;
+} record;
+
+typedef struct loading {
+    spari_image image;
+    int64_t common;        /* where the clock begins */
+    int ranks;             /* of the saved run */
+    const double **solver; /* [members] state of each solver here; NULL: not here */
+    record *records;       /* fluids of all ranks */
+    int64_t record_count;
+    const double **states;    /* of the records that make up each fluid here, one after the other */
+    int *state_count;         /* [fluids here] */
+    int *takes_loads;         /* [fluids here] */
+    int64_t fluid_count;      /* here */
+    spari_coupling *coupling; /* made from the image; NULL: none that fits */
+} loading;
+
+static void end_loading(loading *l) {
+    spari_image_free(&l->image);
+    free(l->solver);
+    free(l->records);
+    free(l->states);
+    free(l->state_count);
+    free(l->takes_loads);
+    spari_coupling_free(&l->coupling);
+}
+
+static int broken(spar_session *s) {
+    return spari_fail(s, SPAR_ERR_IO, "spar_session_load: the file does not hold what it should; take an older file");
+}
+
+static int check_description(spar_session *s, loading *l) {
+    const char *call = "spar_session_load";
+    l->ranks = (int)spari_image_get_int(&l->image);
+    int64_t members = spari_image_get_int(&l->image);
+    SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
+                  "%s: the file is of another session: it has %lld members, this one %d", call, (long long)members,
+                  s->member_count);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, spari_image_is_text(&l->image, m->name), SPAR_ERR_ARGUMENT,
+                      "%s: the file is of another session: member '%s' is not where it should be; create the same "
+                      "members in the same order",
+                      call, m->name);
+        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
+                      "%s: the file is of another session: member '%s' is described otherwise there", call, m->name);
+    }
+    return l->image.failed || l->ranks < 1 ? broken(s) : SPAR_OK;
+}
+
+/* What of the coupling fits the settings in force, in memory of its own. */
+static int check_coupling(spar_session *s, loading *l, int phase) {
+    int64_t count = spari_image_get_int(&l->image), end = l->image.at + count;
+    if (count == 0) {
+        return SPAR_OK;
+    }
+    double settings[SPARI_COUPLING_SETTINGS];
+    const uint64_t *saved = spari_image_get(&l->image, SPARI_COUPLING_SETTINGS);
+    spari_coupling_settings(s, settings);
+    if (saved && memcmp(saved, settings, sizeof settings) == 0) {
+        SPARI_TRY(spari_coupling_create(s, &l->coupling));
+        stream t = {&l->image, READ};
+        pass_coupling(&t, l->coupling);
+        if (l->coupling->accelerator) {
+            int64_t n = spari_image_get_int(&l->image);
+            const double *state = (const double *)(const void *)spari_image_get(&l->image, n);
+            if (!state || !spari_accelerator_load(l->coupling->accelerator, state, n)) {
+                return broken(s);
+            }
+            pass(&t, l->coupling->predicted, l->coupling->n);
+            pass(&t, l->coupling->motion, motion_words(l->coupling, settings));
+        }
+        return l->image.failed || l->image.at != end ? broken(s) : SPAR_OK;
+    }
+    SPARI_REQUIRE(
+        s, phase == SPARI_IDLE, SPAR_ERR_STATE,
+        "spar_session_load: the file is from the middle of a step and the coupling is set otherwise here; make "
+        "the same settings first (they may be changed when the step is accepted)");
+    l->image.at = end;
+    return SPAR_OK;
+}
+
+static int check_solvers(spar_session *s, loading *l) {
+    int64_t solvers = spari_image_get_int(&l->image);
+    for (int64_t i = 0; i < solvers && !l->image.failed; i++) {
+        int64_t k = spari_image_get_int(&l->image), n = spari_image_get_int(&l->image);
+        const double *state = (const double *)(const void *)spari_image_get(&l->image, n);
+        const spar_member *m = s->members;
+        for (int64_t j = 0; j < k && m; j++) {
+            m = m->next;
+        }
+        if (!m || k < 0 || !state) {
+            return broken(s);
+        }
+        if (m->solver) {
+            if (!spari_solver_is_state(m->solver, state, n)) {
+                return broken(s);
+            }
+            l->solver[k] = state;
+        }
+    }
+    return SPAR_OK;
+}
+
+static int check_fluids(spar_session *s, loading *l, int rank) {
+    int64_t fluids = spari_image_get_int(&l->image);
+    for (int64_t i = 0; i < fluids && !l->image.failed; i++) {
+        record *more = realloc(l->records, (size_t)(l->record_count + 1) * sizeof *more);
+        if (!more) {
+            return no_memory(s, "spar_session_load");
+        }
+        l->records = more;
+        record *r = more + l->record_count++;
+        r->rank = rank;
+        r->member = (int)spari_image_get_int(&l->image);
+        r->name = l->image.at;
+        (void)spari_image_is_text(&l->image, "");
+        r->count = spari_image_get_int(&l->image);
+        r->state = (const double *)(const void *)spari_image_get(&l->image, r->count);
+    }
+    return l->image.failed ? broken(s) : SPAR_OK;
+}
+
+static int check_own(spar_session *s, loading *l) {
+    l->solver = spari_zalloc(s->member_count, sizeof *l->solver);
+    if (!l->solver) {
+        return no_memory(s, "spar_session_load");
+    }
+    for (int rank = 0; rank < l->ranks; rank++) {
+        int64_t end = spari_image_get_int(&l->image) + l->image.at;
+        SPARI_TRY(check_solvers(s, l));
+        SPARI_TRY(check_fluids(s, l, rank));
+        if (l->image.at != end) {
+            return broken(s);
+        }
+    }
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        if (m->solver && !l->solver[k]) {
+            return broken(s);
+        }
+    }
+    return l->image.at == l->image.count ? SPAR_OK : broken(s);
+}
+
+static int check_image(spar_session *s, loading *l) {
+    stream t = {&l->image, CHECK};
+    SPARI_TRY(check_description(s, l));
+    l->common = l->image.at;
+    pass_clock(&t, s);
+    if (l->image.failed) {
+        return broken(s);
+    }
+    int phase = (int)l->image.word[l->image.at - 1];
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(&t, m);
+    }
+    SPARI_TRY(check_coupling(s, l, phase));
+    return check_own(s, l);
+}
+
+static int is_record_of(loading *l, const record *r, const spar_session *s, const spar_fluid *f) {
+    l->image.at = r->name;
+    return r->member == member_index(s, spari_fluid_member(f)) && spari_image_is_text(&l->image, spari_fluid_name(f));
+}
+
+/* Whether the fluids here are those of this rank in the file, one by one. */
+static int same_fluids(const spar_session *s, loading *l) {
+    int rank = spari_comm_rank(s->comm);
+    const spar_fluid *f = s->fluids;
+    for (int64_t i = 0; i < l->record_count; i++) {
+        if (l->records[i].rank == rank) {
+            if (!f || !is_record_of(l, l->records + i, s, f)) {
+                return 0;
+            }
+            f = spari_fluid_next(f);
+        }
+    }
+    return !f && l->ranks == spari_comm_size(s->comm);
+}
+
+/* Which ranks have a fluid like each record's: what is a sum goes to the first of them. [records][ranks], and one more.
+ */
+static int find_takers(spar_session *s, loading *l, double **takers) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    *takers = spari_zalloc(l->record_count * ranks + 1, sizeof **takers);
+    SPARI_TRY(agree(s, *takers ? SPAR_OK : no_memory(s, "spar_session_load")));
+    for (int64_t i = 0; i < l->record_count; i++) {
+        for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+            if (is_record_of(l, l->records + i, s, f)) {
+                (*takers)[i * ranks + rank] = 1;
+            }
+        }
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, *takers, l->record_count * ranks, SPAR_OK, s->message, sizeof s->message));
+    for (int64_t i = 0; i < l->record_count; i++) {
+        int taker = 0;
+        while (taker < ranks && (*takers)[i * ranks + taker] == 0) {
+            taker++;
+        }
+        SPARI_REQUIRE(
+            s, taker < ranks, SPAR_ERR_ARGUMENT,
+            "spar_session_load: fluid %lld of the file has none of its name and member here; create the fluids "
+            "of the saved run first",
+            (long long)i);
+        (*takers)[i * ranks] = taker; /* of all the row is for, the first entry is left */
+    }
+    return SPAR_OK;
+}
+
+/* The records that make up each fluid here. exact: this rank's, in their order. */
+static int assign_records(spar_session *s, loading *l, int exact, const double *takers) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    int64_t k = 0, own = 0, at = 0;
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        l->fluid_count++;
+    }
+    l->states = spari_zalloc(l->record_count * (exact ? 1 : l->fluid_count), sizeof *l->states);
+    l->state_count = spari_zalloc(l->fluid_count, sizeof *l->state_count);
+    l->takes_loads = spari_zalloc(l->fluid_count, sizeof *l->takes_loads);
+    if (!l->states || !l->state_count || !l->takes_loads) {
+        return no_memory(s, "spar_session_load");
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
+        l->takes_loads[k] = exact;
+        for (int64_t i = 0; i < l->record_count; i++) {
+            const record *r = l->records + i;
+            int mine = exact ? r->rank == rank && i >= own : is_record_of(l, r, s, f);
+            if (!mine || (exact && l->state_count[k] > 0)) {
+                continue;
+            }
+            if (!spari_fluid_is_state(f, r->state, r->count)) {
+                return broken(s);
+            }
+            l->states[at + l->state_count[k]++] = r->state;
+            l->takes_loads[k] |= !exact && takers[i * ranks] == rank;
+            own = exact ? i + 1 : own;
+        }
+        SPARI_REQUIRE(s, l->state_count[k] > 0, SPAR_ERR_ARGUMENT,
+                      "spar_session_load: fluid '%s' of member '%s' is not in the file", spari_fluid_name(f),
+                      spari_fluid_member(f)->name);
+        SPARI_TRY(spari_fluid_ready(f, l->state_count[k], l->states + at));
+        at += l->state_count[k];
+    }
+    return SPAR_OK;
+}
+
+static int check_all_fluids(spar_session *s, loading *l) {
+    double other[2] = {!same_fluids(s, l), 0}, *takers = NULL;
+    SPARI_TRY(spari_comm_sum(s->comm, other, 1, SPAR_OK, s->message, sizeof s->message));
+    int exact = other[0] == 0;
+    int status = exact ? SPAR_OK : find_takers(s, l, &takers);
+    if (status == SPAR_OK) {
+        status = agree(s, assign_records(s, l, exact, takers));
+    }
+    free(takers);
+    return status;
+}
+
+/* ---- load: second pass ---- */
+
+static void apply(spar_session *s, loading *l) {
+    stream t = {&l->image, READ};
+    int64_t at = 0, k = 0;
+    l->image.at = l->common;
+    pass_clock(&t, s);
+    for (spar_member *m = s->members; m; m = m->next, k++) {
+        pass_member(&t, m);
+        if (m->solver) {
+            spari_solver_load(m->solver, l->solver[k]);
+        }
+    }
+    k = 0;
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
+        spari_fluid_load(f, l->state_count[k], l->states + at, l->takes_loads[k]);
+        at += l->state_count[k];
+    }
+    s->refused = SPAR_OK;
+    s->coupling_stale = !l->coupling;
+    if (l->coupling) {
+        spari_coupling_free(&s->coupling);
+        s->coupling = l->coupling;
+        l->coupling = NULL;
+    }
+}
+
+/* Rank 0 reads, all get the words. */
+static int fetch(spar_session *s, loading *l, const char *path) {
+    char why[SPARI_MESSAGE_SIZE / 2] = "";
+    int root = spari_comm_rank(s->comm) == 0, status = SPAR_OK;
+    if (root) {
+        status = spari_image_read(&l->image, path, why, sizeof why);
+        if (status != SPAR_OK) {
+            (void)spari_fail(s, status, "spar_session_load: %s", why);
+        }
+    }
+    SPARI_TRY(agree(s, status));
+    SPARI_TRY(spari_comm_broadcast(s->comm, &l->image.count, sizeof l->image.count, s->message, sizeof s->message));
+    if (!root) {
+        l->image.word = spari_zalloc(l->image.count, sizeof *l->image.word);
+    }
+    SPARI_TRY(agree(s, l->image.word ? SPAR_OK : no_memory(s, "spar_session_load")));
+    return spari_comm_broadcast(s->comm, l->image.word, 8 * l->image.count, s->message, sizeof s->message);
 }
 
 int spar_session_load(spar_session *session, const char *path) {
-    return refuse(session, "spar_session_load", path);
+    const char *call = "spar_session_load";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    spar_session *s = session;
+    loading l = {0};
+    int status = check_call(s, call, path);
+    if (status == SPAR_OK && s->phase != SPARI_IDLE) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", call);
+    }
+    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    status = fetch(s, &l, path);
+    if (status == SPAR_OK) {
+        status = agree(s, check_image(s, &l));
+    }
+    if (status == SPAR_OK) {
+        status = check_all_fluids(s, &l);
+    }
+    if (status == SPAR_OK) {
+        status = spari_session_seal(s, SPAR_OK);
+    }
+    if (status == SPAR_OK) {
+        apply(s, &l);
+    }
+    end_loading(&l);
+    return status;
 }

@@ -6,6 +6,7 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct spari_linear {
     int elements, block, overlap;
@@ -103,4 +104,30 @@ int spari_linear_solve(spari_linear *s, double *x) {
         gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->pivot, &v.vector);
     }
     return spari_first_nonfinite(x, (int64_t)s->n) < 0 ? 0 : 1;
+}
+
+int64_t spari_linear_state_size(const spari_linear *s) {
+    return (int64_t)(s->A->size1 * s->A->size2 + s->n);
+}
+
+void spari_linear_save(const spari_linear *s, double *state) {
+    for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
+        memcpy(state, s->A->data + i * s->A->tda, s->A->size2 * sizeof *state);
+    }
+    for (size_t i = 0; i < s->n; i++) {
+        state[i] = s->p ? (double)s->p->data[i] : (double)gsl_vector_uint_get(s->pivot, i);
+    }
+}
+
+void spari_linear_load(spari_linear *s, const double *state) {
+    for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
+        memcpy(s->A->data + i * s->A->tda, state, s->A->size2 * sizeof *state);
+    }
+    for (size_t i = 0; i < s->n; i++) {
+        if (s->p) {
+            s->p->data[i] = (size_t)state[i];
+        } else {
+            gsl_vector_uint_set(s->pivot, i, (unsigned)state[i]);
+        }
+    }
 }

@@ -2,6 +2,8 @@
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
+#include <stdint.h>
+
 typedef struct spari_linear spari_linear;
 
 /* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. NULL when there is no
@@ -16,5 +18,9 @@ void spari_linear_fix(spari_linear *system, int i);
 int spari_linear_factor(spari_linear *system);
 /* x := A^-1 x; 0, or 1 when the result is not finite. */
 int spari_linear_solve(spari_linear *system, double *x);
+/* The factors as doubles, for save and load. */
+int64_t spari_linear_state_size(const spari_linear *system);
+void spari_linear_save(const spari_linear *system, double *state);
+void spari_linear_load(spari_linear *system, const double *state);
 
 #endif

@@ -133,3 +133,44 @@ void spari_solver_publish(spar_member *member, const spari_state *state, spari_m
     spari_member_from_unique(member, 6, state->v, to->v);
     spari_member_from_unique(member, 6, state->a, to->a);
 }
+
+enum { STATE_HEAD = 11 };
+
+int64_t spari_solver_state_size(const spari_solver *s) {
+    return STATE_HEAD + 54 * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
+}
+
+void spari_solver_save(const spari_solver *s, double *state) {
+    const double head[STATE_HEAD] = {s->n,          s->factored, s->kept_cm,        s->kept_cv,         s->h_begin,
+                                     s->h_solved,   s->started,  (double)s->newton, (double)s->factors, s->power,
+                                     s->power_begin};
+    size_t n = (size_t)s->n;
+    memcpy(state, head, sizeof head);
+    memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
+    memcpy(state += 25 * n, s->to.q, 25 * n * sizeof *state);
+    memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
+    if (s->factored) {
+        spari_linear_save(s->linear, state + 4 * n);
+    }
+}
+
+int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
+    return count >= STATE_HEAD && state[0] == s->n &&
+           count == STATE_HEAD + 54 * (int64_t)s->n + (state[1] != 0 ? spari_linear_state_size(s->linear) : 0);
+}
+
+void spari_solver_load(spari_solver *s, const double *state) {
+    size_t n = (size_t)s->n;
+    s->factored = state[1] != 0;
+    s->kept_cm = state[2], s->kept_cv = state[3];
+    s->h_begin = state[4], s->h_solved = state[5];
+    s->started = state[6] != 0;
+    s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
+    s->power = state[9], s->power_begin = state[10];
+    memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
+    memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
+    memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
+    if (s->factored) {
+        spari_linear_load(s->linear, state + 4 * n);
+    }
+}

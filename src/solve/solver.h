@@ -46,6 +46,13 @@ void spari_solver_accept(spari_solver *solver);
 /* Equilibrium under dead, fluid and gravity loads; writes member->now, after, reaction, or leaves all as it was. */
 int spari_solver_static(spar_member *member, int load_steps);
 
+/* All that the next steps depend on, to the last bit, as doubles, for save and load; the kept tangent is part of it.
+   is_state: whether `count` doubles can be the state of this solver. */
+int64_t spari_solver_state_size(const spari_solver *solver);
+void spari_solver_save(const spari_solver *solver, double *state);
+int spari_solver_is_state(const spari_solver *solver, const double *state, int64_t count);
+void spari_solver_load(spari_solver *solver, const double *state);
+
 /* Shared by the three files of the room */
 /* Fixed unknowns of the root: those of node 0 that the root condition takes out: [first, end) of its six. */
 void spari_solver_fixed(const spar_member *member, int *first, int *end);

@@ -1,0 +1,196 @@
+/* A fluid's part of save and load. */
+#include "state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A state: these, then load and load_accepted [nodes][6] if mapped; then, if node forces are kept, the nodes' places,
+   their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3]. */
+enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_AUDIT, S_HEAD = S_AUDIT + 8 };
+
+static int64_t state_size(const spar_fluid *fluid, const double *head) {
+    return S_HEAD + (head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0) +
+           (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
+}
+
+static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
+    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
+    const spari_history *h = fluid->history;
+    head[S_NODES] = s ? (double)s->n : 0;
+    head[S_KEPT] = h->on && s;
+    head[S_PUSHED] = h->pushed;
+    head[S_PUSHES] = (double)fluid->pushes;
+    head[S_MAPPED] = fluid->load != NULL;
+    memcpy(head + S_AUDIT, fluid->audit, sizeof fluid->audit);
+}
+
+int64_t spari_fluid_state_size(const spar_fluid *fluid) {
+    double head[S_HEAD];
+    state_head(fluid, head);
+    return state_size(fluid, head);
+}
+
+int spari_fluid_save(const spar_fluid *fluid, double *state) {
+    const spari_history *h = fluid->history;
+    state_head(fluid, state);
+    double *at = state + S_HEAD;
+    size_t loads = 6 * (size_t)fluid->member->nodes;
+    if (fluid->load) {
+        memcpy(at, fluid->load, loads * sizeof *at);
+        memcpy(at += loads, fluid->load_accepted, loads * sizeof *at);
+        at += loads;
+    }
+    if (state[S_KEPT] != 0) {
+        size_t n = 3 * (size_t)h->n;
+        double *places = spari_fluid_places(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
+        SPARI_FLUID_REQUIRE(fluid, places, SPAR_ERR_MEMORY, "no memory to save the node forces");
+        const double *all[] = {places, h->after, h->past[0], h->past[1], h->past[2]};
+        for (int k = 0; k < 5 && n > 0; k++, at += n) {
+            memcpy(at, all[k], n * sizeof *at);
+        }
+        free(places);
+    }
+    return SPAR_OK;
+}
+
+int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
+    return count >= S_HEAD && state[S_NODES] >= 0 && state[S_NODES] < 1e15 && count == state_size(fluid, state);
+}
+
+/* Where the places of a state begin. */
+static const double *state_places(const spar_fluid *fluid, const double *state) {
+    return state + S_HEAD + (state[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0);
+}
+
+static int compare_places(const void *a, const void *b) {
+    const double *const *x = a, *const *y = b;
+    return memcmp(*x, *y, 3 * sizeof **x);
+}
+
+/* For each node the place of it in one of the states, bit by bit the same, or NULL where there is none. */
+static const double **find_nodes(const spar_fluid *fluid, int count, const double *const *states, const double *places,
+                                 int64_t n) {
+    int64_t total = 0, at = 0;
+    for (int k = 0; k < count; k++) {
+        total += (int64_t)states[k][S_NODES];
+    }
+    const double **sorted = spari_zalloc(total, sizeof *sorted), **found = spari_zalloc(n, sizeof *found);
+    if (!sorted || !found) {
+        free(sorted);
+        free(found);
+        return NULL;
+    }
+    for (int k = 0; k < count; k++) {
+        const double *x = state_places(fluid, states[k]);
+        for (int64_t i = 0; i < (int64_t)states[k][S_NODES]; i++) {
+            sorted[at++] = x + 3 * i;
+        }
+    }
+    /* the same nodes in the same order, places that are there twice among them: no search */
+    if (count == 1 && total == n && (n == 0 || memcmp(sorted[0], places, 3 * (size_t)n * sizeof *places) == 0)) {
+        memcpy(found, sorted, (size_t)n * sizeof *found);
+    } else {
+        qsort(sorted, (size_t)total, sizeof *sorted, compare_places);
+        for (int64_t i = 0; i < n; i++) {
+            const double *key = places + 3 * i;
+            const double **hit = bsearch(&key, sorted, (size_t)total, sizeof *sorted, compare_places);
+            found[i] = hit ? *hit : NULL;
+        }
+    }
+    free(sorted);
+    return found;
+}
+
+/* Node forces from the states: to find, or to copy. */
+static int take_forces(spar_fluid *fluid, int count, const double *const *states, int copy) {
+    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
+    spari_history *h = fluid->history;
+    double *places = spari_fluid_places(fluid, s);
+    const double **found = places ? find_nodes(fluid, count, states, places, s->n) : NULL;
+    int64_t missing = found ? -1 : s->n;
+    for (int64_t i = 0; found && i < s->n; i++) {
+        int64_t n = 0; /* of the state the node is in */
+        missing = !found[i] && missing < 0 ? i : missing;
+        for (int k = 0; k < count && found[i] && copy; k++) {
+            const double *x = state_places(fluid, states[k]);
+            n = found[i] >= x && found[i] < x + 3 * (int64_t)states[k][S_NODES] ? (int64_t)states[k][S_NODES] : n;
+        }
+        double *to[] = {h->after, h->past[0], h->past[1], h->past[2]};
+        for (int k = 0; k < 4 && copy; k++) {
+            memcpy(to[k] + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof **to);
+        }
+    }
+    int ok = found != NULL;
+    free(places);
+    free(found);
+    if (!ok) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, "spar_session_load", "no memory to find the node forces");
+    }
+    if (missing >= 0) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, "spar_session_load",
+                                  "force node %lld is not in the saved run; load with the nodes it had",
+                                  (long long)missing);
+    }
+    return SPAR_OK;
+}
+
+int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states) {
+    const char *call = "spar_session_load";
+    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
+    int kept = 0, mapped_then = 0, on = fluid->history->on;
+    for (int k = 0; k < count; k++) {
+        kept |= states[k][S_KEPT] != 0;
+        mapped_then |= states[k][S_MAPPED] != 0;
+    }
+    if (mapped_then && !fluid->load) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, call,
+                                  "it is not mapped yet; give its nodes and call spar_fluid_map first");
+    }
+    if (on && s && s->n > 0 && !kept) {
+        return spari_fluid_refuse(
+            fluid, SPAR_ERR_ARGUMENT, call,
+            "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY or spar_fluid_pull_forces), and the saved "
+            "run did not keep them");
+    }
+    if (!kept || !s) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(take_forces(fluid, count, states, 0));
+    if (!on || fluid->history->n != s->n) {
+        if (spari_fluid_renew_history(fluid, s->n) != SPAR_OK) {
+            return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for the node forces");
+        }
+        fluid->history->on = on; /* not before all ranks can load */
+    }
+    return SPAR_OK;
+}
+
+void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states, int takes_loads) {
+    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
+    size_t loads = fluid->load ? 6 * (size_t)fluid->member->nodes : 0;
+    int kept = 0, taken = 0;
+    fluid->pushes = 0;
+    fluid->refused = SPAR_OK;
+    fluid->history->pushed = 0;
+    if (fluid->load) {
+        memset(fluid->load, 0, loads * sizeof *fluid->load);
+        memset(fluid->load_accepted, 0, loads * sizeof *fluid->load);
+    }
+    for (int k = 0; k < count; k++) {
+        const double *load = states[k] + S_HEAD;
+        fluid->pushes += (int64_t)states[k][S_PUSHES];
+        fluid->history->pushed |= states[k][S_PUSHED] != 0;
+        kept |= states[k][S_KEPT] != 0;
+        memcpy(fluid->audit, states[k] + S_AUDIT, sizeof fluid->audit);
+        int gives = takes_loads && states[k][S_MAPPED] != 0;
+        for (size_t i = 0; gives && i < loads; i++) { /* the first as it is: 0 + -0 is not -0 */
+            fluid->load[i] = taken ? fluid->load[i] + load[i] : load[i];
+            fluid->load_accepted[i] = taken ? fluid->load_accepted[i] + load[loads + i] : load[loads + i];
+        }
+        taken |= gives;
+    }
+    if (kept && s) {
+        fluid->history->on = 1;
+        (void)take_forces(fluid, count, states, 1); /* what can be missing was looked for before */
+    }
+}
