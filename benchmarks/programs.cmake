@@ -10,3 +10,16 @@ endforeach()
 set_target_properties(benchmarks_yardstick PROPERTIES LINK_LIBRARIES "spar_flags;${GSL_LIBRARY};${SPAR_GSLCBLAS_LIBRARY};m")
 target_compile_definitions(benchmarks_beam PRIVATE SPAR_YARDSTICK="$<TARGET_FILE:benchmarks_yardstick>")
 add_dependencies(benchmarks_beam benchmarks_yardstick)
+
+# The transfer benchmark beside the plain loop, compiled with the library's flags and for this machine. It measures the
+# nearest point alone, which the shared library hides.
+set_target_properties(benchmarks_transfer PROPERTIES
+  LINK_LIBRARIES "spar_flags;spar_static;spar::gsl;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
+target_include_directories(benchmarks_transfer PRIVATE "${PROJECT_SOURCE_DIR}/src")
+foreach(kind IN ITEMS portable native)
+  add_library(benchmarks_plain_${kind} OBJECT "${PROJECT_SOURCE_DIR}/benchmarks/plain.c")
+  target_link_libraries(benchmarks_plain_${kind} PRIVATE spar_flags)
+  target_compile_definitions(benchmarks_plain_${kind} PRIVATE PLAIN_KIND=${kind})
+  target_sources(benchmarks_transfer PRIVATE $<TARGET_OBJECTS:benchmarks_plain_${kind}>)
+endforeach()
+target_compile_options(benchmarks_plain_native PRIVATE $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-O3;-march=native;-ffp-contract=fast>)
