@@ -291,11 +291,10 @@ static void field_at(const double *c, int modes, int offset, int n, double xi, d
 
 /* Reference foot and its orientation (the spec's normalised sum of the nodes' quaternions). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
-    double s[7];
     int modes = fluid->member->per_element;
-    field_at(fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS, modes, SPARI_F_PLACE, 7, xi, s);
-    memcpy(x, s, 3 * sizeof *x);
-    memcpy(q, s + 3, 4 * sizeof *q);
+    const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
+    field_at(c, modes, SPARI_F_PLACE, 3, xi, x);
+    field_at(c, modes, SPARI_F_QUAT, 4, xi, q);
     spari_quat_normalise(q);
 }
 

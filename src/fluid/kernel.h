@@ -234,12 +234,12 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
                           double (*buf)[SPARI_ROW], int at) {
     const int spins = consistent ? 4 : 3;
     double t[SPARI_MAX_NODES * PAIR];
-    L place[6], quat[8], rate[6], spin[8], accel[6], twist[8], least[2];
+    const int linear = upto >= SPARI_UPTO_RATE ? 6 : 3; /* place, and velocity behind it */
+    L place[12], quat[8], spin[8], accel[6], twist[8], least[2];
     NAME(chebyshev)(modes, in[0], t, PAIR);
     NAME(sum)(4, modes, c + SPARI_F_QUAT, t, PAIR, quat);
-    NAME(sum)(3, modes, c + SPARI_F_PLACE, t, PAIR, place);
+    NAME(sum)(linear, modes, c + SPARI_F_PLACE, t, PAIR, place);
     if (upto >= SPARI_UPTO_RATE) {
-        NAME(sum)(3, modes, c + SPARI_F_RATE, t, PAIR, rate);
         NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, PAIR, spin);
     }
     if (upto >= SPARI_UPTO_ACCEL) {
@@ -253,7 +253,7 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
         least[u] = square;
         NAME(turn)(q, over, con, r);
         for (int i = 0; i < 3; i++) {
-            NAME(put)(buf[SPARI_R_PLACE + i] + at, place[3 * u + i] + r[i]);
+            NAME(put)(buf[SPARI_R_PLACE + i] + at, place[linear * u + i] + r[i]);
         }
         if (upto < SPARI_UPTO_RATE) {
             continue;
@@ -265,7 +265,7 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
         }
         NAME(cross)(w, r, wr);
         for (int i = 0; i < 3; i++) {
-            NAME(put)(buf[SPARI_R_RATE + i] + at, rate[3 * u + i] + wr[i]);
+            NAME(put)(buf[SPARI_R_RATE + i] + at, place[6 * u + 3 + i] + wr[i]);
         }
         if (upto >= SPARI_UPTO_ACCEL) {
             NAME(accelerate)
@@ -350,12 +350,11 @@ SPARI_INLINE void NAME(audit)(const int has_moment, const L *place, const L *r, 
 SPARI_INLINE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
                            const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
     const int spins = consistent ? 4 : 3;
-    L quat[8], place[6], rate[6], spin[8], least[2];
+    L quat[8], place[12], spin[8], least[2];
     NAME(chebyshev)(modes, in[0], t, SPARI_ROW);
     NAME(sum)(4, modes, c + SPARI_F_QUAT, t, SPARI_ROW, quat);
     if (audited) {
-        NAME(sum)(3, modes, c + SPARI_F_PLACE, t, SPARI_ROW, place);
-        NAME(sum)(3, modes, c + SPARI_F_RATE, t, SPARI_ROW, rate);
+        NAME(sum)(6, modes, c + SPARI_F_PLACE, t, SPARI_ROW, place); /* and velocity */
         NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, SPARI_ROW, spin);
     }
     SPARI_UNROLL
@@ -389,7 +388,7 @@ SPARI_INLINE L NAME(lever)(int modes, const double *c, const int consistent, con
             } else {
                 w[0] = spin[3 * u], w[1] = spin[3 * u + 1], w[2] = spin[3 * u + 2];
             }
-            NAME(audit)(has_moment, place + 3 * u, r, rate + 3 * u, w, f, moment, sums, tops);
+            NAME(audit)(has_moment, place + 6 * u, r, place + 6 * u + 3, w, f, moment, sums, tops);
         }
     }
     return NAME(less)(least[0], least[1]);

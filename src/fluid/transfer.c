@@ -236,7 +236,7 @@ static void node_fields(const double *xr, const double *q, const double *v, cons
 
 void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
                       const double *q, const double *v, const double *a, double *c) {
-    static const int width[] = {SPARI_F_RATE, SPARI_F_ACCEL, SPARI_FIELDS};
+    static const int width[] = {SPARI_F_SPIN, SPARI_F_ACCEL, SPARI_FIELDS};
     double chained[4 * SPARI_MAX_NODES], g[SPARI_FIELDS];
     ptrdiff_t block = (ptrdiff_t)per_element * SPARI_FIELDS;
     for (int e = 0; e < elements; e++) {

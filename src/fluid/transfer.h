@@ -29,8 +29,8 @@ typedef struct spari_nodes {
 /* Coefficients of the nodal fields of one state, [element][mode][SPARI_FIELDS]. */
 enum {
     SPARI_F_PLACE = 0,  /* reference place + displacement */
-    SPARI_F_QUAT = 3,   /* relative rotation, signs chained along the element */
-    SPARI_F_RATE = 7,   /* velocity */
+    SPARI_F_RATE = 3,   /* velocity */
+    SPARI_F_QUAT = 6,   /* relative rotation, signs chained along the element */
     SPARI_F_SPIN = 10,  /* nodal: omega (3); consistent: omega q (4) */
     SPARI_F_ACCEL = 14, /* acceleration */
     SPARI_F_TWIST = 17, /* nodal: alpha (3); consistent: alpha q - |omega|^2 q / 2 (4) */
