@@ -331,14 +331,22 @@ SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const dou
 /* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
    since t = 0 (up to t^n). Members spar does not solve for give zeros. */
 SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);
-/* Static equilibrium under gravity, the dead loads and the fluid loads in use, from the present state. load_steps:
-   in, >= 1, in how many parts the loads come on. Velocities become 0. Between steps. Collective. SPAR_ERR_NUMERIC:
-   not found, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
+/* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
+   >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities become
+   0. A driven root that turns (spar_member_set_velocity, or driven so far): equilibrium in the frame that turns with
+   it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
+   accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
+   result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
+   refused. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
+   reached, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
    it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
-/* The n lowest modes about the present state (geometric stiffness of the stress included), the root held as it is. n:
-   in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where the stiffness is;
-   shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, NULL: not wanted. Local. */
+/* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
+   angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
+   terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
+   those of its reference. n: in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where
+   the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out, displacement and rotation, normalised to
+   unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity, commit, solve_static, get_modes. Local. */
 SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */

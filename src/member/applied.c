@@ -151,6 +151,16 @@ void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
     }
 }
 
+int spari_applied_potential(const spar_member *m) {
+    const spari_applied *a = m->applied;
+    const line_load *dead = &a->line[SPAR_LOAD_DEAD];
+    int moments = 0;
+    for (int k = 0; dead->first && k < dead->first[m->elements]; k++) {
+        moments |= spari_norm(dead->load + 6 * (int64_t)k + 3) > 0;
+    }
+    return !a->follower && !a->line[SPAR_LOAD_FOLLOWER].first && !moments;
+}
+
 /* ---- tangent ---- */
 
 /* S (rows at row, columns at col) += f * skew(a) */

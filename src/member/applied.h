@@ -14,6 +14,8 @@ double spari_applied_residual(const spar_member *member, const double *q, double
 void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
 /* load [nodes][6] += the loads at the motion q [nodes][7] of the public numbering. */
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
+/* Whether the loads have a potential: dead forces only. */
+int spari_applied_potential(const spar_member *member);
 void spari_applied_free(spari_applied *applied);
 
 #endif

@@ -13,6 +13,7 @@ struct spari_linear {
     size_t n, band;         /* unknowns; half bandwidth (banded storage) */
     gsl_matrix *A;          /* dense n x n, or banded n x (3 band + 1) as gsl_linalg_LU_band wants it */
     gsl_permutation *p;     /* dense */
+    int swaps;              /* dense: sign of the permutation */
     gsl_vector_uint *pivot; /* banded */
 };
 
@@ -52,7 +53,7 @@ void spari_linear_zero(spari_linear *s) {
 }
 
 /* entry (i, j): banded storage keeps column j in row j, A(i, j) at 2 band + i - j */
-static double *entry(spari_linear *s, size_t i, size_t j) {
+static double *entry(const spari_linear *s, size_t i, size_t j) {
     return s->elements == 1 ? s->A->data + i * s->A->tda + j : s->A->data + j * s->A->tda + (2 * s->band + i - j);
 }
 
@@ -78,9 +79,9 @@ void spari_linear_fix(spari_linear *s, int i) {
 }
 
 int spari_linear_factor(spari_linear *s) {
-    int sign, status;
+    int status;
     if (s->elements == 1) {
-        status = gsl_linalg_LU_decomp(s->A, s->p, &sign);
+        status = gsl_linalg_LU_decomp(s->A, s->p, &s->swaps);
     } else {
         status = gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->pivot);
     }
@@ -94,6 +95,53 @@ int spari_linear_factor(spari_linear *s) {
         }
     }
     return 0;
+}
+
+int spari_linear_sign(const spari_linear *s) {
+    int sign = s->elements == 1 ? s->swaps : 1;
+    for (size_t i = 0; i < s->n; i++) {
+        sign = *entry(s, i, i) < 0 ? -sign : sign;
+        if (s->elements > 1 && gsl_vector_uint_get(s->pivot, i) != i) {
+            sign = -sign;
+        }
+    }
+    return sign;
+}
+
+int spari_linear_definite(spari_linear *s) {
+    size_t n = s->n, band = s->elements == 1 ? n - 1 : s->band;
+    /* scaled to a unit diagonal, shifted by what rounding can do to it */
+    const double symmetric = 1e-9, shift = 4e-15;
+    for (size_t i = 0; i < n; i++) {
+        if (!(*entry(s, i, i) > 0)) {
+            return 0;
+        }
+        for (size_t j = i + 1; j < n && j <= i + band; j++) {
+            double size = sqrt(*entry(s, i, i) * fabs(*entry(s, j, j)));
+            if (fabs(*entry(s, i, j) - *entry(s, j, i)) > symmetric * size) {
+                return -1;
+            }
+        }
+    }
+    gsl_matrix *L = gsl_matrix_calloc(n, s->elements == 1 ? n : band + 1);
+    if (!L) {
+        return -2;
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = i; j < n && j <= i + band; j++) {
+            double size = sqrt(*entry(s, i, i) * *entry(s, j, j)),
+                   value = 0.5 * (*entry(s, i, j) + *entry(s, j, i)) / size + (i == j ? shift : 0);
+            if (s->elements == 1) {
+                gsl_matrix_set(L, i, j, value);
+                gsl_matrix_set(L, j, i, value);
+            } else {
+                gsl_matrix_set(L, i, j - i, value);
+            }
+        }
+    }
+    int status = s->elements == 1 ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L);
+    gsl_matrix_free(L);
+    return status == GSL_SUCCESS;
 }
 
 int spari_linear_solve(spari_linear *s, double *x) {

@@ -16,6 +16,11 @@ void spari_linear_add(spari_linear *system, int element, const double *S); /* S 
 void spari_linear_fix(spari_linear *system, int i);
 /* Returns 0, or 1 when the matrix is singular or not finite. */
 int spari_linear_factor(spari_linear *system);
+/* Sign of the determinant of the matrix factored last. */
+int spari_linear_sign(const spari_linear *system);
+/* Before factoring, leaves the matrix as it is. 1: symmetric and positive definite (within rounding), 0: symmetric and
+ * not, -1: not symmetric, -2: no memory to tell. */
+int spari_linear_definite(spari_linear *system);
 /* x := A^-1 x; 0, or 1 when the result is not finite. */
 int spari_linear_solve(spari_linear *system, double *x);
 /* The factors as doubles, for save and load. */

@@ -1,89 +1,163 @@
-/* Modes about the present state: K x = omega^2 M x over the unknowns that the root leaves free. */
+/* Modes about the present state, seen from the frame that turns with the root: K x = omega^2 M x over the unknowns that
+   the root leaves free. K is the tangent in that frame (turn.h); Coriolis' forces are left out, so that the problem
+   stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
+   keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
+   is 0 where K is positive definite, else the smallest tried that makes it so. */
+#include "../math/rotation.h"
+#include "../member/applied.h"
 #include "../session/session.h"
 #include "solver.h"
+#include "turn.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_sort_vector.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Element tangents at cm summed into A (free unknowns only). */
-static void assemble(const spar_member *m, const double *q, double cm, double *S, gsl_matrix *A) {
-    int P = m->per_element, first, end;
-    spari_solver_fixed(m, &first, &end);
-    for (int e = 0; e < m->elements; e++) {
-        int at = 6 * e * (P - 1) - end;
-        spari_body_tangent(m->body, e, q, NULL, NULL, 1, cm, 0, NULL, S);
-        for (int i = 0; i < 6 * P; i++) {
-            for (int j = 0; j < 6 * P; j++) {
-                if (at + i >= 0 && at + j >= 0) {
-                    /* at equilibrium the tangent is symmetric but for moments that are not gradients: the symmetric
-                     * part */
-                    double value = 0.5 * (S[6 * P * i + j] + S[6 * P * j + i]);
-                    *gsl_matrix_ptr(A, (size_t)(at + i), (size_t)(at + j)) += value;
-                }
+/* The problem over the free unknowns. */
+typedef struct modal {
+    size_t size;
+    int end; /* unknowns before the first free one */
+    gsl_matrix *K, *M, *A, *B, *x;
+    gsl_vector *lambda, *work;
+    double *q, *v, *a, *S, *Me, *shape;
+} modal;
+
+static void modal_free(modal *p) {
+    gsl_matrix_free(p->K);
+    gsl_matrix_free(p->M);
+    gsl_matrix_free(p->A);
+    gsl_matrix_free(p->B);
+    gsl_matrix_free(p->x);
+    gsl_vector_free(p->lambda);
+    gsl_vector_free(p->work);
+    free(p->q);
+}
+
+static int modal_alloc(const spar_member *m, modal *p) {
+    int64_t u = m->body->unique, e = 36 * (int64_t)m->per_element * m->per_element;
+    size_t n = p->size;
+    p->K = gsl_matrix_calloc(n, n);
+    p->M = gsl_matrix_calloc(n, n);
+    p->A = gsl_matrix_alloc(n, n);
+    p->B = gsl_matrix_alloc(n, n);
+    p->x = gsl_matrix_alloc(n, n);
+    p->lambda = gsl_vector_alloc(n);
+    p->work = gsl_vector_alloc(n);
+    p->q = spari_zalloc(25 * u + 2 * e, sizeof *p->q);
+    if (!p->K || !p->M || !p->A || !p->B || !p->x || !p->lambda || !p->work || !p->q) {
+        return 0;
+    }
+    p->v = p->q + 7 * u, p->a = p->v + 6 * u, p->shape = p->a + 6 * u;
+    p->S = p->shape + 6 * u, p->Me = p->S + e;
+    return 1;
+}
+
+/* The symmetric part of an element matrix into A: at equilibrium the rest is of loads that have no potential. */
+static void add_element(int at, int n, const double *S, gsl_matrix *A) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            if (at + i >= 0 && at + j >= 0) {
+                *gsl_matrix_ptr(A, (size_t)(at + i), (size_t)(at + j)) += 0.5 * (S[n * i + j] + S[n * j + i]);
             }
         }
     }
 }
 
-/* Solves A x = lambda B x for symmetric A and positive definite B, ascending; 0 when it worked. Destroys A and B. */
-static int solve(gsl_matrix *A, gsl_matrix *B, gsl_vector *lambda, gsl_matrix *x) {
-    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(A->size1);
-    int status = w ? gsl_eigen_gensymmv(A, B, lambda, x, w) : GSL_ENOMEM;
+static void assemble(const spar_member *m, modal *p) {
+    int P = m->per_element;
+    spari_turn turn;
+    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn);
+    spari_member_to_unique(m, 7, m->after.q, p->q);
+    if (turning) {
+        spari_turn_rates(m, &turn, p->q, p->v, p->a);
+    }
+    for (int e = 0; e < m->elements; e++) {
+        int at = 6 * e * (P - 1) - p->end;
+        spari_turn_tangent(m, turning ? &turn : NULL, e, p->q, p->v, p->a, 1, p->S, p->Me);
+        if (m->applied) {
+            spari_applied_tangent(m, e, p->q, 1, p->S);
+        }
+        add_element(at, 6 * P, p->S, p->K);
+        add_element(at, 6 * P, p->Me, p->M);
+    }
+}
+
+/* K + sigma M into B, with its Cholesky factor tried in A. */
+static int shifted(const modal *p, double sigma) {
+    for (size_t i = 0; i < p->size; i++) {
+        for (size_t j = 0; j < p->size; j++) {
+            gsl_matrix_set(p->B, i, j, gsl_matrix_get(p->K, i, j) + sigma * gsl_matrix_get(p->M, i, j));
+        }
+    }
+    gsl_matrix_memcpy(p->A, p->B);
+    return gsl_linalg_cholesky_decomp1(p->A) == GSL_SUCCESS;
+}
+
+/* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-12 of the largest K_ii / M_ii; -1
+ * when none does. */
+static double find_shift(const modal *p) {
+    double largest = 0;
+    if (shifted(p, 0)) {
+        return 0;
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        double k = fabs(gsl_matrix_get(p->K, i, i)), m = gsl_matrix_get(p->M, i, i);
+        largest = m > 0 && k / m > largest ? k / m : largest;
+    }
+    for (double f = 1e-12; f < 1e4; f *= 10) {
+        if (shifted(p, f * largest)) {
+            return f * largest;
+        }
+    }
+    return largest == 0 && shifted(p, 1) ? 1 : -1; /* a rigid body that nothing holds */
+}
+
+/* Fills x (columns) and lambda = mu, descending. */
+static int solve(modal *p) {
+    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(p->size);
+    gsl_matrix_memcpy(p->A, p->M);
+    int status = w ? gsl_eigen_gensymmv(p->A, p->B, p->lambda, p->x, w) : GSL_ENOMEM;
     if (w) {
         gsl_eigen_gensymmv_free(w);
     }
-    return status == GSL_SUCCESS ? gsl_eigen_gensymmv_sort(lambda, x, GSL_EIGEN_SORT_VAL_ASC) : status;
+    return status == GSL_SUCCESS ? gsl_eigen_gensymmv_sort(p->lambda, p->x, GSL_EIGEN_SORT_VAL_DESC) : status;
 }
 
-static int find_modes(const spar_member *m, int64_t n, double *frequency, double *shapes, gsl_matrix *K, gsl_matrix *M,
-                      gsl_matrix *M2, gsl_vector *lambda, gsl_matrix *x) {
-    int first, end;
-    spari_solver_fixed(m, &first, &end);
-    size_t size = K->size1;
-    gsl_matrix *K2 = gsl_matrix_alloc(size, size);
-    SPARI_REQUIRE(m->session, K2, SPAR_ERR_MEMORY, "spar_member_get_modes: no memory for '%s'", m->name);
-    gsl_matrix_memcpy(K2, K);
-    gsl_matrix_memcpy(M2, M);
-    int inverse = 0, status = solve(K2, M2, lambda, x);
-    if (status != GSL_SUCCESS) { /* parts without mass: M x = mu K x, mu = 1 / omega^2, largest first */
-        inverse = 1;
-        gsl_matrix_memcpy(K2, K);
-        gsl_matrix_memcpy(M2, M);
-        status = solve(M2, K2, lambda, x);
+static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
+    gsl_vector_view x = gsl_matrix_column(p->x, k);
+    double norm;
+    gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work);
+    gsl_blas_ddot(&x.vector, p->work, &norm);
+    memset(p->shape, 0, (size_t)(6 * m->body->unique) * sizeof *p->shape);
+    for (size_t i = 0; i < p->size; i++) {
+        p->shape[(size_t)p->end + i] = gsl_vector_get(&x.vector, i) / (norm > 0 ? sqrt(norm) : 1);
     }
-    gsl_matrix_free(K2);
-    SPARI_REQUIRE(
-        m->session, status == GSL_SUCCESS, SPAR_ERR_NUMERIC,
-        "spar_member_get_modes: '%s': neither its mass nor its stiffness is positive definite in the present state",
-        m->name);
-    double *mode = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *mode);
-    SPARI_REQUIRE(m->session, mode, SPAR_ERR_MEMORY, "spar_member_get_modes: no memory for '%s'", m->name);
+    spari_member_from_unique(m, 6, p->shape, shape);
+}
+
+static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
+    const char *call = "spar_member_get_modes";
+    SPARI_REQUIRE(m->session, modal_alloc(m, p), SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
+    assemble(m, p);
+    double sigma = find_shift(p);
+    SPARI_REQUIRE(m->session, sigma >= 0, SPAR_ERR_NUMERIC,
+                  "%s: '%s': no shift makes its stiffness positive definite in the present state: it can move where it "
+                  "has neither mass nor stiffness",
+                  call, m->name);
+    int status = solve(p);
+    SPARI_REQUIRE(m->session, status == GSL_SUCCESS, SPAR_ERR_NUMERIC, "%s: '%s': the eigenvalue solver failed (%s)",
+                  call, m->name, gsl_strerror(status));
     for (int64_t k = 0; k < n; k++) {
-        size_t col = inverse ? size - 1 - (size_t)k : (size_t)k;
-        double value = gsl_vector_get(lambda, col);
-        value = inverse ? (value > 0 ? 1 / value : INFINITY) : value;
-        frequency[k] = copysign(sqrt(fabs(value)), value) / 6.283185307179586;
-        if (!shapes) {
-            continue;
+        double mu = gsl_vector_get(p->lambda, (size_t)k), square = mu > 0 ? 1 / mu - sigma : INFINITY;
+        frequency[k] = copysign(sqrt(fabs(square)), square) / 6.283185307179586;
+        if (shapes) {
+            give_mode(m, p, (size_t)k, shapes + 6 * m->nodes * k);
         }
-        double norm = 0;
-        for (size_t i = 0; i < size; i++) {
-            for (size_t j = 0; j < size; j++) {
-                norm += gsl_matrix_get(x, i, col) * gsl_matrix_get(M, i, j) * gsl_matrix_get(x, j, col);
-            }
-        }
-        memset(mode, 0, (size_t)(6 * m->body->unique) * sizeof *mode);
-        for (size_t i = 0; i < size; i++) {
-            mode[(size_t)end + i] = gsl_matrix_get(x, i, col) / (norm > 0 ? sqrt(norm) : 1);
-        }
-        spari_member_from_unique(m, 6, mode, shapes + 6 * m->nodes * k);
     }
-    free(mode);
     return SPAR_OK;
 }
 
@@ -97,36 +171,15 @@ int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, 
                   SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", call, member->name);
     int first, end;
     spari_solver_fixed(member, &first, &end);
-    int64_t free_unknowns = 6 * (int64_t)member->body->unique - end, u = member->body->unique;
+    int64_t free_unknowns = 6 * (int64_t)member->body->unique - end;
     SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", call,
                   member->name, (long long)n, (long long)free_unknowns);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", call, member->name);
     if (n == 0) {
         return SPAR_OK;
     }
-    size_t size = (size_t)free_unknowns;
-    int64_t element = 36 * (int64_t)member->per_element * member->per_element;
-    gsl_matrix *K = gsl_matrix_calloc(size, size), *M = gsl_matrix_calloc(size, size),
-               *M2 = gsl_matrix_alloc(size, size);
-    gsl_matrix *x = gsl_matrix_alloc(size, size);
-    gsl_vector *lambda = gsl_vector_alloc(size);
-    double *q = spari_zalloc(7 * u + element, sizeof *q);
-    int status = SPAR_ERR_MEMORY;
-    if (K && M && M2 && x && lambda && q) {
-        double *S = q + 7 * u;
-        spari_member_to_unique(member, 7, member->after.q, q);
-        assemble(member, q, 0, S, K);
-        assemble(member, q, 1, S, M);
-        gsl_matrix_sub(M, K);
-        status = find_modes(member, n, frequency_hz, shapes, K, M, M2, lambda, x);
-    } else {
-        spari_fail(s, status, "%s: no memory for '%s'", call, member->name);
-    }
-    gsl_matrix_free(K);
-    gsl_matrix_free(M);
-    gsl_matrix_free(M2);
-    gsl_matrix_free(x);
-    gsl_vector_free(lambda);
-    free(q);
+    modal p = {.size = (size_t)free_unknowns, .end = end};
+    int status = find_modes(member, n, &p, frequency_hz, shapes);
+    modal_free(&p);
     return status;
 }

@@ -1,103 +1,237 @@
-/* Static equilibrium by Newton with the exact tangent, in load steps that halve where Newton fails. */
+/* Static equilibrium by Newton with the exact tangent, in load steps that halve where Newton fails or leaves the path.
+
+   From a stable state on, the equilibria that growing dead forces lead to form a path on which the tangent, the second
+   derivative of a potential, stays positive definite until a limit or branching point. A load step that ends beyond
+   such a point, or whose iterations pass a tangent of negative determinant (a jump to another branch), is halved; when
+   it cannot be halved any more the point has been found. Moments of fixed axes and follower loads have no potential:
+   their paths are not watched (a beam rolled up by a moment, say, is held to its plane by nothing but symmetry). */
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../session/session.h"
 #include "solver.h"
+#include "turn.h"
 
 #include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { STATIC_ITERATIONS = 50, STATIC_HALVINGS = 14 };
 
-/* One Newton solution at load factor f, from and to state q. Returns 0, or 1 when it fails. */
-static int equilibrium(spar_member *member, double f, double *q) {
+/* What a solution works with besides the solver's arrays. */
+typedef struct loading {
+    int turning; /* the root turns: equilibrium in its frame */
+    spari_turn turn, part;
+    double *mass;  /* turning: an element's mass matrix */
+    int guarded;   /* the path is watched */
+    double *v, *a; /* rates of the steady turn; NULL: at rest */
+} loading;
+
+/* Forces less loads at load factor f; returns what rounding in them is relative to. */
+static double balance(spar_member *m, loading *l, double f, const double *q, double *r) {
+    spari_solver *s = m->solver;
+    double scale;
+    if (l->turning) {
+        l->part = spari_turn_part(&l->turn, f);
+        spari_turn_rates(m, &l->part, q, l->v, l->a);
+        scale = spari_turn_residual(m, q, l->v, l->a, f, r);
+    } else {
+        scale = spari_body_residual(m->body, q, NULL, NULL, f, r, NULL);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        r[i] -= f * s->load[i];
+        scale = fmax(scale, fabs(f * s->load[i]));
+    }
+    if (m->applied) {
+        scale = fmax(scale, spari_applied_residual(m, q, f, r));
+    }
+    return scale;
+}
+
+/* The tangent at a state for which `balance` has been called, not yet factored. */
+static void form_tangent(spar_member *m, loading *l, double f, const double *q) {
+    spari_solver *s = m->solver;
+    int first, end;
+    spari_linear_zero(s->linear);
+    for (int e = 0; e < m->elements; e++) {
+        if (l->turning) {
+            spari_turn_tangent(m, &l->part, e, q, l->v, l->a, f, s->element, l->mass);
+        } else {
+            spari_body_tangent(m->body, e, q, NULL, NULL, f, 0, 0, NULL, s->element);
+        }
+        if (m->applied) {
+            spari_applied_tangent(m, e, q, f, s->element);
+        }
+        spari_linear_add(s->linear, e, s->element);
+    }
+    spari_solver_fixed(m, &first, &end);
+    for (int i = first; i < end; i++) {
+        spari_linear_fix(s->linear, i);
+    }
+}
+
+/* q less the correction dx, shortened by `cut` */
+static void correct(int n, double cut, const double *dx, double *q) {
+    for (int i = 0; i < n; i++) {
+        double turn[3], p[4];
+        for (int k = 0; k < 3; k++) {
+            q[7 * i + k] -= cut * dx[6 * i + k];
+            turn[k] = -cut * dx[6 * i + 3 + k];
+        }
+        spari_quat_exp(turn, p);
+        spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
+        spari_quat_normalise(q + 7 * i + 3);
+    }
+}
+
+typedef enum outcome { FOUND, FAILED, LOST } outcome;
+
+/* The state is in equilibrium, its rates those of the last `balance`: on the path, or beyond its end? */
+static outcome judge(spar_member *m, loading *l, double f, const double *q) {
+    spari_solver *s = m->solver;
+    if (!l->guarded) {
+        return FOUND;
+    }
+    form_tangent(m, l, f, q);
+    return spari_linear_definite(s->linear) == 0 ? LOST : FOUND;
+}
+
+/* One Newton solution at load factor f, from and to state q; from_path: q is a point of the path. */
+static outcome equilibrium(spar_member *member, loading *l, double f, int from_path, double *q) {
     spari_solver *s = member->solver;
     int n = s->n, first, end;
     double last = 0, length = member->body->length;
     const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
     spari_solver_fixed(member, &first, &end);
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
-        double scale = spari_body_residual(member->body, q, NULL, NULL, f, s->r, NULL);
-        for (int i = 0; i < 6 * n; i++) {
-            s->r[i] -= f * s->load[i];
-            scale = fmax(scale, fabs(f * s->load[i]));
-        }
-        if (member->applied) {
-            scale = fmax(scale, spari_applied_residual(member, q, f, s->r));
-        }
+        double scale = balance(member, l, f, q, s->r), noise = 0;
         memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
-        double noise = 0;
         for (int i = 0; i < 6 * n; i++) {
             noise = fmax(noise, fabs(s->r[i]));
         }
-        if (!isfinite(noise) || spari_solver_factor(member, q, NULL, NULL, f, 0, 0, NULL)) {
-            return 1;
+        if (!isfinite(noise)) {
+            return FAILED;
         }
+        form_tangent(member, l, f, q);
+        s->factors++;
         memcpy(s->dx, s->r, (size_t)(6 * n) * sizeof *s->dx);
-        if (spari_linear_solve(s->linear, s->dx)) {
-            return 1;
+        if (spari_linear_factor(s->linear) || spari_linear_solve(s->linear, s->dx)) {
+            return FAILED;
+        }
+        if (l->guarded && from_path && spari_linear_sign(s->linear) < 0) {
+            return LOST;
         }
         double largest = 0;
         for (int i = 0; i < n; i++) {
             largest = fmax(largest, fmax(spari_norm(s->dx + 6 * i) / length, spari_norm(s->dx + 6 * i + 3)));
         }
         double cut = largest > longest ? longest / largest : 1;
-        for (int i = 0; i < n; i++) {
-            double turn[3], p[4];
-            for (int k = 0; k < 3; k++) {
-                q[7 * i + k] -= cut * s->dx[6 * i + k];
-                turn[k] = -cut * s->dx[6 * i + 3 + k];
-            }
-            spari_quat_exp(turn, p);
-            spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
-            spari_quat_normalise(q + 7 * i + 3);
-        }
+        correct(n, cut, s->dx, q);
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
-            return 0;
+            return judge(member, l, f, q);
         }
         last = largest;
+    }
+    return FAILED;
+}
+
+/* Whether the path can be watched: loads with a potential on a member that its root holds, and that is not linear. */
+static int has_path(const spar_member *m) {
+    const spari_solver *s = m->solver;
+    int moments = 0;
+    for (int i = 0; i < s->n; i++) {
+        moments |= spari_norm(s->load + 6 * i + 3) > 0;
+    }
+    return !moments && m->root != SPAR_ROOT_PINNED && (m->effects & SPAR_EFFECT_LARGE_ROTATION) &&
+           (!m->applied || spari_applied_potential(m));
+}
+
+/* Whether the state without loads is in equilibrium: the path begins there. */
+static int starts_on_path(spar_member *m, loading *l, const double *q) {
+    spari_solver *s = m->solver;
+    int first, end;
+    if (!l->guarded) {
+        return 0;
+    }
+    balance(m, l, 0, q, s->r);
+    spari_solver_fixed(m, &first, &end);
+    for (int i = end; i < 6 * s->n; i++) {
+        if (fabs(s->r[i]) > 1e-9 * m->body->stiffest) {
+            return 0;
+        }
     }
     return 1;
 }
 
-/* A tangent that is not positive at equilibrium means that a limit or branching point has been passed: the state is not
-   the one that loading leads to. Not asked here: the determinant's sign changes show it. */
+/* Load steps from 0 to all of the loads, s->to.q from s->begin.q; the last point in s->best. Returns the part reached.
+ */
+static double follow(spar_member *member, loading *l, int load_steps, outcome *why) {
+    spari_solver *s = member->solver;
+    size_t bytes = (size_t)(7 * s->n) * sizeof(double);
+    double done = 0, step = 1.0 / load_steps;
+    int halvings = 0, on_path = starts_on_path(member, l, s->begin.q);
+    memcpy(s->to.q, s->begin.q, bytes);
+    memcpy(s->best, s->begin.q, bytes);
+    while (done < 1) {
+        double f = done + step > 1 - 1e-12 ? 1 : done + step;
+        outcome o = equilibrium(member, l, f, on_path, s->to.q);
+        if (o == FOUND) {
+            done = f;
+            on_path = 1;
+            memcpy(s->best, s->to.q, bytes);
+            continue;
+        }
+        *why = o;
+        memcpy(s->to.q, s->best, bytes);
+        step *= 0.5;
+        if (++halvings > STATIC_HALVINGS) {
+            break;
+        }
+    }
+    return done;
+}
+
+static int refuse(const spar_member *member, double done, outcome why) {
+    return spari_fail(member->session, SPAR_ERR_NUMERIC,
+                      "spar_member_solve_static: '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state "
+                      "is as it was. Ask for less than that, or go on in time steps",
+                      member->name, why == LOST ? "stable " : "", done,
+                      why == LOST ? "a limit or branching point: the stiffness is no longer positive there"
+                                  : "a limit point, or a member that nothing holds");
+}
+
 int spari_solver_static(spar_member *member, int load_steps) {
     spari_solver *s = member->solver;
     int n = s->n;
-    size_t bytes = (size_t)(7 * n) * sizeof(double);
-    double done = 0, step = 1.0 / load_steps;
-    int halvings = 0;
+    loading l = {0};
+    outcome why = FAILED;
+    l.turning = member->root == SPAR_ROOT_DRIVEN && spari_turn_of(member, member->now.v, member->now.a, &l.turn);
+    l.v = s->to.v, l.a = s->to.a;
+    if (l.turning) {
+        l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
+        SPARI_REQUIRE(member->session, l.mass, SPAR_ERR_MEMORY, "spar_member_solve_static: no memory for '%s'",
+                      member->name);
+    }
     spari_solver_gather(member, member->dead, s->load);
     spari_solver_gather(member, member->load_pushed, s->r);
     for (int i = 0; i < 6 * n; i++) {
         s->load[i] += s->r[i];
     }
-    memcpy(s->to.q, s->begin.q, bytes);
-    memcpy(s->best, s->begin.q, bytes);
-    while (done < 1) {
-        double f = done + step > 1 - 1e-12 ? 1 : done + step;
-        if (equilibrium(member, f, s->to.q) == 0) {
-            done = f;
-            memcpy(s->best, s->to.q, bytes);
-            continue;
-        }
-        memcpy(s->to.q, s->best, bytes);
-        step *= 0.5;
-        if (++halvings > STATIC_HALVINGS) {
-            s->factored = 0;
-            return spari_fail(member->session, SPAR_ERR_NUMERIC,
-                              "spar_member_solve_static: '%s': no equilibrium found beyond %.6g of the loads (a limit "
-                              "point, or a member that nothing "
-                              "holds); the state is as it was",
-                              member->name, done);
-        }
-    }
+    l.guarded = has_path(member);
+    double done = follow(member, &l, load_steps, &why);
+    free(l.mass);
     s->factored = 0;
-    memcpy(s->begin.q, s->best, bytes);
-    memset(s->begin.v, 0, (size_t)(18 * n) * sizeof(double)); /* at rest */
+    if (done < 1) {
+        memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);
+        return refuse(member, done, why);
+    }
+    memcpy(s->begin.q, s->best, (size_t)(7 * n) * sizeof *s->best);
+    memset(s->begin.v, 0, (size_t)(18 * n) * sizeof(double)); /* at rest, or turning steadily */
+    if (l.turning) {
+        spari_turn_rates(member, &l.turn, s->begin.q, s->begin.v, s->begin.a);
+        memcpy(s->begin.b, s->begin.a, (size_t)(6 * n) * sizeof(double));
+    }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof(double));
     spari_solver_publish(member, &s->begin, &member->now);
     spari_solver_publish(member, &s->begin, &member->after);

@@ -1,0 +1,80 @@
+#include "turn.h"
+
+#include "../math/rotation.h"
+#include "../member/body.h"
+
+#include <string.h>
+
+int spari_turn_of(const spar_member *m, const double v[6], const double a[6], spari_turn *turn) {
+    memcpy(turn->v0, v, sizeof turn->v0);
+    memcpy(turn->w, v + 3, sizeof turn->w);
+    memcpy(turn->a0, a, sizeof turn->a0);
+    int inertia = m->body->mass && (m->effects & SPAR_EFFECT_INERTIA);
+    return inertia && (spari_norm(turn->w) > 0 || spari_norm(turn->a0) > 0);
+}
+
+spari_turn spari_turn_part(const spari_turn *turn, double f) {
+    spari_turn part = *turn;
+    for (int i = 0; i < 3; i++) {
+        part.w[i] *= sqrt(f);
+        part.v0[i] *= sqrt(f);
+        part.a0[i] *= f;
+    }
+    return part;
+}
+
+void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double *q, double *v, double *a) {
+    int P = m->per_element;
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / P;
+        double r[3];
+        for (int c = 0; c < 3; c++) {
+            r[c] = m->xr[3 * i + c] - m->xr[c] + q[7 * u + c] - q[c];
+        }
+        spari_cross(turn->w, r, v + 6 * u);
+        spari_cross(turn->w, v + 6 * u, a + 6 * u);
+        for (int c = 0; c < 3; c++) {
+            v[6 * u + c] += turn->v0[c];
+            a[6 * u + c] += turn->a0[c];
+            v[6 * u + 3 + c] = turn->w[c];
+            a[6 * u + 3 + c] = 0;
+        }
+    }
+}
+
+double spari_turn_residual(const spar_member *m, const double *q, const double *v, const double *a, double factor,
+                           double *r) {
+    spari_body body = *m->body;
+    body.D = NULL;
+    return spari_body_residual(&body, q, v, a, factor, r, NULL);
+}
+
+void spari_turn_tangent(const spar_member *m, const spari_turn *turn, int e, const double *q, const double *v,
+                        const double *a, double factor, double *S, double *M) {
+    int n = 6 * m->per_element;
+    spari_body body = *m->body;
+    body.D = NULL;
+    spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
+    spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 1, 0, NULL, M);
+    for (int i = 0; i < n * n; i++) {
+        M[i] -= S[i];
+    }
+    if (!turn || body.linear[0]) {
+        return;
+    }
+    const double *w = turn->w;
+    double ww[3][3], square = spari_dot(w, w);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            ww[i][j] = w[i] * w[j] - (i == j ? square : 0);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        for (int l = 0; l < n; l += 6) {
+            double *s = S + (int64_t)i * n + l, *x = M + (int64_t)i * n + l;
+            for (int j = 0; j < 3; j++) {
+                s[j] += x[0] * ww[0][j] + x[1] * ww[1][j] + x[2] * ww[2][j];
+            }
+        }
+    }
+}

@@ -1,0 +1,32 @@
+/* A member that turns steadily with its root, seen from the frame that turns with it. A shape at rest in that frame
+   moves as a rigid body does: every section has the root's angular velocity W, whatever the shape, and no angular
+   acceleration; a node at x has u-dot = v0 + W x (x - x0) and u-ddot = a0 + W x (W x (x - x0)). A change of shape
+   (du, dtheta) changes the accelerations by W x (W x du) and no rates of rotation: besides the body's tangent at fixed
+   rates (which has the centrifugal stress and the change of R J R^T) the stiffness has M (W~ W~) on the columns of du.
+   It is the second derivative of strain energy less 1/2 int rho |W x x|^2, symmetric at equilibrium under dead loads.
+   Damping feels nothing of it: strains do not change. */
+#ifndef SPARI_TURN_H
+#define SPARI_TURN_H
+
+#include "../member/member.h"
+
+typedef struct spari_turn {
+    double w[3];         /* angular velocity */
+    double v0[3], a0[3]; /* of the root */
+} spari_turn;
+
+/* The turn of a root that moves as v, a [6] say; 0 when it does not turn or accelerate, or the member has no inertia.
+ */
+int spari_turn_of(const spar_member *member, const double v[6], const double a[6], spari_turn *turn);
+/* The same at load factor f: forces of inertia times f. */
+spari_turn spari_turn_part(const spari_turn *turn, double f);
+/* Rates v, a [unique][6] of the shape q [unique][7]. */
+void spari_turn_rates(const spar_member *member, const spari_turn *turn, const double *q, double *v, double *a);
+/* As spari_body_residual. */
+double spari_turn_residual(const spar_member *member, const double *q, const double *v, const double *a, double factor,
+                           double *r);
+/* S [6P][6P] = stiffness of element e in the frame that turns, M likewise = its mass; turn NULL: at rest. */
+void spari_turn_tangent(const spar_member *member, const spari_turn *turn, int e, const double *q, const double *v,
+                        const double *a, double factor, double *S, double *M);
+
+#endif
