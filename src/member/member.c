@@ -555,52 +555,47 @@ static int effects_in_force(const spar_member *m) {
     return e & possible;
 }
 
+/* The arrays over the nodes, and how many numbers a node has in each. */
+static const struct {
+    size_t field;
+    int width;
+} node_arrays[] = {
+    {offsetof(spar_member, xr), 3},
+    {offsetof(spar_member, qr), 4},
+    {offsetof(spar_member, now.q), 7},
+    {offsetof(spar_member, now.v), 6},
+    {offsetof(spar_member, now.a), 6},
+    {offsetof(spar_member, after.q), 7},
+    {offsetof(spar_member, after.v), 6},
+    {offsetof(spar_member, after.a), 6},
+    {offsetof(spar_member, dead), 6},
+    {offsetof(spar_member, load_used), 6},
+    {offsetof(spar_member, load_pushed), 6},
+    {offsetof(spar_member, load_history[0]), 6},
+    {offsetof(spar_member, load_history[1]), 6},
+    {offsetof(spar_member, load_history[2]), 6},
+    {offsetof(spar_member, load_solved[0]), 6},
+    {offsetof(spar_member, load_solved[1]), 6},
+};
+enum { NODE_ARRAYS = sizeof node_arrays / sizeof *node_arrays };
+
+static double **node_array(spar_member *m, int k) {
+    return (double **)(void *)((char *)m + node_arrays[k].field);
+}
+
 static int allocate(spar_member *m) {
-    int64_t n = m->nodes;
-    double **all[] = {&m->xr,
-                      &m->qr,
-                      &m->now.q,
-                      &m->now.v,
-                      &m->now.a,
-                      &m->after.q,
-                      &m->after.v,
-                      &m->after.a,
-                      &m->dead,
-                      &m->load_used,
-                      &m->load_pushed,
-                      &m->load_history[0],
-                      &m->load_history[1],
-                      &m->load_history[2],
-                      &m->load_solved[0],
-                      &m->load_solved[1]};
-    const int size[] = {3, 4, 7, 6, 6, 7, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6};
-    for (size_t k = 0; k < sizeof size / sizeof *size; k++) {
-        *all[k] = spari_zalloc(size[k] * n, sizeof(double));
-        SPARI_REQUIRE(m->session, *all[k], SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        double *x = spari_zalloc(node_arrays[k].width * m->nodes, sizeof *x);
+        SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
+        *node_array(m, k) = x;
     }
     return SPAR_OK;
 }
 
 static void release(spar_member *m) {
-    double **all[] = {&m->xr,
-                      &m->qr,
-                      &m->now.q,
-                      &m->now.v,
-                      &m->now.a,
-                      &m->after.q,
-                      &m->after.v,
-                      &m->after.a,
-                      &m->dead,
-                      &m->load_used,
-                      &m->load_pushed,
-                      &m->load_history[0],
-                      &m->load_history[1],
-                      &m->load_history[2],
-                      &m->load_solved[0],
-                      &m->load_solved[1]};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        free(*all[k]);
-        *all[k] = NULL;
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        free(*node_array(m, k));
+        *node_array(m, k) = NULL;
     }
     spari_applied_free(m->applied);
     m->applied = NULL;
