@@ -89,7 +89,7 @@ contains
 end module coupling_fluids
 
 program test_coupling
-  use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
+  use, intrinsic :: iso_c_binding, only: c_double, c_float, c_int, c_int64_t
   use spar
   use coupling_fluids
   implicit none
@@ -133,7 +133,7 @@ contains
     type(spar_session) :: session
     type(spar_member) :: body
     type(spar_fluid) :: fluid
-    real(c_double) :: q(7,1), v(6,1), f(3,1), audit(8), energy(4), t
+    real(c_double) :: q(7,1), v(6,1), a(6,1), f(3,1), audit(8), energy(4), t
     integer(c_int64_t) :: steps
     integer :: i
     logical :: done
@@ -147,7 +147,7 @@ contains
     call fluid%map()
     f(:,1) = [1, -2, 3]
     call fluid%push_forces(f)
-    do i = 1, 20
+    do i = 1, 10
       call session%step_begin(0.05_c_double)
       call session%step_solve()
       call fluid%push_forces(f)
@@ -155,13 +155,14 @@ contains
       call session%step_accept()
     end do
     call session%get_time(t, steps)
-    call body%get_motion(q, v)
+    call body%get_motion(q, v, a)
     call body%get_energy(energy)
     call fluid%get_audit(audit)
-    call check(abs(t - 1) < 1e-14_c_double .and. steps == 20, 'twenty steps make a second')
-    call check(all(abs(q(1:3,1) - f(:,1) / 4) < 1e-12_c_double), 'places under a constant force')
-    call check(all(abs(v(1:3,1) - f(:,1) / 2) < 1e-12_c_double), 'velocities under a constant force')
-    call check(abs(energy(1) - 3.5_c_double) < 1e-11_c_double, 'kinetic energy m/2 v^2 = 14/4')
+    call check(abs(t - 0.5_c_double) < 1e-14_c_double .and. steps == 10, 'ten steps make half a second')
+    call check(all(abs(q(1:3,1) - f(:,1) / 16) < 1e-12_c_double), 'places under a constant force')
+    call check(all(abs(v(1:3,1) - f(:,1) / 4) < 1e-12_c_double), 'velocities under a constant force')
+    call check(all(abs(a(1:3,1) - f(:,1) / 2) < 1e-11_c_double), 'accelerations under a constant force')
+    call check(abs(energy(1) - 0.875_c_double) < 1e-12_c_double, 'kinetic energy m/2 v^2 = 14/16')
     call check(abs(audit(1) - sqrt(14.0_c_double)) < 1e-14_c_double .and. maxval(audit(4:6)) < 1e-13_c_double, &
         'audit of the map')
   end subroutine free_body
@@ -172,7 +173,10 @@ contains
     type(spar_session) :: session
     type(spar_member) :: point
     type(spar_fluid) :: fluid
-    real(c_double) :: q(7,1), v(6,1), x(3,2), xdot(3,2), f(3,2), load(6,1), con(3,2)
+    real(c_double) :: q(7,1), v(6,1), x(3,2), xdot(3,2), f(3,2), load(6,1), con(3,2), orientation(4,2), matrix(3,3,2)
+    real(c_float) :: single(3,2), single_v(3,2)
+    integer(c_int) :: stat
+    character(300) :: errmsg
     real(c_double), parameter :: h = sqrt(0.5_c_double)
 
     call session%create()
@@ -195,6 +199,16 @@ contains
         'places in a turned state')
     call check(all(abs(xdot - reshape([-4, 0, 1, 0, -2, 1] * 1.0_c_double, [3, 2])) < 1e-14_c_double), &
         'velocities')
+    call fluid%pull_poses(1.0_c_double, x, orientation, v=xdot, omega=con)
+    call check(all(abs([x(2,1) - 2, xdot(1,1) + 4, con(3,2) - 2, orientation(:,1) - q(4:7,1)]) < 1e-14_c_double), &
+        'all of the motion at once')
+    call fluid%pull_motion_f32(1.0_c_double, single, v=single_v)
+    call check(all(abs(single - x) < 1e-6) .and. all(abs(single_v - xdot) < 1e-6), 'motion in single precision')
+    call fluid%pull_matrices(1.0_c_double, SPAR_MATRIX_LOCAL_TO_GLOBAL, matrix)
+    call check(all(abs(matmul(matrix(:,:,2), [1, 2, 3] * 1.0_c_double) - [-2, 1, 3]) < 1e-14_c_double), 'matrix(row,column)')
+    call fluid%check_matrices(SPAR_MATRIX_LOCAL_TO_GLOBAL, matrix)
+    call fluid%check_matrices(SPAR_MATRIX_GLOBAL_TO_LOCAL, matrix, stat, errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'transpose') > 0, 'a transposed matrix is found: ' // trim(errmsg))
     f = reshape([1, 0, 0, 0, 0, 1] * 1.0_c_double, [3, 2])
     call fluid%push_forces(f, 7 * f)
     call session%step_accept()
@@ -202,7 +216,7 @@ contains
     call session%step_reject()
     call session%step_begin(0.1_c_double)
     call session%step_solve()
-    call fluid%push_forces(f, 7 * f)
+    call fluid%push_forces_f32(real(f, c_float), 7 * real(f, c_float))
     call check_and_accept(session)
     call point%get_loads(load)
     ! arms (0,2,0) and (-1,0,5): (0,2,0) x (1,0,0) = (0,0,-2); (-1,0,5) x (0,0,1) = (0,1,0); and the moments 7 f
@@ -362,6 +376,11 @@ contains
     call check(all(abs(reaction(1:3) + p(1:3)) < 1e-12_c_double), 'force at the root')
     call check(abs(reaction(5) - 2 * p(3)) < 1e-12_c_double .and. abs(reaction(6) + 2 * p(2)) < 1e-12_c_double, &
         'moment at the root')
+    call beam%get_section([0.0_c_double, 0.5_c_double], force=q(1:6,1:2))
+    q(2:3,1) = q(2:3,1) - p(2:3)
+    q(5:6,1:2) = q(5:6,1:2) - reshape([-2 * p(3), 2 * p(2), -p(3), p(2)], [2, 2])
+    call check(maxval(abs(q([2, 3, 5, 6],1))) < 1e-12_c_double .and. maxval(abs(q(5:6,2))) < 1e-12_c_double, &
+        'shear and bending along the beam')
     call beam%get_modes(f, shapes)
     call check(all(f(2:3) >= f(1:2)) .and. f(1) > 0 .and. all(abs(shapes(:,1,:)) <= 0), 'modes of a clamped beam')
     call check(maxval(abs(shapes(:,4,1))) > 0, 'the tip moves in the first mode')

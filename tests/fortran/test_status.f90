@@ -50,6 +50,13 @@ contains
   subroutine make_body(session, body)
     type(spar_session), intent(inout) :: session
     type(spar_member), intent(inout) :: body
+
+    call session%create()
+    call body%create_rigid(session, 'body', origin, unit, whole_mass())
+    call body%commit()
+  end subroutine make_body
+
+  pure function whole_mass() result(mass)
     real(c_double) :: mass(6,6)
     integer :: i
 
@@ -57,10 +64,7 @@ contains
     do i = 1, 6
       mass(i,i) = merge(2.0_c_double, 1.0_c_double, i <= 3)
     end do
-    call session%create()
-    call body%create_rigid(session, 'body', origin, unit, mass)
-    call body%commit()
-  end subroutine make_body
+  end function whole_mass
 
   subroutine texts()
     call check(len(spar_version()) > 0, 'there is a version')
@@ -150,7 +154,8 @@ contains
     type(spar_session) :: session
     type(spar_member) :: body
     type(spar_fluid) :: fluid
-    real(c_double) :: x(3,2), before(3,2), nan
+    type(spar_member) :: own, solved
+    real(c_double) :: x(3,2), before(3,2), rest(7,1), nan
     integer(c_int) :: stat
     logical :: done
 
@@ -158,6 +163,19 @@ contains
     call make_body(session, body)
     call session%set_gravity([0.0_c_double, nan, 0.0_c_double], stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'gravity not a number')
+    call own%create_rigid(session, 'own', origin, unit, whole_mass())
+    call own%set_external(.true.)
+    call own%commit()
+    call solved%create_rigid(session, 'solved', origin, unit, whole_mass())
+    call solved%set_external(.true.)
+    call solved%set_external(.false.)
+    call solved%commit()
+    rest = 0
+    rest(4,1) = 1
+    call own%set_motion(rest, stat=stat)
+    call check(stat == SPAR_OK, 'the host moves what it solves itself')
+    call solved%set_motion(rest, stat=stat)
+    call check(stat == SPAR_ERR_STATE, 'and nothing else')
     call fluid%create(body, 'fluid')
     x = 1
     call fluid%set_force_nodes(x)
