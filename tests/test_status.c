@@ -160,7 +160,7 @@ static void test_default_handler(void **state) {
     (void)state;
     spar_session *session = NULL;
     assert_int_equal(spar_session_create(&session), SPAR_OK);
-    GSL_ERROR_VAL("not heard", GSL_EDOM, );
+    gsl_error("not heard", __FILE__, __LINE__, GSL_EDOM); /* comes back */
     spar_session_destroy(&session);
 }
 
