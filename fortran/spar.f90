@@ -164,6 +164,7 @@ module spar
     procedure :: check_matrices => fluid_check_matrices
     procedure :: pull_forces => fluid_pull_forces
     procedure :: push_forces => fluid_push_forces
+    procedure :: push_forces_at => fluid_push_forces_at
     procedure :: pull_motion_f32 => fluid_pull_motion_f32
     procedure :: pull_sections_f32 => fluid_pull_sections_f32
     procedure :: pull_forces_f32 => fluid_pull_forces_f32
@@ -1510,6 +1511,32 @@ contains
     end if
     call finish(spar_fluid_push_forces(self%handle, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces
+
+  subroutine fluid_push_forces_at(self, theta, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(in) :: force(:,:)
+    real(c_double), contiguous, intent(in), optional :: moment(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      status = spar_fluid_push_forces(self%handle) ! no forces: the step must not go on with those of the push before
+      call refuse('fluid%push_forces_at', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_push_forces_at(self%handle, theta, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_push_forces_at
 
   subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self

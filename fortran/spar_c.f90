@@ -559,6 +559,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_pull_forces_f32
 
+    function spar_fluid_push_forces_at(fluid, theta, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces_at
+
     function spar_fluid_push_forces_f32(fluid, force, moment) bind(c) result(status)
       import :: c_float, c_int, c_ptr
       type(c_ptr), value :: fluid

@@ -295,6 +295,41 @@ static void predictor_is_exact(void **state) {
     }
 }
 
+/* ---- several fluid steps in one ---- */
+
+/* Pushes over parts of the step are averaged by their lengths: 1/4 of 8, 1/4 of 4, 1/2 of 2 is 4; each pass anew. */
+static void pushes_are_averaged(void **state) {
+    (void)state;
+    static const double theta[3] = {0.25, 0.5, 1}, r = 0;
+    pistons p;
+    double got[6];
+    int done;
+    pistons_create(&p, 1, &r);
+    const double moment[3] = {0, 0, 1};
+    double f[3] = {8, 0, 0};
+    assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], 1, f, NULL), SPAR_ERR_STATE);
+    OK(p.session, spar_step_begin(p.session, 0.1));
+    for (int pass = 0; pass < 2; pass++) {
+        OK(p.session, spar_step_solve(p.session));
+        for (int k = 0; k < 3; k++) {
+            double bad[3] = {NAN, 0, 0};
+            f[0] = (8 >> k) * (pass + 1);
+            assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], theta[k], bad, NULL), SPAR_ERR_ARGUMENT);
+            OK(p.session, spar_fluid_push_forces_at(p.fluid[0], theta[k], f, k == 1 ? moment : NULL));
+        }
+        OK(p.session, spar_step_check(p.session, &done));
+        OK(p.session, spar_member_get_loads(p.body[0], got));
+        NEAR(got[0], 4 * (pass + 1), 1e-15);
+        NEAR(got[5], 0.25, 1e-15);
+    }
+    assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], 0, f, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], 1.5, f, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], NAN, f, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], 1, NULL, NULL), SPAR_ERR_ARGUMENT);
+    OK(p.session, spar_step_accept(p.session));
+    pistons_destroy(&p);
+}
+
 /* ---- settings ---- */
 
 static void settings_are_checked(void **state) {
@@ -329,6 +364,7 @@ int main(void) {
         cmocka_unit_test(nan_in_the_third_iteration),
         cmocka_unit_test(instability_warning),
         cmocka_unit_test(predictor_is_exact),
+        cmocka_unit_test(pushes_are_averaged),
         cmocka_unit_test(settings_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -439,6 +439,11 @@ SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *for
    refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
    follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
+/* For a fluid that takes several steps within dt: its loads over the part of the step that ends at t^n + theta dt,
+   theta in (0, 1], rising from push to push; a theta that does not rise begins anew (the next iteration). The loads in
+   use at t^{n+1} are the mean over the step so far, weighted by the parts' lengths. It pulls at any theta. Not before
+   the first step; otherwise as spar_fluid_push_forces. */
+SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
 SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);

@@ -73,9 +73,9 @@ void spari_fluid_free(spar_fluid *fluid) {
     clear_set(&fluid->set[1]);
     spari_fluid_clear_history(fluid->history);
     free(fluid->history);
-    double *all[] = {fluid->modal,    fluid->field[0], fluid->field[1],     fluid->reference,
-                     fluid->blend[0], fluid->blend[1], fluid->blend[2],     fluid->work,
-                     fluid->load,     fluid->load_new, fluid->load_accepted};
+    double *all[] = {fluid->modal,         fluid->field[0], fluid->field[1], fluid->reference, fluid->blend[0],
+                     fluid->blend[1],      fluid->blend[2], fluid->work,     fluid->load,      fluid->load_new,
+                     fluid->load_accepted, fluid->mean,     fluid->mean_next};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }

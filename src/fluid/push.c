@@ -186,6 +186,57 @@ int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const floa
     return push_forces(fluid, (spari_source){.f = force}, (spari_source){.f = moment}, __func__);
 }
 
+/* Room for the means of n nodes, zeros. */
+static int prepare_mean(spar_fluid *fluid, int64_t n, const char *caller) {
+    if (fluid->mean && fluid->mean_count == n) {
+        return SPAR_OK;
+    }
+    double *mean = spari_zalloc(6 * n, sizeof *mean), *next = spari_zalloc(6 * n, sizeof *next);
+    if (!mean || !next) {
+        free(mean);
+        free(next);
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the mean of its loads");
+    }
+    free(fluid->mean);
+    free(fluid->mean_next);
+    fluid->mean = mean, fluid->mean_next = next;
+    fluid->mean_count = n;
+    fluid->mean_theta = 0;
+    return SPAR_OK;
+}
+
+int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_FLUID_REQUIRE(fluid, theta > 0 && theta <= 1, SPAR_ERR_ARGUMENT, "theta is %g; give a number in (0, 1]",
+                        theta);
+    SPARI_FLUID_REQUIRE(fluid, fluid->member->session->phase != SPARI_IDLE, SPAR_ERR_STATE,
+                        "no step is under way; these loads are pushed between spar_step_begin and spar_step_accept");
+    const spari_nodes *s;
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, __func__, &s));
+    if (!s) {
+        return SPAR_OK;
+    }
+    int64_t n = 3 * s->n;
+    SPARI_FLUID_REQUIRE(fluid, n == 0 || force, SPAR_ERR_ARGUMENT,
+                        "the force array is NULL though there are force nodes");
+    SPARI_TRY(prepare_mean(fluid, s->n, __func__));
+    double last = theta > fluid->mean_theta ? fluid->mean_theta : 0; /* else the fluid goes through the step again */
+    double share = (theta - last) / theta;
+    int with_moment = moment || (last > 0 && fluid->mean_moment);
+    for (int64_t i = 0; i < n; i++) {
+        double f = last > 0 ? fluid->mean[i] : 0, m = last > 0 ? fluid->mean[n + i] : 0;
+        fluid->mean_next[i] = f + share * (force[i] - f);
+        fluid->mean_next[n + i] = m + share * ((moment ? moment[i] : 0) - m);
+    }
+    SPARI_TRY(push_forces(fluid, (spari_source){.d = fluid->mean_next},
+                          (spari_source){.d = with_moment ? fluid->mean_next + n : NULL}, __func__));
+    double *old = fluid->mean;
+    fluid->mean = fluid->mean_next, fluid->mean_next = old;
+    fluid->mean_theta = theta;
+    fluid->mean_moment = with_moment;
+    return SPAR_OK;
+}
+
 int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, audit, SPAR_ERR_ARGUMENT, "the place for the audit is NULL");
@@ -219,6 +270,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     spari_history *h = fluid->history;
     double w[3];
     fluid->refused = SPAR_OK;
+    fluid->mean_theta = 0;
     h->pushed = 0;
     if (!h->on) {
         return;
@@ -235,6 +287,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
 void spari_fluid_accept(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     fluid->refused = SPAR_OK;
+    fluid->mean_theta = 0;
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
@@ -253,6 +306,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
 void spari_fluid_reject(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     fluid->refused = SPAR_OK;
+    fluid->mean_theta = 0;
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }

@@ -31,6 +31,9 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
 }
 
 int spari_fluid_save(const spar_fluid *fluid, double *state) {
+    SPARI_FLUID_REQUIRE(fluid, fluid->mean_theta == 0 || fluid->mean_theta == 1, SPAR_ERR_STATE,
+                        "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1",
+                        fluid->mean_theta);
     const spari_history *h = fluid->history;
     state_head(fluid, state);
     double *at = state + S_HEAD;
@@ -171,6 +174,7 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
     int kept = 0, taken = 0;
     fluid->pushes = 0;
     fluid->refused = SPAR_OK;
+    fluid->mean_theta = 0;
     fluid->history->pushed = 0;
     if (fluid->load) {
         memset(fluid->load, 0, loads * sizeof *fluid->load);

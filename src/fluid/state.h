@@ -44,6 +44,12 @@ struct spar_fluid {
     double *work;                            /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     double audit[8];
+    /* several pushes within a step: mean force and moment [2][n][3] over [t^n, t^n + theta dt], and room for the next
+     */
+    double *mean, *mean_next;
+    int64_t mean_count; /* n of these */
+    int mean_moment;    /* a moment was given */
+    double mean_theta;  /* 0: none pushed yet in this step */
     spari_history *history;
 };
 

@@ -84,6 +84,7 @@ program test_bindings
   call refused(spar_fluid_pull_forces_f32(none, 0.0_c_double), 'spar_fluid_pull_forces_f32')
   call refused(spar_fluid_push_forces_f32(none), 'spar_fluid_push_forces_f32')
   call refused(spar_fluid_pull_forces(none, 0.0_c_double), 'spar_fluid_pull_forces')
+  call refused(spar_fluid_push_forces_at(none, 1.0_c_double), 'spar_fluid_push_forces_at')
   call refused(spar_fluid_push_forces(none), 'spar_fluid_push_forces')
   call refused(spar_fluid_get_audit(none), 'spar_fluid_get_audit')
   call refused(spar_step_begin(none, 0.0_c_double), 'spar_step_begin')
