@@ -205,7 +205,7 @@ static void test_load_that_reverses(void **state) {
 static void test_massless_tip(void **state) {
     (void)state;
     const double eta[4] = {0, 0.75 - 1e-6, 0.75 + 1e-6, 1}, line[2] = {0, 1}, xyz[6] = {0, 0, 0, 10, 0, 0};
-    double Ks[4 * 36], Ms[4 * 36] = {0}, load[6] = {0, 0, 15, 0, 0, 0}, q[7], still[7], worst = 0;
+    double Ks[4 * 36], Ms[4 * 36] = {0}, load[6] = {0, 0, 15, 0, 0, 0}, q[7], still[7] = {0}, worst = 0;
     for (int i = 0; i < 4; i++) {
         memcpy(Ks + 36 * i, K, sizeof K);
         if (i < 2) {
