@@ -268,9 +268,8 @@ static int close_to(double x, double kept) {
 }
 
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
-   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW, or that has not
-   done its work in PATIENCE iterations, is formed
-   anew. Returns NULL, or what went wrong. */
+   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
+   that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
 static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how,
                            const spari_state *from, spari_state *to, double *x, int *iterations) {
     const spar_session *session = member->session;
@@ -300,8 +299,7 @@ static const char *attempt(spar_member *member, const scheme *c, const double *r
         int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * member->body->stiffest);
         if (left <= tolerance || noise <= 16 * DBL_EPSILON * scale || stuck) {
             impose_root(member, root, from, to, x);
-            s->factored =
-                s->factored && (fresh || it <= PATIENCE); /* a tired tangent is replaced in the next solution */
+            s->factored = s->factored && (fresh || it <= PATIENCE);
             return NULL;
         }
         if (theta > 2 && how != FULL) {
