@@ -2,8 +2,9 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(headers "")
-foreach(name IN ITEMS spar spar_aero spar_output)
-  file(READ "${SOURCE}/include/spar/${name}.h" text)
+file(GLOB paths "${SOURCE}/include/spar/*.h")
+foreach(path IN LISTS paths)
+  file(READ "${path}" text)
   string(APPEND headers "${text}")
 endforeach()
 file(READ "${SOURCE}/cmake/spar.map" map)
