@@ -108,6 +108,7 @@ module spar
     procedure :: set_sections => member_set_sections
     procedure :: set_quadrature => member_set_quadrature
     procedure :: set_damping => member_set_damping
+    procedure :: read_beamdyn => member_read_beamdyn
     procedure :: set_placement => member_set_placement
     procedure :: set_root => member_set_root
     procedure :: set_external => member_set_external
@@ -751,6 +752,22 @@ contains
 
     call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_set_damping
+
+  subroutine member_read_beamdyn(self, primary_path, blade_path, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status
+
+    if (present(blade_path)) then
+      status = spar_beam_read_beamdyn(self%handle, c_text(primary_path), c_text(blade_path))
+    else
+      status = spar_beam_read_beamdyn(self%handle, c_text(primary_path))
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_read_beamdyn
 
   subroutine member_set_placement(self, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self

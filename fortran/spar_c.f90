@@ -225,6 +225,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_set_damping
 
+    function spar_beam_read_beamdyn(beam, primary_path, blade_path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: beam
+      character(kind=c_char), intent(in), optional :: primary_path(*)
+      character(kind=c_char), intent(in), optional :: blade_path(*)
+      integer(c_int) :: status
+    end function spar_beam_read_beamdyn
+
     function spar_member_set_placement(member, x, q) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member

@@ -259,6 +259,13 @@ SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points);
 /* Stiffness-proportional damping: stress = C (strain + mu strain rate), per strain component in the order of the
    stiffness. mu[6]: in, s, >= 0. Local. */
 SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
+/* Axis, sections and damping of a beam from BeamDyn's files: the primary file's members, key points and twist, the
+   blade file's stations (blade_path NULL: the file that the primary one names, beside it). BeamDyn's z axis, along the
+   blade, becomes the beam's x axis, its x and y axes y and z. Elements, nodes and quadrature are those of the beam, not
+   of the files; where elements join is eta, not where members do. Every rank reads the files. Local, before commit.
+   SPAR_ERR_IO: a file cannot be read, or a field cannot; the message names file, line and field, and the beam is as it
+   was. SPAR_ERR_ARGUMENT: a matrix is not allowed. SPAR_ERR_UNSUPPORTED: damp_type beyond 1. */
+SPAR_API int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path);
 /* Takes the member from its own frame to its reference place: x -> R(q) x + x. x: in, m, NULL: unchanged; q: in,
    NULL: unchanged. For a point or a rigid body instead of those given to create. Local. */
 SPAR_API int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]);

@@ -22,6 +22,9 @@ int spari_beam_place_nodes(spar_member *member);
 int spari_beam_build(spar_member *member, spari_body **body);
 void spari_beam_free(spari_beam *beam);
 
+/* 0 if the stiffness is symmetric (1e-6 of the diagonal) and positive definite, else a text that says what is wrong. */
+const char *spari_stiffness_fault(const double C[36]);
+
 /* A place of a beam's reference line. The caller gives element and xi. */
 typedef struct spari_station {
     int element;

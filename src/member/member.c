@@ -262,7 +262,7 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
 
 /* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal (so that units do
  * not matter). */
-static const char *stiffness_fault(const double C[36]) {
+const char *spari_stiffness_fault(const double C[36]) {
     double d[6], scaled[36];
     for (int i = 0; i < 6; i++) {
         if (!(C[7 * i] > 0)) {
@@ -295,7 +295,7 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
         SPARI_TRY(need_finite(session, call, beam->name, "mass", 36 * n, mass));
     }
     for (int64_t i = 0; i < n; i++) {
-        const char *wrong = stiffness_fault(stiffness + 36 * i);
+        const char *wrong = spari_stiffness_fault(stiffness + 36 * i);
         SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the stiffness of section %lld is %s", call,
                       beam->name, (long long)i, wrong);
         double m, c[3], J[6];

@@ -1,0 +1,462 @@
+/* Blades from BeamDyn's input: the primary file (key points, twist, name of the blade file) and the blade file
+   (stations, 6x6 matrices, damping). Formats: OpenFAST documentation, BeamDyn user's guide, sections 4.1 and 4.2.
+
+   BeamDyn's frame has z along the blade, ours x: (x, y, z) = (z, x, y) of BeamDyn, a cyclic permutation, so that no
+   sign changes; its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist turns
+   about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
+   joined by cubic splines, natural at their ends, over z. */
+#include "../math/rotation.h"
+#include "../session/session.h"
+#include "beam.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <gsl/gsl_spline.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LINE_SIZE = 4096, MOST = 1000000 };
+
+typedef struct reader {
+    spar_session *session;
+    const char *beam, *path;
+    FILE *file;
+    int number; /* of the line read last */
+    char line[LINE_SIZE];
+} reader;
+
+/* What has been read, in BeamDyn's order and units. */
+typedef struct blade {
+    int members, points, stations, damped;
+    int *count;        /* [members] key points of each */
+    double *key;       /* [points][4] x, y, z, twist in degrees */
+    double *eta;       /* [stations] */
+    double *stiffness; /* [stations][36] */
+    double *mass;
+    int *line; /* [stations] */
+    double mu[6];
+    char *file; /* blade file as the primary file names it */
+} blade;
+
+static void blade_free(blade *b) {
+    free(b->count);
+    free(b->key);
+    free(b->eta);
+    free(b->stiffness);
+    free(b->mass);
+    free(b->line);
+    free(b->file);
+}
+
+/* ---- lines and numbers ---- */
+
+static const char CALL[] = "spar_beam_read_beamdyn";
+
+#define FAIL(r, status, ...) spari_fail((r)->session, status, "spar_beam_read_beamdyn: " __VA_ARGS__)
+
+static int no_memory(const reader *r) {
+    return FAIL(r, SPAR_ERR_MEMORY, "'%s': no memory for %s", r->beam, r->path);
+}
+
+static int open_file(reader *r, const char *path) {
+    r->path = path;
+    r->number = 0;
+    r->file = fopen(path, "r");
+    if (!r->file) {
+        return FAIL(r, SPAR_ERR_IO, "'%s': cannot open %s: %s", r->beam, path, strerror(errno));
+    }
+    return SPAR_OK;
+}
+
+/* The next line; `what` is missed if there is none. */
+static int next_line(reader *r, const char *what) {
+    if (!fgets(r->line, sizeof r->line, r->file)) {
+        if (ferror(r->file)) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': reading %s failed behind line %d: %s", r->beam, r->path, r->number,
+                        strerror(errno));
+        }
+        return FAIL(r, SPAR_ERR_IO, "'%s': %s ends at line %d; %s is missing", r->beam, r->path, r->number, what);
+    }
+    r->number++;
+    if (!strchr(r->line, '\n') && !feof(r->file)) {
+        return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d has more than %d characters", r->beam, r->path, r->number,
+                    LINE_SIZE - 2);
+    }
+    return SPAR_OK;
+}
+
+static int is_gap(char c) {
+    return isspace((unsigned char)c) || c == ',';
+}
+
+/* The next word from *at on (quotes hold it together), into word; 0 at the end of the line. */
+static int next_word(const char **at, char word[LINE_SIZE]) {
+    const char *c = *at;
+    size_t n = 0;
+    while (is_gap(*c)) {
+        c++;
+    }
+    if (*c == '"' || *c == '\'') {
+        char quote = *c++;
+        while (*c && *c != quote && *c != '\n') {
+            word[n++] = *c++;
+        }
+        c += *c == quote;
+    } else {
+        while (*c && !is_gap(*c)) {
+            word[n++] = *c++;
+        }
+    }
+    word[n] = 0;
+    int any = c != *at && (n > 0 || c[-1] == '"' || c[-1] == '\'');
+    *at = c;
+    return any;
+}
+
+/* n numbers of the line; Fortran's d exponents too. `what` names the fields, the column says which. */
+static int numbers(const reader *r, const char *what, int n, double *x) {
+    const char *at = r->line;
+    char word[LINE_SIZE];
+    for (int i = 0; i < n; i++) {
+        if (!next_word(&at, word)) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s: number %d of %d is missing", r->beam, r->path,
+                        r->number, what, i + 1, n);
+        }
+        for (char *c = word; *c; c++) {
+            *c = *c == 'd' || *c == 'D' ? 'e' : *c;
+        }
+        char *end;
+        x[i] = strtod(word, &end);
+        if (end == word || *end || !isfinite(x[i])) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s: '%s' (number %d of %d) is not a number", r->beam,
+                        r->path, r->number, what, word, i + 1, n);
+        }
+    }
+    return SPAR_OK;
+}
+
+static int whole_number(const reader *r, const char *what, int low, int column, int *out) {
+    double x[2] = {0};
+    SPARI_TRY(numbers(r, what, column + 1, x));
+    if (!(x[column] >= low && x[column] <= MOST) || x[column] != floor(x[column])) {
+        return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s is %g; give a whole number from %d", r->beam, r->path,
+                    r->number, what, x[column], low);
+    }
+    *out = (int)x[column];
+    return SPAR_OK;
+}
+
+/* On to the line whose second word is the key. */
+static int find_key(reader *r, const char *key) {
+    char word[LINE_SIZE];
+    for (;;) {
+        SPARI_TRY(next_line(r, key));
+        const char *at = r->line;
+        if (next_word(&at, word) && next_word(&at, word) && strcasecmp(word, key) == 0) {
+            return SPAR_OK;
+        }
+    }
+}
+
+static int skip_blank(reader *r, const char *what) {
+    char word[LINE_SIZE];
+    const char *at;
+    do {
+        SPARI_TRY(next_line(r, what));
+        at = r->line;
+    } while (!next_word(&at, word));
+    return SPAR_OK;
+}
+
+/* ---- the files ---- */
+
+static int read_primary(reader *r, blade *b) {
+    char word[LINE_SIZE];
+    int total = 1;
+    SPARI_TRY(find_key(r, "member_total"));
+    SPARI_TRY(whole_number(r, "member_total", 1, 0, &b->members));
+    SPARI_TRY(find_key(r, "kp_total"));
+    SPARI_TRY(whole_number(r, "kp_total", 2, 0, &b->points));
+    b->count = spari_zalloc(b->members, sizeof *b->count);
+    b->key = spari_zalloc(4 * (int64_t)b->points, sizeof *b->key);
+    if (!b->count || !b->key) {
+        return no_memory(r);
+    }
+    for (int i = 0; i < b->members; i++) {
+        SPARI_TRY(next_line(r, "the number of key points of a member"));
+        SPARI_TRY(whole_number(r, "the number of key points of a member", 2, 1, &b->count[i]));
+        total += b->count[i] - 1;
+    }
+    if (total != b->points) {
+        return FAIL(r, SPAR_ERR_IO,
+                    "'%s': %s, line %d: the members have %d key points (shared ends once), kp_total says %d", r->beam,
+                    r->path, r->number, total, b->points);
+    }
+    SPARI_TRY(next_line(r, "the header of the key points"));
+    SPARI_TRY(next_line(r, "the units of the key points"));
+    for (int i = 0; i < b->points; i++) {
+        SPARI_TRY(next_line(r, "a key point"));
+        SPARI_TRY(numbers(r, "kp_xr, kp_yr, kp_zr, initial_twist", 4, b->key + 4 * (int64_t)i));
+        const double *now = b->key + 4 * (int64_t)i;
+        if (i > 0 && !(now[2] > now[-2])) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: kp_zr is %g and does not increase on the one before (%g)",
+                        r->beam, r->path, r->number, now[2], now[-2]);
+        }
+    }
+    SPARI_TRY(find_key(r, "BldFile"));
+    const char *at = r->line;
+    next_word(&at, word);
+    size_t folder = 0, size = strlen(word) + 1;
+    const char *slash = strrchr(r->path, '/');
+    folder = word[0] != '/' && slash ? (size_t)(slash - r->path) + 1 : 0;
+    b->file = spari_zalloc((int64_t)(folder + size), 1);
+    if (!b->file) {
+        return no_memory(r);
+    }
+    memcpy(b->file, r->path, folder);
+    memcpy(b->file + folder, word, size);
+    return SPAR_OK;
+}
+
+static int read_damping(reader *r, blade *b) {
+    char word[LINE_SIZE];
+    int type = 0;
+    SPARI_TRY(find_key(r, "damp_type"));
+    SPARI_TRY(whole_number(r, "damp_type", 0, 0, &type));
+    if (type > 1) {
+        return FAIL(r, SPAR_ERR_UNSUPPORTED,
+                    "'%s': %s, line %d: damp_type is %d; 0 (none) and 1 (stiffness-proportional) can be read; for "
+                    "modal damping ratios see spar_beam_set_modal_damping",
+                    r->beam, r->path, r->number, type);
+    }
+    b->damped = type == 1;
+    for (;;) {
+        SPARI_TRY(next_line(r, "mu1"));
+        const char *at = r->line;
+        if (next_word(&at, word) && strcasecmp(word, "mu1") == 0) {
+            break;
+        }
+    }
+    SPARI_TRY(next_line(r, "the units of mu1 to mu6"));
+    SPARI_TRY(next_line(r, "mu1 to mu6"));
+    SPARI_TRY(numbers(r, "mu1 to mu6", 6, b->mu));
+    for (int i = 0; i < 6; i++) {
+        if (b->mu[i] < 0) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: mu%d is negative", r->beam, r->path, r->number, i + 1);
+        }
+    }
+    return SPAR_OK;
+}
+
+static int read_matrix(reader *r, const char *what, double *M) {
+    for (int i = 0; i < 6; i++) {
+        SPARI_TRY(i == 0 ? skip_blank(r, what) : next_line(r, what));
+        SPARI_TRY(numbers(r, what, 6, M + 6 * i));
+    }
+    return SPAR_OK;
+}
+
+static int read_blade(reader *r, blade *b) {
+    SPARI_TRY(find_key(r, "station_total"));
+    SPARI_TRY(whole_number(r, "station_total", 1, 0, &b->stations));
+    SPARI_TRY(read_damping(r, b));
+    do {
+        SPARI_TRY(next_line(r, "the heading 'distributed properties'"));
+        for (char *c = r->line; *c; c++) {
+            *c = (char)toupper((unsigned char)*c);
+        }
+    } while (!strstr(r->line, "DISTRIBUTED PROPERTIES"));
+    int64_t n = b->stations;
+    b->eta = spari_zalloc(n, sizeof *b->eta);
+    b->stiffness = spari_zalloc(36 * n, sizeof *b->stiffness);
+    b->mass = spari_zalloc(36 * n, sizeof *b->mass);
+    b->line = spari_zalloc(n, sizeof *b->line);
+    if (!b->eta || !b->stiffness || !b->mass || !b->line) {
+        return no_memory(r);
+    }
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_TRY(skip_blank(r, "the place of a station"));
+        SPARI_TRY(numbers(r, "the place of a station", 1, b->eta + i));
+        b->line[i] = r->number;
+        if (!(b->eta[i] >= 0 && b->eta[i] <= 1) || (i > 0 && !(b->eta[i] > b->eta[i - 1]))) {
+            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: station %lld stands at %g; stations increase from 0 to 1",
+                        r->beam, r->path, r->number, (long long)i + 1, b->eta[i]);
+        }
+        SPARI_TRY(read_matrix(r, "stiffness matrix", b->stiffness + 36 * i));
+        SPARI_TRY(read_matrix(r, "mass matrix", b->mass + 36 * i));
+    }
+    return SPAR_OK;
+}
+
+/* ---- into our frame ---- */
+
+/* ours[i] = BeamDyn's [from[i]] */
+static const int FROM[6] = {2, 0, 1, 5, 3, 4};
+
+static void turn_matrix(double *M) {
+    double old[36];
+    memcpy(old, M, sizeof old);
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            M[6 * i + j] = old[6 * FROM[i] + FROM[j]];
+        }
+    }
+}
+
+static int check_sections(const reader *r, const blade *b) {
+    for (int64_t i = 0; i < b->stations; i++) {
+        double m, c[3], J[6];
+        const char *wrong = spari_stiffness_fault(b->stiffness + 36 * i);
+        if (wrong) {
+            return FAIL(r, SPAR_ERR_ARGUMENT, "'%s': %s, line %d: the stiffness matrix of station %lld is %s", r->beam,
+                        r->path, b->line[i], (long long)i + 1, wrong);
+        }
+        wrong = spari_mass_split(b->mass + 36 * i, &m, c, J);
+        if (wrong) {
+            return FAIL(r, SPAR_ERR_ARGUMENT,
+                        "'%s': %s, line %d: the mass matrix of station %lld is not that of a rigid section: %s",
+                        r->beam, r->path, b->line[i], (long long)i + 1, wrong);
+        }
+    }
+    return SPAR_OK;
+}
+
+/* Points on the splines of all members, so many in each interval of key points that a fit follows the splines: place
+   (ours), twist in radians, eta by arc length. */
+typedef struct axis {
+    int64_t n;
+    double *eta, *xyz, *twist;
+} axis;
+
+enum { AXIS_POINTS = 400, FINE = 16 };
+
+static int member_axis(const blade *b, int first, int count, int each, gsl_spline *s[4], double *work, axis *a) {
+    double *z = work, *y = work + count;
+    gsl_interp_accel *none = NULL;
+    const gsl_interp_type *kind = count > 3    ? gsl_interp_cspline
+                                  : count == 3 ? gsl_interp_polynomial
+                                               : gsl_interp_linear;
+    for (int k = 0; k < 4; k++) { /* spline of each column over z */
+        s[k] = gsl_spline_alloc(kind, (size_t)count);
+        if (!s[k]) {
+            return 1;
+        }
+        for (int i = 0; i < count; i++) {
+            z[i] = b->key[4 * (int64_t)(first + i) + 2];
+            y[i] = b->key[4 * (int64_t)(first + i) + k];
+        }
+        gsl_spline_init(s[k], z, y, (size_t)count);
+    }
+    for (int i = 0; i < count - 1; i++) {
+        for (int j = 0; j < each; j++) {
+            int64_t at = ++a->n;
+            double from = z[i] + (z[i + 1] - z[i]) * j / each, to = z[i] + (z[i + 1] - z[i]) * (j + 1) / each, arc = 0;
+            to = j + 1 == each ? z[i + 1] : to;
+            for (int g = 0; g < FINE; g++) { /* 2-point Gauss in each part: arc length to 1e-12 */
+                for (int side = -1; side <= 1; side += 2) {
+                    double h = (to - from) / FINE, t = from + h * (g + 0.5 + 0.5 * side / sqrt(3.0));
+                    arc += 0.5 * h *
+                           sqrt(1 + pow(gsl_spline_eval_deriv(s[0], t, none), 2) +
+                                pow(gsl_spline_eval_deriv(s[1], t, none), 2));
+                }
+            }
+            a->eta[at] = a->eta[at - 1] + arc;
+            a->xyz[3 * at] = to;
+            a->xyz[3 * at + 1] = gsl_spline_eval(s[0], to, none);
+            a->xyz[3 * at + 2] = gsl_spline_eval(s[1], to, none);
+            a->twist[at] = -gsl_spline_eval(s[3], to, none) * (3.14159265358979323846 / 180);
+        }
+    }
+    return 0;
+}
+
+static int make_axis(const blade *b, axis *a) {
+    int each = 1 + AXIS_POINTS / b->points;
+    int64_t n = 1 + (int64_t)each * (b->points - 1);
+    double *work = spari_zalloc(2 * (int64_t)b->points, sizeof *work);
+    a->eta = spari_zalloc(n, sizeof *a->eta);
+    a->xyz = spari_zalloc(3 * n, sizeof *a->xyz);
+    a->twist = spari_zalloc(n, sizeof *a->twist);
+    int bad = !work || !a->eta || !a->xyz || !a->twist;
+    if (!bad) {
+        a->xyz[0] = b->key[2], a->xyz[1] = b->key[0], a->xyz[2] = b->key[1];
+        a->twist[0] = -b->key[3] * (3.14159265358979323846 / 180);
+    }
+    a->n = 0;
+    for (int m = 0, first = 0; m < b->members && !bad; first += b->count[m] - 1, m++) {
+        gsl_spline *s[4] = {0};
+        bad = member_axis(b, first, b->count[m], each, s, work, a);
+        for (int k = 0; k < 4; k++) {
+            gsl_spline_free(s[k]);
+        }
+    }
+    free(work);
+    if (bad) {
+        return 1;
+    }
+    for (int64_t i = 1; i < n; i++) {
+        a->eta[i] /= a->eta[n - 1] > 0 && i < n - 1 ? a->eta[n - 1] : 1;
+    }
+    a->eta[n - 1] = 1;
+    a->n = n;
+    return 0;
+}
+
+/* Hands it to the beam; what the beam had before stays when something is refused. */
+static int describe(spar_member *m, const reader *r, blade *b) {
+    double mu[6];
+    axis a = {0};
+    for (int64_t i = 0; i < b->stations; i++) {
+        turn_matrix(b->stiffness + 36 * i);
+        turn_matrix(b->mass + 36 * i);
+    }
+    for (int i = 0; i < 6; i++) {
+        mu[i] = b->damped ? b->mu[FROM[i]] : 0;
+    }
+    SPARI_TRY(check_sections(r, b));
+    spari_beam *fresh = spari_zalloc(1, sizeof *fresh), *old = m->beam;
+    int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : no_memory(r);
+    if (status == SPAR_OK) {
+        fresh->rule = old->rule, fresh->points = old->points;
+        m->beam = fresh;
+        status = spar_beam_set_axis(m, a.n, a.eta, a.xyz, a.twist);
+        status = status == SPAR_OK ? spar_beam_set_sections(m, b->stations, b->eta, b->stiffness, b->mass) : status;
+        status = status == SPAR_OK ? spar_beam_set_damping(m, mu) : status;
+        m->beam = status == SPAR_OK ? fresh : old;
+    }
+    spari_beam_free(status == SPAR_OK ? old : fresh);
+    free(a.eta);
+    free(a.xyz);
+    free(a.twist);
+    return status;
+}
+
+int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path) {
+    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", CALL);
+    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", CALL,
+                  beam->name);
+    SPARI_REQUIRE(beam->session, !beam->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is committed; describe it before spar_member_commit", CALL, beam->name);
+    SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", CALL, beam->name);
+    blade b = {0};
+    reader *r = spari_zalloc(1, sizeof *r);
+    SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, beam->name);
+    r->session = beam->session;
+    r->beam = beam->name;
+    int status = open_file(r, primary_path);
+    if (status == SPAR_OK) {
+        status = read_primary(r, &b);
+        fclose(r->file);
+    }
+    status = status == SPAR_OK ? open_file(r, blade_path ? blade_path : b.file) : status;
+    if (status == SPAR_OK) {
+        status = read_blade(r, &b);
+        fclose(r->file);
+    }
+    status = status == SPAR_OK ? describe(beam, r, &b) : status;
+    blade_free(&b);
+    free(r);
+    return status;
+}
