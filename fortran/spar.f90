@@ -48,6 +48,8 @@ module spar
   public :: SPAR_REPORT_CONTRACTION, SPAR_REPORT_ADDED_MASS, SPAR_REPORT_COLUMNS, SPAR_REPORT_DROPPED, SPAR_REPORT_ERROR
   public :: SPAR_REPORT_ADVISED_DT, SPAR_REPORT_WORK_DEFECT, SPAR_REPORT_UNCONVERGED, SPAR_REPORT_COUNT
   public :: SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS, SPAR_ROOT_FREE, SPAR_ROOT_FIXED
+  public :: SPAR_FIDELITY_PRESCRIBED, SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL
+  public :: SPAR_FIDELITY_EXACT
   public :: SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN, SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO
   public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
   public :: SPAR_INTERPOLATE_CONSISTENT, SPAR_NODES_MOTION, SPAR_NODES_FORCE, SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
@@ -113,6 +115,7 @@ module spar
     procedure :: set_root => member_set_root
     procedure :: set_external => member_set_external
     procedure :: set_effects => member_set_effects
+    procedure :: set_fidelity => member_set_fidelity
     procedure :: set_velocity => member_set_velocity
     procedure :: set_owner => member_set_owner
     procedure :: commit => member_commit
@@ -804,6 +807,19 @@ contains
 
     call finish(spar_member_set_effects(self%handle, effects), self%session, stat, errmsg)
   end subroutine member_set_effects
+
+  subroutine member_set_fidelity(self, kind, modes, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: kind
+    integer, intent(in), optional :: modes !! of a modal member
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+
+    n = 0
+    if (present(modes)) n = modes
+    call finish(spar_member_set_fidelity(self%handle, kind, n), self%session, stat, errmsg)
+  end subroutine member_set_fidelity
 
   subroutine member_set_velocity(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self

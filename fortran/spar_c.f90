@@ -22,6 +22,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
       SPAR_ROOT_DRIVEN = 3
+  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, &
+      SPAR_FIDELITY_LINEAR = 2, SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
       SPAR_QUADRATURE_SECTIONS = 2
   integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
@@ -260,6 +262,14 @@ module spar_c
       integer(c_int), value :: effects
       integer(c_int) :: status
     end function spar_member_set_effects
+
+    function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: kind
+      integer(c_int64_t), value :: modes
+      integer(c_int) :: status
+    end function spar_member_set_fidelity
 
     function spar_member_set_velocity(member, x0, v0, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr

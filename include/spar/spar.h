@@ -222,6 +222,15 @@ enum {
     SPAR_EFFECT_FLUID_HISTORY = 64   /* node forces kept for spar_fluid_pull_forces */
 };
 
+/* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
+enum {
+    SPAR_FIDELITY_PRESCRIBED = 0, /* follows the root as one rigid body, without mass; nothing is solved */
+    SPAR_FIDELITY_RIGID = 1,      /* one rigid body of the whole mass; 6 unknowns at most */
+    SPAR_FIDELITY_LINEAR = 2,     /* small deformation in the frame of the root; factored once */
+    SPAR_FIDELITY_MODAL = 3,      /* the same in its lowest modes */
+    SPAR_FIDELITY_EXACT = 4
+};
+
 /* The creates: name in, unique in the session, not empty, copied. Before the first step. Members go with their
    session. Local, but made on every rank alike and in the same order. member: out. */
 
@@ -277,6 +286,19 @@ SPAR_API int spar_member_set_external(spar_member *member, int on);
 /* effects: in, SPAR_EFFECT_* or-ed. Default: what the description implies (no damping given, none computed). Asking
    for what the description has nothing for is legal and has no effect. Local. */
 SPAR_API int spar_member_set_effects(spar_member *member, int effects);
+/* How a beam is solved. kind: in, SPAR_FIDELITY_*, default exact; modes: in, of a modal member, >= 1, else unused.
+     prescribed  needs a fixed or driven root; its support takes the loads (get_reaction), it has neither inertia nor
+                 weight
+     rigid       any root; mass, centre and inertia from the sections. solve_static leaves it where it is
+     linear      fixed or driven root: the root's motion is exact, the deformation seen from the root is linear, with
+                 Coriolis, gyroscopic and centrifugal terms and the stiffening by centrifugal forces. Neglected: terms
+                 of second order in the deformation (shortening of a bent beam; moments of loads on displaced arms),
+                 stiffening by other loads. One factorisation as long as dt and the root's turning speed, in its own
+                 axes, do not change. Free or pinned root: linear about the reference, as with LARGE_ROTATION off
+     modal       fixed or driven root; as linear, with the lowest `modes` modes of the beam with its root held.
+                 Initial deformation is brought to the nearest one that the modes have
+   Beams only, before commit. Local. SPAR_ERR_UNSUPPORTED at commit: modal with a free or pinned root. */
+SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
 /* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
    step, before or after commit. Local. */
 SPAR_API int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3],

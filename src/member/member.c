@@ -6,6 +6,7 @@
 #include "../solve/solver.h"
 #include "applied.h"
 #include "beam.h"
+#include "rung.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -108,6 +109,7 @@ static int member_create(spar_session *session, const char *call, const char *na
     m->nodes = 1;
     m->owner = session->member_count % spari_comm_size(session->comm);
     m->root = kind == SPARI_BEAM ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE;
+    m->fidelity = SPAR_FIDELITY_EXACT;
     m->place_q[0] = 1;
     session->member_count++;
     *end = m;
@@ -380,6 +382,21 @@ int spar_member_set_effects(spar_member *member, int effects) {
     return SPAR_OK;
 }
 
+int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
+    const char *call = "spar_member_set_fidelity";
+    SPARI_TRY(need_open(member, call));
+    spar_session *s = member->session;
+    SPARI_REQUIRE(s, kind >= SPAR_FIDELITY_PRESCRIBED && kind <= SPAR_FIDELITY_EXACT, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", call, member->name, kind);
+    SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", call, member->name);
+    SPARI_REQUIRE(s, kind != SPAR_FIDELITY_MODAL || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld modes; give at least 1", call, member->name, (long long)modes);
+    member->fidelity = kind;
+    member->modes = kind == SPAR_FIDELITY_MODAL ? modes : 0;
+    return SPAR_OK;
+}
+
 static void rigid_field(spar_member *m) {
     const double *x0 = m->velocity[0], *v0 = m->velocity[1], *w = m->velocity[2];
     for (int64_t i = 0; i < m->nodes; i++) {
@@ -415,6 +432,8 @@ static void restart(spar_member *m) {
     }
     if (m->solver) {
         spari_solver_restart(m->solver, m);
+    } else if (m->rung) {
+        spari_rung_restart(m);
     }
 }
 
@@ -444,6 +463,8 @@ void spari_member_accept(spar_member *m) {
     m->dissipated_step = 0;
     if (m->solver) {
         spari_solver_accept(m->solver);
+    } else if (m->rung) {
+        spari_rung_accept(m);
     }
 }
 
@@ -454,6 +475,8 @@ void spari_member_reject(spar_member *m) {
     m->dissipated_step = 0;
     if (m->solver && m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
         spari_solver_restart(m->solver, m);
+    } else if (m->rung && m->session->step == 0) {
+        spari_rung_restart(m);
     }
 }
 
@@ -492,7 +515,7 @@ int spar_member_set_owner(spar_member *member, int rank) {
 /* ---- commit ---- */
 
 int spari_member_is_solved(const spar_member *member) {
-    return !member->external && member->kind != SPARI_POINT;
+    return !member->external && member->kind != SPARI_POINT && !spari_rung_prescribed(member);
 }
 
 /* FNV-1a over what the ranks must agree on. */
@@ -506,8 +529,8 @@ static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
 
 uint64_t spari_member_hash(const spar_member *m) {
     uint64_t h = UINT64_C(14695981039346656037);
-    int numbers[] = {m->kind,          m->external, m->root,        m->effects,
-                     m->effects_given, m->elements, m->per_element, m->velocity_given};
+    int numbers[] = {m->kind,     m->external,    m->root,           m->effects,  m->effects_given,
+                     m->elements, m->per_element, m->velocity_given, m->fidelity, (int)m->modes};
     h = hash_bytes(h, m->name, strlen(m->name));
     h = hash_bytes(h, numbers, sizeof numbers);
     h = hash_bytes(h, m->place_x, sizeof m->place_x);
@@ -540,6 +563,7 @@ static int check_description(spar_member *m) {
     }
     SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
                   "spar_member_commit: '%s': the clock has started; commit members before the first step", m->name);
+    SPARI_TRY(spari_rung_check(m));
     return SPAR_OK;
 }
 
@@ -552,7 +576,7 @@ static int effects_in_force(const spar_member *m) {
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
     possible |= m->effects_given ? SPAR_EFFECT_FLUID_HISTORY : 0; /* unasked it comes with the fluids that need it */
-    return e & possible;
+    return spari_rung_effects(m, e & possible);
 }
 
 /* The arrays over the nodes, and how many numbers a node has in each. */
@@ -599,6 +623,8 @@ static void release(spar_member *m) {
     }
     spari_applied_free(m->applied);
     m->applied = NULL;
+    spari_rung_free(m->rung);
+    m->rung = NULL;
     spari_solver_free(m->solver);
     spari_body_free(m->body);
     m->solver = NULL;
@@ -624,15 +650,18 @@ static int build(spar_member *m) {
         SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, &m->body) : spari_rigid_build(m, &m->body));
         m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
         spari_member_gravity(m);
-        if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
+        SPARI_TRY(spari_rung_create(m));
+        if (!m->rung && !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
             SPARI_REQUIRE(session, spari_body_linearise(m->body) == 0, SPAR_ERR_MEMORY,
                           "spar_member_commit: no memory for '%s'", m->name);
         }
-        if (m->owner == spari_comm_rank(session->comm)) {
+        if (!m->rung && m->owner == spari_comm_rank(session->comm)) {
             m->solver = spari_solver_create(m);
             SPARI_REQUIRE(session, m->solver, SPAR_ERR_MEMORY, "spar_member_commit: no memory for the solver of '%s'",
                           m->name);
         }
+    } else if (spari_rung_prescribed(m)) {
+        SPARI_TRY(spari_rung_create(m));
     }
     restart(m);
     return SPAR_OK;
@@ -854,6 +883,9 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
 }
 
 int spari_member_reaction(const spar_member *m, double load[6]) {
+    if (m->rung) {
+        return spari_rung_reaction(m, load);
+    }
     memset(load, 0, 6 * sizeof *load);
     const spari_body *b = m->body;
     int held = m->root == SPAR_ROOT_FREE ? 0 : m->root == SPAR_ROOT_PINNED ? 3 : 6;
@@ -894,6 +926,9 @@ int spar_member_get_energy(const spar_member *member, double energy[4]) {
     spari_body_energy(b, q, v, energy);
     energy[0] = member->effects & SPAR_EFFECT_INERTIA ? energy[0] : 0;
     energy[3] = member->dissipated;
+    if (member->rung) {
+        spari_rung_energy(member, energy);
+    }
     free(q);
     return SPAR_OK;
 }

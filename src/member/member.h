@@ -16,6 +16,8 @@ typedef struct spari_motion {
 typedef struct spari_solver spari_solver;   /* src/solve: the owner's integrator */
 typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
 typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
+typedef struct spari_rung spari_rung;       /* src/member/rung.h: a member of lower fidelity */
+typedef struct spari_arms spari_arms;       /* src/member/rung.h: loads on the arms of a rigid body */
 typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
 
 struct spar_member {
@@ -25,6 +27,8 @@ struct spar_member {
     int kind, external, root, owner, committed;
     int effects;       /* SPAR_EFFECT_*: asked for; after commit what is in force */
     int effects_given; /* 0: what the description implies */
+    int fidelity;      /* SPAR_FIDELITY_* */
+    int64_t modes;     /* of a modal member */
     int motion_given;  /* set_motion was called in the step under way */
     int drive_given;   /* drive_root was called for the step under way or next */
 
@@ -49,6 +53,8 @@ struct spar_member {
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
     double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
+    spari_rung *rung;                   /* of members below the exact ones; NULL: none */
+    spari_arms *arms;                   /* of the body that carries a rigid member; NULL: none */
     spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 

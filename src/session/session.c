@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include "../member/body.h"
+#include "../member/rung.h"
 #include "../solve/solver.h"
 
 #include <math.h>
@@ -411,7 +412,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     } else if (load_steps < 1) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, member->name,
                             load_steps);
-    } else if (!member->body) {
+    } else if (!member->body && !member->rung) {
         status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)", call,
                             member->name);
     } else if (member->root == SPAR_ROOT_FREE || (member->root == SPAR_ROOT_PINNED && !member->body->C)) {
@@ -422,7 +423,9 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     if (!s->started) {
         SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
     }
-    if (member->solver) {
+    if (member->rung) {
+        status = spari_rung_static(member);
+    } else if (member->solver) {
         status = spari_solver_static(member, load_steps);
     }
     SPARI_TRY(spari_session_share_motion(s, status));

@@ -2,6 +2,7 @@
 #include "session.h"
 
 #include "../member/body.h"
+#include "../member/rung.h"
 #include "../solve/solver.h"
 
 #include <math.h>
@@ -121,6 +122,9 @@ int spar_step_begin(spar_session *session, double dt) {
 static int solve_member(spar_member *m, double dt) {
     if (m->solver) {
         return spari_solver_advance(m, dt);
+    }
+    if (m->rung) {
+        return spari_rung_advance(m, dt);
     }
     if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
         memcpy(m->after.q, m->drive[1], 7 * sizeof(double));

@@ -2,6 +2,7 @@
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. */
 #include "../math/rotation.h"
 #include "../member/applied.h"
+#include "../member/rung.h"
 #include "../session/session.h"
 #include "solver.h"
 
@@ -149,6 +150,9 @@ static double balance(spar_member *member, const scheme *c, const spari_state *s
     }
     if (member->applied) {
         scale = fmax(scale, spari_applied_residual(member, s->q, 1, r));
+    }
+    if (member->arms) {
+        spari_arms_residual(member->arms, s->q + 3, r + 3);
     }
     spari_solver_fixed(member, &first, &end);
     memset(r + first, 0, (size_t)(end - first) * sizeof *r);
@@ -343,7 +347,7 @@ static int newton(spar_member *member, const scheme *c, const double *root, cons
 
 /* Root motion at s in (0, 1] of the step: cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1
  * omega. */
-static void root_at(const spar_member *member, double s, double dt, double out[19]) {
+void spari_solver_root_at(const spar_member *member, double s, double dt, double out[19]) {
     const double *a = member->drive[0], *b = member->drive[1];
     if (s >= 1) {
         memcpy(out, b, 19 * sizeof *out);
@@ -397,6 +401,10 @@ static int start(spar_member *member, const scheme *c) {
         spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r, NULL);
         if (member->applied) {
             spari_applied_residual(member, b->q, 1, s->r);
+        }
+        if (member->arms) {
+            spari_arms_at(member->arms, 0);
+            spari_arms_residual(member->arms, b->q + 3, s->r + 3);
         }
         for (int i = 0; i < 6 * n; i++) {
             s->dx[i] = s->load0[i] - s->r[i];
@@ -465,7 +473,10 @@ int spari_solver_advance(spar_member *member, double dt) {
         for (int i = 0; i < n6; i++) {
             s->load[i] = (1 - f) * s->load0[i] + f * s->load1[i];
         }
-        root_at(member, f, dt, root);
+        if (member->arms) {
+            spari_arms_at(member->arms, f);
+        }
+        spari_solver_root_at(member, f, dt, root);
         if (member->root == SPAR_ROOT_DRIVEN) {
             spari_quat_conj(before + 3, conj);
             spari_quat_mul(root + 3, conj, turn);

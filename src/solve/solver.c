@@ -1,6 +1,7 @@
 #include "solver.h"
 
 #include "../member/applied.h"
+#include "../member/rung.h"
 #include "../session/session.h"
 
 #include <stdlib.h>
@@ -109,6 +110,9 @@ int spari_solver_factor(spar_member *member, const double *q, const double *v, c
         spari_body_tangent(member->body, e, q, v, a, factor, cm, cv, tinv, s->element);
         if (member->applied && factor != 0) {
             spari_applied_tangent(member, e, q, factor, s->element);
+        }
+        if (member->arms && factor != 0) {
+            spari_arms_tangent(member->arms, q + 3, s->element);
         }
         spari_linear_add(s->linear, e, s->element);
     }

@@ -1,0 +1,46 @@
+/* Members below the exact ones. Prescribed: the nodes follow the root as one rigid body; nothing is solved for. Rigid:
+   the same about a body of the member's whole mass, which the solver of rigid bodies advances. Linear and modal: see
+   solve/frame.h. A linear member whose root turns freely has no frame that is given: it is linear about its reference
+   instead, as with LARGE_ROTATION off, and has no rung. */
+#ifndef SPARI_RUNG_H
+#define SPARI_RUNG_H
+
+#include "member.h"
+
+/* First moments sum (rho f^T) of the nodal forces over the arms of the reference, and those of t^n and t^{n+1}: a rigid
+   body turned by R takes the moment of R Z. */
+struct spari_arms {
+    double Z[9], begin[9], end[9];
+};
+void spari_arms_at(spari_arms *arms, double s);
+/* r[3] -= the moment at orientation q */
+void spari_arms_residual(const spari_arms *arms, const double q[4], double r[3]);
+/* Adds its tangent to S [6][6]. */
+void spari_arms_tangent(const spari_arms *arms, const double q[4], double S[36]);
+
+struct spari_frame;
+struct spari_rung {
+    spar_member *core;         /* rigid: a body of one node; NULL: none */
+    struct spari_frame *frame; /* linear, modal; NULL: none */
+};
+
+/* Whether the member is one whose nodes follow its root without a solution. */
+int spari_rung_prescribed(const spar_member *member);
+/* What of the description the rung cannot serve: a status and a message. Before anything is built. */
+int spari_rung_check(const spar_member *member);
+/* The effects that are left to a rung, of those in force. */
+int spari_rung_effects(const spar_member *member, int effects);
+/* After nodes and body are there. */
+int spari_rung_create(spar_member *member);
+void spari_rung_free(spari_rung *rung);
+void spari_rung_restart(spar_member *member);
+int spari_rung_advance(spar_member *member, double dt);
+void spari_rung_accept(spar_member *member);
+int spari_rung_static(spar_member *member);
+/* What the root gives the member in the motion after, from the balance of the whole: inertia less weight less loads,
+ * each where its node is. Internal forces have no part in it. */
+int spari_rung_reaction(const spar_member *member, double load[6]);
+/* Puts what linear theory says in place of the strain energy of the exact one. */
+void spari_rung_energy(const spar_member *member, double energy[4]);
+
+#endif

@@ -1,0 +1,993 @@
+#include "frame.h"
+
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "../member/body.h"
+#include "../session/session.h"
+#include "solver.h"
+
+#include <gsl/gsl_cblas.h> /* the declarations; the linked CBLAS is the fast one */
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int pair[SPARI_TURNS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+/* ---- matrices from the exact member's tangents at the reference ---- */
+
+static void skew(const double a[3], double s[9]) {
+    const double m[9] = {0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0};
+    memcpy(s, m, sizeof m);
+}
+
+static void product3(const double a[9], const double b[9], double c[9]) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+        }
+    }
+}
+
+/* out += B diag(U, T, U, T, ...) for an element matrix B [m][m]; T NULL: 0 */
+static void times_nodes(int m, const double *B, const double U[9], const double *T, double *out) {
+    for (int i = 0; i < m; i++) {
+        for (int at = 0; at < m; at += 3) {
+            const double *S = at % 6 == 0 ? U : T;
+            const double *b = B + (int64_t)m * i + at;
+            for (int j = 0; j < 3 && S; j++) {
+                out[(int64_t)m * i + at + j] += b[0] * S[j] + b[1] * S[3 + j] + b[2] * S[6 + j];
+            }
+        }
+    }
+}
+
+/* The rigid motion omega of the reference about the root: velocities and centripetal accelerations. */
+static void rigid_motion(const spari_frame *f, const double *arm, const double omega[3], double *v, double *a) {
+    for (int i = 0; i < f->nodes; i++) {
+        spari_cross(omega, arm + 3 * i, v + 6 * i);
+        spari_cross(omega, v + 6 * i, a + 6 * i);
+        memcpy(v + 6 * i + 3, omega, 3 * sizeof *v);
+        memset(a + 6 * i + 3, 0, 3 * sizeof *a);
+    }
+}
+
+/* Work of the set-up: the reference as a state, its arms from the root, velocities and accelerations of a rigid turn,
+ * four element matrices, a field of the nodes. */
+typedef struct setup {
+    const spari_body *body;
+    int m; /* 6 P */
+    double *q, *arm, *v, *a, *S[4], *field;
+} setup;
+
+/* What a turn with omega adds: matrices of the place (into N, element after element) and of the rate (into G). A frame
+   that turns gives du-dot = omega x u, d(u-ddot) = 2 omega x u-dot + omega x (omega x u), d(alpha) = omega x theta-dot.
+ */
+static void turn_matrices(const spari_frame *f, const setup *w, const double omega[3], double *N, double *G) {
+    int m = w->m;
+    int64_t mm = (int64_t)m * m;
+    double W[9], WW[9], W2[9];
+    skew(omega, W);
+    product3(W, W, WW);
+    for (int i = 0; i < 9; i++) {
+        W2[i] = 2 * W[i];
+    }
+    rigid_motion(f, w->arm, omega, w->v, w->a);
+    for (int e = 0; e < w->body->elements; e++) {
+        const double *K = f->K + mm * e, *M = f->M + mm * e;
+        double *S = w->S[0], *B = w->S[1];
+        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
+        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 1, NULL, B);
+        for (int64_t i = 0; i < mm; i++) {
+            B[i] -= S[i];
+            N[mm * e + i] = S[i] - K[i];
+        }
+        times_nodes(m, B, W, NULL, N + mm * e);
+        times_nodes(m, M, WW, NULL, N + mm * e);
+        if (G) {
+            for (int64_t i = 0; i < mm; i++) {
+                G[mm * e + i] = B[i] - (f->D ? f->D[mm * e + i] : 0);
+            }
+            times_nodes(m, M, W2, W, G + mm * e);
+        }
+    }
+}
+
+/* K, D, M: at rest and unloaded the tangent is K + cv D + cm M. */
+static void rest_matrices(const spari_frame *f, const setup *w) {
+    int64_t mm = (int64_t)w->m * w->m;
+    for (int e = 0; e < w->body->elements; e++) {
+        double *K = f->K + mm * e, *to[2] = {f->D, f->M};
+        spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, 0, 0, NULL, K);
+        for (int k = 0; k < 2; k++) {
+            if (to[k]) {
+                spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, k, 1 - k, NULL, to[k] + mm * e);
+                for (int64_t i = 0; i < mm; i++) {
+                    to[k][mm * e + i] -= K[i];
+                }
+            }
+        }
+    }
+}
+
+/* The geometric stiffness of the static answer to the loads -f: the derivative of the tangent along it, by central
+   differences over a step in which the largest strain-like measure is `small` (error small^2). The tangent's virtual
+   rotations are those at the deformed state: T(theta) takes the rotation vector's changes there. */
+static int stretch_matrices(spari_frame *f, const setup *w, const double *load, double *N) {
+    const double small = 1e-4;
+    int m = w->m, P = m / 6;
+    int64_t mm = (int64_t)m * m;
+    double *u = w->field, largest = 0, *q = w->v; /* 7 per node fit into v and a together */
+    memcpy(u, load, (size_t)(6 * f->nodes) * sizeof *u);
+    memset(u, 0, 6 * sizeof *u);
+    if (spari_linear_solve(f->linear, u)) {
+        return 1;
+    }
+    for (int i = 0; i < f->nodes; i++) {
+        largest = fmax(largest, fmax(spari_norm(u + 6 * i) / w->body->length, spari_norm(u + 6 * i + 3)));
+    }
+    if (largest == 0) {
+        return 0;
+    }
+    for (int side = -1; side <= 1; side += 2) {
+        double step = -side * small / largest;
+        for (int i = 0; i < f->nodes; i++) {
+            double psi[3];
+            for (int k = 0; k < 3; k++) {
+                q[7 * i + k] = step * u[6 * i + k];
+                psi[k] = step * u[6 * i + 3 + k];
+            }
+            spari_quat_exp(psi, q + 7 * i + 3);
+        }
+        for (int e = 0; e < w->body->elements; e++) {
+            double *S = w->S[0], scale = side * largest / (2 * small);
+            spari_body_tangent(w->body, e, q, NULL, NULL, 0, 0, 0, NULL, S);
+            for (int l = 0; l < P; l++) {
+                double psi[3], T[9], *N0 = N + mm * e;
+                for (int k = 0; k < 3; k++) {
+                    psi[k] = step * u[6 * ((int64_t)e * (P - 1) + l) + 3 + k];
+                }
+                spari_tangent(psi, T);
+                for (int i = 0; i < m; i++) {
+                    const double *s = S + (int64_t)m * i + 6 * l;
+                    double *to = N0 + (int64_t)m * i + 6 * l;
+                    for (int j = 0; j < 3; j++) {
+                        to[j] += scale * s[j];
+                        to[3 + j] += scale * (s[3] * T[j] + s[4] * T[3 + j] + s[5] * T[6 + j]);
+                    }
+                }
+            }
+        }
+    }
+    return 0;
+}
+
+/* y [n] += factor * X x for a matrix of the frame */
+static void multiply(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
+    int m = f->block, step = f->block - f->overlap;
+    for (int e = 0; e < f->elements; e++) {
+        cblas_dgemv(CblasRowMajor, CblasNoTrans, m, m, factor, X + (int64_t)m * m * e, m, x + (int64_t)e * step, 1, 1,
+                    y + (int64_t)e * step, 1);
+    }
+}
+
+static void factor_into(spari_frame *f, const double *K, double ck, const double *C, double cv, double cm, double *S,
+                        int *singular) {
+    int64_t mm = (int64_t)f->block * f->block;
+    spari_linear_zero(f->linear);
+    for (int e = 0; e < f->elements; e++) {
+        for (int64_t i = 0; i < mm; i++) {
+            int64_t at = mm * e + i;
+            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0);
+        }
+        spari_linear_add(f->linear, e, S);
+    }
+    for (int i = 0; i < 6; i++) {
+        spari_linear_fix(f->linear, i);
+    }
+    f->factors++;
+    *singular = spari_linear_factor(f->linear);
+}
+
+static int turn_terms(spari_frame *f, const setup *w) {
+    int singular = 0;
+    double *none = NULL;
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        int i = pair[k][0], j = pair[k][1];
+        double omega[3] = {0};
+        omega[i] = omega[j] = 1;
+        turn_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
+        rigid_motion(f, w->arm, omega, w->v, w->a);
+        spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
+    }
+    for (int k = 3; k < SPARI_TURNS; k++) { /* polarisation: what belongs to omega_i omega_j alone */
+        for (int side = 0; side < 2; side++) {
+            int d = pair[k][side];
+            for (int64_t i = 0; i < f->size; i++) {
+                f->N[k][i] -= f->N[d][i];
+            }
+            for (int i = 0; i < 6 * f->nodes; i++) {
+                f->f[k][i] -= f->f[d][i];
+            }
+        }
+    }
+    factor_into(f, f->K, 1, NULL, 0, 0, w->S[0], &singular);
+    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
+        singular = stretch_matrices(f, w, f->f[k], f->N[k]);
+    }
+    return singular;
+}
+
+/* ---- modes ---- */
+
+static void assemble(const spari_frame *f, const double *X, gsl_matrix *A) {
+    int m = f->block, step = f->block - f->overlap;
+    for (int e = 0; e < f->elements; e++) {
+        for (int i = 0; i < m; i++) {
+            for (int j = 0; j < m; j++) {
+                int row = e * step + i - 6, col = e * step + j - 6;
+                if (row >= 0 && col >= 0) {
+                    const double *x = X + (int64_t)m * m * e;
+                    *gsl_matrix_ptr(A, (size_t)row, (size_t)col) +=
+                        0.5 * (x[(int64_t)m * i + j] + x[(int64_t)m * j + i]);
+                }
+            }
+        }
+    }
+}
+
+/* Columns of the basis: the six rigid motions about the root, then the lowest modes, of unit modal mass. */
+static int fill_basis(spari_frame *f, const double *arm, int64_t modes) {
+    size_t n = (size_t)(6 * f->nodes - 6), cols = (size_t)modes + 6;
+    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *x = gsl_matrix_alloc(n, n);
+    gsl_vector *lambda = gsl_vector_alloc(n);
+    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(n);
+    int status = K && M && x && lambda && w ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        assemble(f, f->K, K);
+        assemble(f, f->M, M);
+        gsl_matrix *M2 = gsl_matrix_alloc(n, n);
+        status = M2 ? SPAR_OK : SPAR_ERR_MEMORY;
+        if (M2) {
+            gsl_matrix_memcpy(M2, M);
+            status = gsl_eigen_gensymmv(K, M2, lambda, x, w) == GSL_SUCCESS ? SPAR_OK : SPAR_ERR_NUMERIC;
+            gsl_matrix_free(M2);
+        }
+    }
+    if (status == SPAR_OK) {
+        gsl_eigen_gensymmv_sort(lambda, x, GSL_EIGEN_SORT_VAL_ASC);
+        for (int i = 0; i < f->nodes; i++) {
+            double W[9];
+            skew(arm + 3 * i, W);
+            for (size_t r = 0; r < 3; r++) {
+                f->basis[(6 * (size_t)i + r) * cols + r] = f->basis[(6 * (size_t)i + 3 + r) * cols + 3 + r] = 1;
+                for (size_t c = 0; c < 3; c++) {
+                    f->basis[(6 * (size_t)i + r) * cols + 3 + c] = -W[3 * r + c];
+                }
+            }
+        }
+        for (size_t k = 0; k < (size_t)modes; k++) {
+            double mass = 0;
+            for (size_t i = 0; i < n; i++) {
+                for (size_t j = 0; j < n; j++) {
+                    mass += gsl_matrix_get(x, i, k) * gsl_matrix_get(M, i, j) * gsl_matrix_get(x, j, k);
+                }
+            }
+            for (size_t i = 0; i < n; i++) {
+                f->basis[(6 + i) * cols + 6 + k] = gsl_matrix_get(x, i, k) / sqrt(mass);
+            }
+        }
+    }
+    gsl_matrix_free(K);
+    gsl_matrix_free(M);
+    gsl_matrix_free(x);
+    gsl_vector_free(lambda);
+    if (w) {
+        gsl_eigen_gensymmv_free(w);
+    }
+    return status;
+}
+
+/* *X := basis^T X basis */
+static int project_matrix(const spari_frame *f, int cols, double **X) {
+    int m = f->block, step = f->block - f->overlap;
+    double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
+    if (!to || !half) {
+        free(to);
+        free(half);
+        return 1;
+    }
+    for (int e = 0; e < f->elements; e++) {
+        const double *b = f->basis + (int64_t)e * step * cols;
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b, cols, 0,
+                    half, cols);
+        cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols);
+    }
+    free(half);
+    free(*X);
+    *X = to;
+    return 0;
+}
+
+static int project(spari_frame *f, int64_t modes) {
+    int cols = (int)modes + 6, bad = 0;
+    double **all[3 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D};
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        all[3 + k] = &f->N[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        all[3 + SPARI_TURNS + k] = &f->G[k];
+    }
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
+    }
+    double *part = spari_zalloc(cols, sizeof *part);
+    double **vectors[SPARI_TURNS + 6];
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        vectors[k] = &f->f[k];
+        vectors[SPARI_TURNS + k] = &f->rigid[k];
+    }
+    for (int k = 0; k < SPARI_TURNS + 6 && part; k++) {
+        if (*vectors[k]) {
+            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, *vectors[k], 1, 0, part, 1);
+            memcpy(*vectors[k], part, (size_t)cols * sizeof *part);
+        }
+    }
+    bad = bad || !part;
+    free(part);
+    f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
+    f->size = (int64_t)cols * cols;
+    spari_linear_free(f->linear);
+    f->linear = spari_linear_create(1, cols, 6);
+    return bad || !f->linear;
+}
+
+/* ---- life ---- */
+
+static int carve_states(spari_frame *f) {
+    spari_frame_state *states[3] = {&f->begin, &f->from, &f->to};
+    for (int k = 0; k < 3; k++) {
+        double *block = spari_zalloc(4 * (int64_t)f->n, sizeof *block);
+        if (!block) {
+            return 1;
+        }
+        states[k]->y = block, states[k]->v = block + f->n;
+        states[k]->a = block + 2 * f->n, states[k]->b = block + 3 * f->n;
+        states[k]->root[3] = 1;
+    }
+    return 0;
+}
+
+static int allocate(spari_frame *f, const spar_member *m) {
+    int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0, ok = 1;
+    double **matrices[] = {&f->K, &f->M, &f->D};
+    const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL};
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        ok = ok && (!inertia || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
+                                 (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
+        ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
+    }
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (!inertia || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
+    }
+    return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
+}
+
+static int allocate_work(spari_frame *f) {
+    int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
+    double **vectors[] = {&f->load, &f->load0, &f->load1, &f->r, &f->dx, &f->increment};
+    int ok = carve_states(f) == 0;
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
+        ok = ok && (*vectors[k] = spari_zalloc(wide, sizeof(double)));
+    }
+    ok = ok && (f->nodal = spari_zalloc(18 * (int64_t)f->nodes, sizeof(double)));
+    ok = ok && (f->turned = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
+    ok = ok && (f->element = spari_zalloc((int64_t)f->block * f->block, sizeof(double)));
+    if (f->N[0] || f->D) { /* else the sums are K and nothing */
+        ok = ok && (f->sumC = spari_zalloc(f->size, sizeof(double)));
+    }
+    if (f->N[0]) {
+        ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
+    }
+    return !ok;
+}
+
+/* The reference as a state, and arms from the root; then the matrices. */
+static int build(spari_frame *f, const spar_member *m, setup *w) {
+    int singular = 0;
+    int64_t mm = (int64_t)w->m * w->m, n = f->nodes;
+    double *block = spari_zalloc(7 * n + 3 * n + 13 * n + 4 * mm + 6 * n, sizeof *block);
+    if (!block) {
+        return SPAR_ERR_MEMORY;
+    }
+    w->q = block, w->arm = w->q + 7 * n, w->v = w->arm + 3 * n, w->a = w->v + 6 * n, w->field = w->a + 7 * n;
+    for (int k = 0; k < 4; k++) {
+        w->S[k] = w->field + 6 * n + mm * k;
+    }
+    spari_member_to_unique(m, 3, m->xr, w->arm);
+    for (int64_t i = n - 1; i >= 0; i--) {
+        for (int k = 0; k < 3; k++) {
+            w->arm[3 * i + k] -= w->arm[k];
+        }
+        w->q[7 * i + 3] = 1;
+    }
+    rest_matrices(f, w);
+    for (int k = 0; k < 6 && f->M; k++) {
+        double unit[3] = {0};
+        unit[k % 3] = 1;
+        for (int64_t i = 0; i < n; i++) {
+            memset(w->field + 6 * i, 0, 6 * sizeof *w->field);
+            if (k < 3) {
+                memcpy(w->field + 6 * i, unit, sizeof unit);
+            } else {
+                spari_cross(unit, w->arm + 3 * i, w->field + 6 * i);
+                memcpy(w->field + 6 * i + 3, unit, sizeof unit);
+            }
+        }
+        multiply(f, f->M, w->field, 1, f->rigid[k]);
+    }
+    if (f->N[0]) {
+        singular = turn_terms(f, w);
+    }
+    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+
+int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) {
+    spari_frame *f = spari_zalloc(1, sizeof *f);
+    setup w = {.body = member->body, .m = 6 * member->per_element};
+    int status = f ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (f) {
+        f->nodes = member->body->unique;
+        f->elements = member->elements, f->block = w.m, f->overlap = 6, f->n = 6 * f->nodes;
+        f->size = (int64_t)f->elements * f->block * f->block;
+        status = allocate(f, member) ? SPAR_ERR_MEMORY : SPAR_OK;
+    }
+    if (status == SPAR_OK) {
+        status = build(f, member, &w);
+    }
+    if (status == SPAR_OK && modes > 0) {
+        f->basis = spari_zalloc((int64_t)6 * f->nodes * (modes + 6), sizeof(double));
+        status = f->basis ? fill_basis(f, w.arm, modes) : SPAR_ERR_MEMORY;
+        if (status == SPAR_OK && project(f, modes)) {
+            status = SPAR_ERR_MEMORY;
+        }
+    }
+    free(w.q);
+    if (status == SPAR_OK && allocate_work(f)) {
+        status = SPAR_ERR_MEMORY;
+    }
+    if (status != SPAR_OK) {
+        spari_frame_free(f);
+        return spari_fail(member->session, status, "spar_member_commit: '%s': %s", member->name,
+                          status == SPAR_ERR_MEMORY
+                              ? "no memory for the linear member"
+                              : "its mass or its stiffness is not positive definite, so it has no modes; give every "
+                                "section mass and rotary inertia, or take another fidelity");
+    }
+    f->factors = 0; /* those of the set-up do not count */
+    *frame = f;
+    return SPAR_OK;
+}
+
+void spari_frame_free(spari_frame *f) {
+    if (!f) {
+        return;
+    }
+    double *all[] = {f->basis,   f->K,         f->M,     f->D,      f->sumK,   f->sumC,  f->sumf,
+                     f->begin.y, f->from.y,    f->to.y,  f->load,   f->load0,  f->load1, f->r,
+                     f->dx,      f->increment, f->nodal, f->turned, f->element};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        free(all[k]);
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        free(f->N[k]);
+        free(f->f[k]);
+        free(f->rigid[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        free(f->G[k]);
+    }
+    spari_linear_free(f->linear);
+    free(f);
+}
+
+/* ---- between the nodes' motion and the frame ---- */
+
+static void matvec3(const double T[9], const double x[3], double y[3]) {
+    for (int k = 0; k < 3; k++) {
+        y[k] = T[3 * k] * x[0] + T[3 * k + 1] * x[1] + T[3 * k + 2] * x[2];
+    }
+}
+
+/* Deformation and rates of nodes x, v [unique] seen from the root node, in the frame's axes, as unknowns. */
+static void from_nodes(spari_frame *f, const spar_member *m, const double *q, const double *v, double *y,
+                       double *rate) {
+    const double *root = q;
+    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, omega[3];
+    spari_rotate_back(root + 3, v + 3, omega);
+    int P = m->per_element;
+    for (int i = 0; i < f->nodes; i++) {
+        int64_t at = m->elements == 1 ? i : i == 0 ? 0 : i + (i - 1) / (P - 1);
+        double arm[3], p[4], back[4], turn[3], d[3], rot[3], T[9];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = m->xr[3 * at + k] - m->xr[k];
+            d[k] = arm[k] + q[7 * i + k] - root[k];
+            xd[6 * i + k] = v[6 * i + k] - v[k];
+            rot[k] = v[6 * i + 3 + k] - v[3 + k];
+        }
+        spari_rotate_back(root + 3, d, d);
+        spari_rotate_back(root + 3, xd + 6 * i, xd + 6 * i);
+        spari_cross(omega, d, turn);
+        spari_quat_conj(root + 3, back);
+        spari_quat_mul(back, q + 7 * i + 3, p);
+        spari_quat_log(p, x + 6 * i + 3);
+        spari_rotate_back(root + 3, rot, rot);
+        spari_tangent_inverse(x + 6 * i + 3, T);
+        matvec3(T, rot, xd + 6 * i + 3);
+        for (int k = 0; k < 3; k++) {
+            x[6 * i + k] = d[k] - arm[k];
+            xd[6 * i + k] -= turn[k];
+        }
+    }
+    if (!f->basis) {
+        memcpy(y, x, (size_t)f->n * sizeof *y);
+        memcpy(rate, xd, (size_t)f->n * sizeof *y);
+        return;
+    }
+    /* modal: the nearest in the norm of the mass, Phi^T M x; M of the nodes is gone, but the body has it as forces of
+     * accelerations at the reference */
+    const double *in[2] = {x, xd};
+    double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
+           *force = zero + 6 * (int64_t)f->nodes;
+    memset(still, 0, (size_t)(13 * f->nodes) * sizeof *still);
+    for (int i = 0; i < f->nodes; i++) {
+        still[7 * i + 3] = 1;
+    }
+    for (int k = 0; k < 2; k++) {
+        spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
+        cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1);
+        memset(out[k], 0, 6 * sizeof *y);
+    }
+}
+
+/* The nodes' motion q, v, a [unique] of a state; rotations of the nodes follow their rotation vectors exactly, second
+ * derivatives to first order. */
+static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
+                     double *a) {
+    int P = m->per_element;
+    int64_t n6 = 6 * (int64_t)f->nodes;
+    const double *x[3] = {s->y, s->v, s->a};
+    for (int k = 0; k < 3 && f->basis; k++) {
+        cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x[k], 1, 0, f->nodal + k * n6, 1);
+        x[k] = f->nodal + k * n6;
+    }
+    const double *root = s->root;
+    double omega[3], alpha[3];
+    spari_rotate_back(root + 3, root + 10, omega);
+    spari_rotate_back(root + 3, root + 16, alpha);
+    for (int i = 0; i < f->nodes; i++) {
+        int64_t at = m->elements == 1 ? i : i == 0 ? 0 : i + (i - 1) / (P - 1);
+        const double *w = x[0] + 6 * i, *wd = x[1] + 6 * i, *wdd = x[2] + 6 * i;
+        double arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
+        double *qn = q + 7 * i, *vn = v + 6 * i, *an = a + 6 * i;
+        for (int k = 0; k < 3; k++) {
+            arm[k] = m->xr[3 * at + k] - m->xr[k];
+            d[k] = arm[k] + w[k];
+        }
+        spari_quat_exp(w + 3, p);
+        spari_quat_mul(root + 3, p, qn + 3);
+        spari_quat_normalise(qn + 3);
+        spari_tangent(w + 3, T);
+        matvec3(T, wd + 3, spin);
+        matvec3(T, wdd + 3, twice);
+        spari_cross(omega, d, c1);
+        for (int k = 0; k < 3; k++) {
+            vn[k] = c1[k] + wd[k];
+            vn[3 + k] = omega[k] + spin[k];
+            c1[k] += 2 * wd[k]; /* omega x (omega x d + 2 w') */
+        }
+        spari_cross(omega, c1, c2);
+        spari_cross(alpha, d, c3);
+        for (int k = 0; k < 3; k++) {
+            an[k] = c2[k] + c3[k] + wdd[k];
+        }
+        spari_cross(omega, spin, c1);
+        for (int k = 0; k < 3; k++) {
+            an[3 + k] = alpha[k] + twice[k] + c1[k];
+        }
+        spari_rotate(root + 3, d, d);
+        for (int k = 0; k < 6; k += 3) {
+            spari_rotate(root + 3, vn + k, vn + k);
+            spari_rotate(root + 3, an + k, an + k);
+        }
+        for (int k = 0; k < 3; k++) {
+            qn[k] = d[k] - arm[k] + root[k];
+            vn[k] += root[7 + k];
+            an[k] += root[13 + k];
+        }
+    }
+}
+
+static void publish(spari_frame *f, spar_member *m, const spari_frame_state *s, spari_motion *to) {
+    int64_t n = f->nodes;
+    double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
+    to_nodes(f, m, s, q, v, a);
+    spari_member_from_unique(m, 7, q, to->q);
+    spari_member_from_unique(m, 6, v, to->v);
+    spari_member_from_unique(m, 6, a, to->a);
+}
+
+/* ---- time ---- */
+
+typedef struct scheme {
+    double h, alpha_m, alpha_f, beta, gamma, cm, cv;
+    int still;
+} scheme;
+
+/* The coefficients of alpha.c: the members of a session are integrated alike. */
+static scheme scheme_of(const spari_frame *f, const spar_member *m, double rho, double h) {
+    scheme c = {.h = h};
+    c.alpha_m = (2 * rho - 1) / (rho + 1);
+    c.alpha_f = rho / (rho + 1);
+    c.gamma = 0.5 + c.alpha_f - c.alpha_m;
+    c.beta = 0.25 * (0.5 + c.gamma) * (0.5 + c.gamma);
+    c.still = !(m->effects & SPAR_EFFECT_INERTIA);
+    c.cm = c.still ? 0 : (1 - c.alpha_m) / (h * h * c.beta * (1 - c.alpha_f));
+    c.cv = c.still ? (f->D ? 1 / h : 0) : c.gamma / (h * c.beta);
+    return c;
+}
+
+/* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
+static void combine(spari_frame *f, const double omega[3]) {
+    double change[3] = {omega[0] - f->omega[0], omega[1] - f->omega[1], omega[2] - f->omega[2]};
+    if (f->combined && spari_norm(change) <= 1e-13 * spari_norm(omega)) {
+        return;
+    }
+    memcpy(f->omega, omega, sizeof f->omega);
+    f->combined = 1;
+    if (f->sumC) {
+        for (int64_t i = 0; i < f->size; i++) {
+            f->sumC[i] = f->D ? f->D[i] : 0;
+        }
+    }
+    if (!f->N[0]) {
+        return;
+    }
+    memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
+    memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        double c = omega[pair[k][0]] * omega[pair[k][1]];
+        if (c != 0) {
+            cblas_daxpy((int)f->size, c, f->N[k], 1, f->sumK, 1);
+            cblas_daxpy(f->n, c, f->f[k], 1, f->sumf, 1);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        if (omega[k] != 0) {
+            cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
+        }
+    }
+}
+
+/* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
+static void turn_loads(const spari_frame *f, const double q[4], double *x, double *out) {
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(q, x + i, x + i);
+    }
+    if (f->basis) {
+        cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, x, 1, 0, out, 1);
+    } else {
+        memcpy(out, x, (size_t)f->n * sizeof *out);
+    }
+}
+
+/* What does not depend on the deformation: r = f + M (rigid acceleration - weight) - loads. Loads that follow depend on
+ * it and are taken at the latest state. */
+static void forcing(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double *out) {
+    double weight[3], *x = f->nodal;
+    memcpy(x, f->load, (size_t)(6 * f->nodes) * sizeof *x);
+    if (m->applied) {
+        double *q = f->turned, *v = q + 7 * (int64_t)f->nodes, *a = v + 6 * (int64_t)f->nodes;
+        to_nodes(f, m, s, q, v, a);
+        for (int i = 0; i < 6 * f->nodes; i++) {
+            x[i] = -f->load[i];
+        }
+        spari_applied_residual(m, q, 1, x);
+        for (int i = 0; i < 6 * f->nodes; i++) {
+            x[i] = -x[i];
+        }
+    }
+    turn_loads(f, s->root + 3, x, out);
+    for (int i = 0; i < f->n; i++) {
+        out[i] = (still || !f->sumf ? 0 : f->sumf[i]) - out[i];
+    }
+    if (f->rigid[0]) {
+        double rate[6] = {0};
+        spari_rotate_back(s->root + 3, m->body->gravity, weight);
+        if (!still) {
+            spari_rotate_back(s->root + 3, s->root + 13, rate);
+            spari_rotate_back(s->root + 3, s->root + 16, rate + 3);
+        }
+        for (int k = 0; k < 3; k++) {
+            rate[k] -= weight[k];
+        }
+        for (int k = 0; k < 6; k++) {
+            if (rate[k] != 0) {
+                cblas_daxpy(f->n, rate[k], f->rigid[k], 1, out, 1);
+            }
+        }
+    }
+}
+
+/* r = forcing + M a + C v + K y, the root's rows out */
+static void balance(const spari_frame *f, const spari_frame_state *s, int still, const double *fixed, double *r) {
+    memcpy(r, fixed, (size_t)f->n * sizeof *r);
+    multiply(f, f->sumK ? f->sumK : f->K, s->y, 1, r);
+    if (f->sumC) {
+        multiply(f, f->sumC, s->v, 1, r);
+    }
+    if (f->M && !still) {
+        multiply(f, f->M, s->a, 1, r);
+    }
+    memset(r, 0, 6 * sizeof *r);
+}
+
+static int factor(spari_frame *f, const scheme *c) {
+    int singular;
+    factor_into(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, c->cm, f->element, &singular);
+    f->factored = !singular;
+    f->kept_cm = c->cm, f->kept_cv = c->cv;
+    memcpy(f->kept_omega, f->omega, sizeof f->omega);
+    return singular;
+}
+
+static double largest(const spari_frame *f, const double *x) {
+    double big = 0;
+    for (int i = 0; i < f->n; i++) {
+        big = fmax(big, fabs(x[i]));
+    }
+    return big;
+}
+
+/* Starting values: the accelerations stay. */
+static void predict(const spari_frame *f, const scheme *c, const spari_frame_state *from, spari_frame_state *to) {
+    double h = c->h;
+    for (int k = 6; k < f->n; k++) {
+        double b = from->b[k], a = from->a[k];
+        if (c->still) {
+            to->y[k] = from->y[k];
+            to->v[k] = to->a[k] = to->b[k] = 0;
+            continue;
+        }
+        to->a[k] = a;
+        to->b[k] = (a - c->alpha_m * b) / (1 - c->alpha_m);
+        to->y[k] = from->y[k] + h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
+        to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
+    }
+}
+
+enum { MOST_ITERATIONS = 30 };
+
+/* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
+   other turn, or with loads that follow, the corrections shrink until they are rounding. */
+static int substep(spari_frame *f, spar_member *m, const scheme *c, const spari_frame_state *from,
+                   spari_frame_state *to) {
+    double omega[3], last = 0, to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
+    spari_rotate_back(to->root + 3, to->root + 10, omega);
+    combine(f, omega);
+    int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
+    f->factored = same;
+    predict(f, c, from, to);
+    double *fixed = f->increment;
+    for (int it = 0; it < MOST_ITERATIONS; it++) {
+        if (it == 0 || m->applied) {
+            forcing(f, m, to, c->still, fixed);
+        }
+        balance(f, to, c->still, fixed, f->r);
+        if (!f->factored && factor(f, c)) {
+            return 1;
+        }
+        int exact = !m->applied && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
+        memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+        if (spari_linear_solve(f->linear, f->dx)) {
+            return 1;
+        }
+        f->solves++;
+        for (int k = 6; k < f->n; k++) {
+            to->y[k] -= f->dx[k];
+            to->v[k] -= c->still ? f->dx[k] / c->h : c->cv * f->dx[k];
+            to->a[k] -= c->cm * f->dx[k];
+            to->b[k] -= to_b * f->dx[k];
+        }
+        double step = largest(f, f->dx), theta = last > 0 ? step / last : 0;
+        if (exact || step <= m->session->newton_atol + m->session->newton_rtol * largest(f, to->y) ||
+            (it > 2 && theta > 0.5 && step <= 1e-10 * largest(f, to->y))) {
+            return 0;
+        }
+        if (theta > 0.2) {
+            f->factored = 0;
+        }
+        last = step;
+    }
+    return 1;
+}
+
+/* As start() of alpha.c: accelerations at t^0 through M + K / cm. */
+static int start(spari_frame *f, spar_member *m, const scheme *c) {
+    spari_frame_state *b = &f->begin;
+    double omega[3];
+    int singular;
+    spari_rotate_back(b->root + 3, b->root + 10, omega);
+    combine(f, omega);
+    factor_into(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, c->cm, f->element, &singular);
+    f->factored = 0;
+    memcpy(f->load, f->load0, (size_t)(6 * f->nodes) * sizeof *f->load);
+    forcing(f, m, b, c->still, f->increment);
+    for (int k = 0; k < 4 && !singular; k++) {
+        balance(f, b, c->still, f->increment, f->r);
+        singular = spari_linear_solve(f->linear, f->r);
+        for (int i = 6; i < f->n; i++) {
+            b->a[i] -= c->cm * f->r[i];
+        }
+    }
+    memcpy(b->b, b->a, (size_t)f->n * sizeof *b->b);
+    f->started = 1;
+    return singular;
+}
+
+static void copy_state(const spari_frame *f, const spari_frame_state *from, spari_frame_state *to) {
+    memcpy(to->y, from->y, (size_t)(4 * f->n) * sizeof *to->y);
+    memcpy(to->root, from->root, sizeof to->root);
+}
+
+static void swap(spari_frame_state *a, spari_frame_state *b) {
+    spari_frame_state t = *a;
+    *a = *b;
+    *b = t;
+}
+
+static double damped_power(spari_frame *f, const spari_frame_state *s) {
+    double power = 0;
+    if (f->D) {
+        memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+        multiply(f, f->D, s->v, 1, f->r);
+        power = cblas_ddot(f->n, f->r, 1, s->v, 1);
+    }
+    return power;
+}
+
+/* A root that is not driven stays where it is. */
+static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
+    memcpy(f->to.root, f->begin.root, sizeof f->to.root);
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        spari_solver_root_at(m, s, dt, f->to.root);
+    }
+}
+
+int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
+    int A = m->session->substeps, n6 = 6 * f->nodes;
+    spari_solver_gather(m, m->load_history[0], f->load0);
+    spari_solver_gather(m, m->load_used, f->load1);
+    spari_solver_gather(m, m->dead, f->load);
+    for (int i = 0; i < n6; i++) {
+        f->load0[i] += f->load[i];
+        f->load1[i] += f->load[i];
+    }
+    scheme c = scheme_of(f, m, m->session->rho_inf, dt / A);
+    int failed = !f->started && !c.still && start(f, m, &c);
+    copy_state(f, &f->begin, &f->to);
+    if (f->h_begin > 0 && f->h_begin != c.h) { /* the algorithmic acceleration of another step: see alpha.c */
+        double ratio = fmin(c.h / f->h_begin, 4);
+        for (int i = 0; i < f->n; i++) {
+            f->to.b[i] = f->to.a[i] + ratio * (f->to.b[i] - f->to.a[i]);
+        }
+    }
+    f->h_solved = c.h;
+    m->dissipated_step = 0;
+    double power = damped_power(f, &f->begin);
+    for (int k = 1; k <= A && !failed; k++) {
+        double s = (double)k / A;
+        swap(&f->from, &f->to);
+        for (int i = 0; i < n6; i++) {
+            f->load[i] = (1 - s) * f->load0[i] + s * f->load1[i];
+        }
+        root_at(f, m, s, dt);
+        failed = substep(f, m, &c, &f->from, &f->to);
+        double before = power;
+        power = damped_power(f, &f->to);
+        m->dissipated_step += 0.5 * c.h * (before + power);
+    }
+    if (failed) {
+        f->factored = 0;
+        return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                          "member '%s': the linear equations have no solution in the step from t = %g; look at the "
+                          "turning speed of its root, or at loads that follow it",
+                          m->name, m->session->time);
+    }
+    publish(f, m, &f->to, &m->after);
+    return SPAR_OK;
+}
+
+void spari_frame_accept(spari_frame *f) {
+    swap(&f->begin, &f->to);
+    f->h_begin = f->h_solved;
+}
+
+void spari_frame_restart(spari_frame *f, const spar_member *m) {
+    int64_t n = f->nodes;
+    double *q = spari_zalloc(13 * n, sizeof *q), *v;
+    memcpy(f->begin.root, m->now.q, 7 * sizeof(double));
+    memset(f->begin.root + 7, 0, 12 * sizeof(double));
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        memcpy(f->begin.root + 7, m->now.v, 6 * sizeof(double));
+        memcpy(f->begin.root + 13, m->now.a, 6 * sizeof(double));
+    }
+    memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
+    if (q) {
+        v = q + 7 * n;
+        spari_member_to_unique(m, 7, m->now.q, q);
+        spari_member_to_unique(m, 6, m->now.v, v);
+        from_nodes(f, m, q, v, f->begin.y, f->begin.v);
+        free(q);
+    }
+    copy_state(f, &f->begin, &f->to);
+    f->started = 0;
+    f->h_begin = 0;
+}
+
+int spari_frame_static(spari_frame *f, spar_member *m) {
+    const double rest[3] = {0};
+    double last = 0;
+    int failed = 1;
+    spari_solver_gather(m, m->dead, f->load);
+    spari_solver_gather(m, m->load_pushed, f->load1);
+    for (int i = 0; i < 6 * f->nodes; i++) {
+        f->load[i] += f->load1[i];
+    }
+    combine(f, rest);
+    scheme c = {.cm = 0, .cv = 0};
+    copy_state(f, &f->begin, &f->to);
+    memset(f->to.root + 7, 0, 12 * sizeof(double));
+    memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
+    int singular = factor(f, &c);
+    f->factored = 0;
+    for (int it = 0; it < MOST_ITERATIONS && failed && !singular; it++) {
+        forcing(f, m, &f->to, 1, f->increment);
+        balance(f, &f->to, 1, f->increment, f->r);
+        memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+        singular = spari_linear_solve(f->linear, f->dx);
+        for (int k = 6; k < f->n; k++) {
+            f->to.y[k] -= f->dx[k];
+        }
+        double step = largest(f, f->dx);
+        failed = m->applied && step > 1e-11 * largest(f, f->to.y) && !(it > 2 && step > 0.5 * last && step < 1e-9);
+        last = step;
+    }
+    if (singular || failed) {
+        return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                          "spar_member_solve_static: '%s': the linear member has no equilibrium under these loads; the "
+                          "state is as it was",
+                          m->name);
+    }
+    publish(f, m, &f->to, &m->after);
+    publish(f, m, &f->to, &m->now);
+    return SPAR_OK;
+}
+
+double spari_frame_strain(spari_frame *f, const spar_member *m) {
+    int64_t n = f->nodes;
+    double *q = spari_zalloc(13 * n + 3 * f->n, sizeof *q), energy = 0;
+    if (q) {
+        double *v = q + 7 * n, *y = v + 6 * n, *rate = y + f->n, *force = rate + f->n;
+        spari_member_to_unique(m, 7, m->after.q, q);
+        spari_member_to_unique(m, 6, m->after.v, v);
+        from_nodes(f, m, q, v, y, rate);
+        multiply(f, f->K, y, 1, force);
+        energy = 0.5 * cblas_ddot(f->n, y, 1, force, 1);
+        free(q);
+    }
+    return energy;
+}

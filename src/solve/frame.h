@@ -1,0 +1,62 @@
+/* A beam that is linear in the frame that moves with its root (fixed or driven): the motion of the root is taken
+   exactly, the deformation beyond it to first order. In the axes of the frame, with x = (w, theta) of the nodes,
+
+     M x'' + (D + G(omega)) x' + (K + N(omega, omega)) x = loads - M (rigid acceleration - weight) - f(omega, omega)
+
+   where G holds the Coriolis and gyroscopic terms, N what turning with omega adds to the stiffness: centrifugal
+   softening, the turned inertia of the sections, and the geometric stiffness of the stretch that the centrifugal forces
+   give. All matrices are taken from the exact member's own tangents at the reference, so that the answer is its limit
+   for small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads
+   and of the root's acceleration.
+
+   The same equations in n modes of M, K are the modal member: one block of the root's six (held at zero) and n
+   unknowns. */
+#ifndef SPARI_FRAME_H
+#define SPARI_FRAME_H
+
+#include "../member/member.h"
+#include "linear.h"
+
+enum { SPARI_TURNS = 6 }; /* products omega_i omega_j */
+
+/* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root's q, v, a. */
+typedef struct spari_frame_state {
+    double *y, *v, *a, *b, root[19];
+} spari_frame_state;
+
+typedef struct spari_frame {
+    int nodes;                                      /* unique nodes */
+    int elements, block, overlap;                   /* of the matrices */
+    int n;                                          /* unknowns, the root's six first */
+    int64_t size;                                   /* doubles of one matrix: elements * block * block */
+    double *basis;                                  /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
+    double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
+    double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL without inertia */
+    double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
+    double omega[3];                                /* what the three sums below were formed for */
+    int combined;
+    double *sumK, *sumC, *sumf;
+    spari_linear *linear;
+    int factored;
+    double kept_cm, kept_cv, kept_omega[3];
+    spari_frame_state begin, from, to;
+    double *load, *load0, *load1, *r, *dx, *increment; /* [max(n, 6 nodes)] */
+    double *nodal, *turned, *element;                  /* [18 nodes], [19 nodes], one matrix of an element */
+    double h_begin, h_solved;
+    int started;
+    int64_t factors, solves;
+} spari_frame;
+
+/* From the member's body; modes = 0: linear in the nodes. On every rank. NULL and a message when it fails (no memory,
+ * or no positive definite mass and stiffness for modes). */
+int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame);
+void spari_frame_free(spari_frame *frame);
+/* Takes the motion at t^n from member->now. */
+void spari_frame_restart(spari_frame *frame, const spar_member *member);
+int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
+void spari_frame_accept(spari_frame *frame);
+int spari_frame_static(spari_frame *frame, spar_member *member);
+/* Strain energy of the latest iterate in member->after: x^T K x / 2. */
+double spari_frame_strain(spari_frame *frame, const spar_member *member);
+
+#endif

@@ -1,0 +1,320 @@
+/* The rungs below the exact beam: each is the exact one's limit for small deformation, and skips its work. */
+#include "scene.h"
+
+#include "member/rung.h"
+#include "solve/frame.h"
+#include "solve/solver.h"
+
+static double K[36], M[36];
+static const double SPIN = 2, DT = 2e-3;
+
+typedef struct answer {
+    double q[7], reaction[6];
+    spar_member *beam;
+} answer;
+
+/* A beam of the box section on a root that is fixed, or turns about z with SPIN; a load of `size` at its tip. */
+static spar_session *turning(int fidelity, int64_t modes, int root, double size, const double g[3], spar_member **out) {
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "b", 2, 6, 10, K, M);
+    double load[6] = {0, 0.3 * size, size, 0.1 * size, 0, 0};
+    const double x0[3] = {0}, omega[3] = {0, 0, root == SPAR_ROOT_DRIVEN ? SPIN : 0};
+    if (g) {
+        OK(s, spar_session_set_gravity(s, g));
+    }
+    OK(s, spar_member_set_root(b, root));
+    OK(s, spar_member_set_fidelity(b, fidelity, modes));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_set_velocity(b, x0, x0, omega));
+    OK(s, spar_member_add_load(b, 11, load));
+    *out = b;
+    return s;
+}
+
+static void drive(spar_session *s, spar_member *b, double t) {
+    const double q[7] = {0, 0, 0, cos(0.5 * SPIN * t), 0, 0, sin(0.5 * SPIN * t)}, v[6] = {0, 0, 0, 0, 0, SPIN};
+    OK(s, spar_member_drive_root(b, q, v, NULL));
+}
+
+static void run(spar_session *s, spar_member *b, int root, int n) {
+    for (int k = 1; k <= n; k++) {
+        if (root == SPAR_ROOT_DRIVEN) {
+            drive(s, b, k * DT);
+        }
+        scene_run(s, DT, 1);
+    }
+}
+
+/* The tip's deformation beyond `other`, after n steps */
+static double distance(const double a[7], const double b[7]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static void tip_of(int fidelity, int64_t modes, int root, double size, int n, double q[7], double reaction[6]) {
+    spar_member *b;
+    spar_session *s = turning(fidelity, modes, root, size, NULL, &b);
+    run(s, b, root, n);
+    scene_tip(b, q);
+    OK(s, spar_member_get_reaction(b, reaction));
+    spar_session_destroy(&s);
+}
+
+/* Linear against exact, root fixed: their difference falls with the square of the load: relative to the load,
+   in proportion to it (measured order 1.07). */
+static void test_linear_at_rest(void **state) {
+    (void)state;
+    double q[2][7], r[6], d[2];
+    for (int k = 0; k < 2; k++) {
+        double size = k ? 5 : 50;
+        for (int e = 0; e < 2; e++) {
+            tip_of(e ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_LINEAR, 0, SPAR_ROOT_FIXED, size, 100, q[e], r);
+        }
+        d[k] = distance(q[0], q[1]) / size;
+    }
+    assert_true(log10(d[0] / d[1]) > 0.9);
+}
+
+/* On a root that turns, the answer to a load (the difference of runs with and without it, so that the centrifugal
+   stretch drops out) is that of the exact beam to the order of the load, and what is left at small loads is the
+   stiffening's own second order: 4e-4 here, where leaving the stiffening out makes 7e-2. */
+static void test_linear_turning(void **state) {
+    (void)state;
+    double q[4][7], r[6];
+    tip_of(SPAR_FIDELITY_EXACT, 0, SPAR_ROOT_DRIVEN, 0, 400, q[0], r);
+    tip_of(SPAR_FIDELITY_EXACT, 0, SPAR_ROOT_DRIVEN, 0.01, 400, q[1], r);
+    tip_of(SPAR_FIDELITY_LINEAR, 0, SPAR_ROOT_DRIVEN, 0, 400, q[2], r);
+    tip_of(SPAR_FIDELITY_LINEAR, 0, SPAR_ROOT_DRIVEN, 0.01, 400, q[3], r);
+    double exact = distance(q[1], q[0]), error = 0;
+    for (int k = 0; k < 3; k++) {
+        double e = (q[3][k] - q[2][k]) - (q[1][k] - q[0][k]);
+        error += e * e;
+    }
+    assert_true(exact > 1e-6);
+    assert_true(sqrt(error) < 1e-3 * exact);
+    assert_true(distance(q[0], q[2]) < 1e-5); /* the stretch itself, to its square */
+}
+
+/* Modal with all its modes is the linear beam (other coordinates, the same equations); fewer modes come from above. */
+static void test_all_modes_are_linear(void **state) {
+    (void)state;
+    double q[3][7], r[2][6];
+    tip_of(SPAR_FIDELITY_LINEAR, 0, SPAR_ROOT_DRIVEN, 20, 200, q[0], r[0]);
+    tip_of(SPAR_FIDELITY_MODAL, 60, SPAR_ROOT_DRIVEN, 20, 200, q[1], r[1]);
+    tip_of(SPAR_FIDELITY_MODAL, 8, SPAR_ROOT_DRIVEN, 20, 200, q[2], r[1]);
+    double still[7];
+    spar_member *b;
+    spar_session *s = turning(SPAR_FIDELITY_RIGID, 0, SPAR_ROOT_DRIVEN, 20, NULL, &b);
+    run(s, b, SPAR_ROOT_DRIVEN, 200);
+    scene_tip(b, still);
+    spar_session_destroy(&s);
+    double size = distance(q[0], still);
+    assert_true(size > 1e-3);
+    assert_true(distance(q[0], q[1]) < 1e-7 * size);
+    assert_true(distance(q[0], q[2]) < 0.02 * size);
+}
+
+/* Rigid against exact with the stiffness scaled up: the pendulum of a pinned beam under gravity and a tip load. The
+   difference is the elastic deformation, which falls as 1 / stiffness. */
+static void test_rigid_is_the_stiff_limit(void **state) {
+    (void)state;
+    const double g[3] = {0, 0, -9.81};
+    double q[2][7], d[2];
+    for (int k = 0; k < 2; k++) {
+        double stiff[36];
+        for (int i = 0; i < 36; i++) {
+            stiff[i] = (k ? 1e2 : 1e1) * K[i];
+        }
+        for (int e = 0; e < 2; e++) {
+            spar_session *s = scene_session();
+            spar_member *b = scene_beam(s, "b", 1, 6, 10, stiff, M);
+            double load[6] = {0, 0.5, 0.2, 0, 0, 0};
+            OK(s, spar_session_set_gravity(s, g));
+            OK(s, spar_session_set_integrator(s, 0.0, 1));
+            OK(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
+            OK(s, spar_member_set_fidelity(b, e ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
+            OK(s, spar_member_commit(b));
+            OK(s, spar_member_add_load(b, 5, load));
+            scene_run(s, 1e-3, 500);
+            scene_tip(b, q[e]);
+            spar_session_destroy(&s);
+        }
+        assert_true(fabs(q[0][2]) > 0.5); /* it has swung */
+        d[k] = distance(q[0], q[1]);
+    }
+    assert_true(d[0] < 1e-2);
+    assert_true(d[1] < 0.2 * d[0]);
+}
+
+/* A free rigid beam of mass m under a tip force F: its centre moves as F t^2 / 2 m whatever it turns; and the mass is
+   the section's times the length. */
+static void test_rigid_free_centre(void **state) {
+    (void)state;
+    double m = 10 * M[0], F = 0.5, load[6] = {0, 0, F, 0, 0, 0}, q[7], t = 0.5;
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "b", 1, 6, 10, K, M);
+    OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
+    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_add_load(b, 5, load));
+    scene_run(s, 1e-3, 500);
+    scene_tip(b, q);
+    double c[3] = {-5, 0, 0}, r[3]; /* from the tip to the centre */
+    spari_rotate(q + 3, c, r);
+    NEAR(q[2] + r[2], F * t * t / (2 * m), 1e-6 * F * t * t / m);
+    NEAR(10 + q[0] + r[0], 5, 1e-6);
+    assert_int_equal(b->rung->core->solver->n, 1);
+    spar_session_destroy(&s);
+}
+
+/* The support bears what is left: with all loads and the inertia of the turning mass. At rest the reaction of every
+   rung is minus the loads and the weight; on a turning root the rigid one needs m omega^2 r_c towards the axis. */
+static void test_reactions(void **state) {
+    (void)state;
+    const double g[3] = {0, 0, -9.81};
+    const int rungs[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    double m = 10 * M[0], r[6], q[7];
+    for (int k = 0; k < 3; k++) {
+        spar_member *b;
+        spar_session *s = turning(rungs[k], 6, SPAR_ROOT_FIXED, 2, g, &b);
+        OK(s, spar_member_solve_static(b, 1));
+        OK(s, spar_member_get_reaction(b, r));
+        NEAR(r[1], -0.6, 1e-9);
+        NEAR(r[2], -2 + m * 9.81, 1e-9);
+        NEAR(r[0], 0, 1e-6);
+        spar_session_destroy(&s);
+    }
+    spar_session *s;
+    spar_member *b;
+    s = turning(SPAR_FIDELITY_RIGID, 0, SPAR_ROOT_DRIVEN, 0, NULL, &b);
+    run(s, b, SPAR_ROOT_DRIVEN, 100);
+    OK(s, spar_member_get_reaction(b, r));
+    NEAR(r[0] * cos(SPIN * 0.2) + r[1] * sin(SPIN * 0.2), -m * SPIN * SPIN * 5, 1e-9);
+    spar_session_destroy(&s);
+    s = turning(SPAR_FIDELITY_PRESCRIBED, 0, SPAR_ROOT_DRIVEN, 2, g, &b);
+    run(s, b, SPAR_ROOT_DRIVEN, 100);
+    OK(s, spar_member_get_reaction(b, r));
+    scene_tip(b, q);
+    NEAR(r[2], -2, 1e-14); /* no mass */
+    NEAR(q[0], 10 * cos(SPIN * 0.2) - 10, 1e-13);
+    NEAR(r[5], -(10 * cos(SPIN * 0.2) * 0.6), 1e-12);
+    spar_session_destroy(&s);
+}
+
+/* Work that is skipped: no solver and no body where nothing is solved; one factorisation while the speed and dt stay,
+   and one solution per step. */
+static void test_skipped_work(void **state) {
+    (void)state;
+    spar_member *b;
+    spar_session *s = turning(SPAR_FIDELITY_PRESCRIBED, 0, SPAR_ROOT_DRIVEN, 2, NULL, &b);
+    assert_null(b->solver);
+    assert_null(b->body);
+    spar_session_destroy(&s);
+    for (int modal = 0; modal < 2; modal++) {
+        s = turning(modal ? SPAR_FIDELITY_MODAL : SPAR_FIDELITY_LINEAR, 4, SPAR_ROOT_DRIVEN, 2, NULL, &b);
+        run(s, b, SPAR_ROOT_DRIVEN, 1);
+        spari_frame *f = b->rung->frame;
+        int64_t factors = f->factors, solves = f->solves;
+        assert_null(b->solver);
+        assert_int_equal(f->n, modal ? 10 : 66);
+        run(s, b, SPAR_ROOT_DRIVEN, 50);
+        assert_int_equal(f->factors, factors);
+        assert_in_range(f->solves - solves, 50, 100); /* where the speed's last bits change, a second */
+        spar_session_destroy(&s);
+    }
+}
+
+/* Rollback and substeps: a rejected step leaves no trace; two substeps of dt are two steps of dt / 2 under a load that
+   stands. */
+static void test_reject_and_substeps(void **state) {
+    (void)state;
+    const int rungs[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    for (int k = 0; k < 3; k++) {
+        double q[2][7];
+        for (int way = 0; way < 2; way++) {
+            spar_member *b;
+            int root = rungs[k] == SPAR_FIDELITY_RIGID ? SPAR_ROOT_PINNED : SPAR_ROOT_FIXED;
+            spar_session *s = turning(rungs[k], 6, root, 2, NULL, &b);
+            if (way) {
+                OK(s, spar_session_set_integrator(s, 0.9, 2));
+            }
+            for (int n = 0; n < (way ? 20 : 40); n++) {
+                OK(s, spar_step_begin(s, way ? 2 * DT : DT));
+                OK(s, spar_step_solve(s));
+                if (n == 7) {
+                    OK(s, spar_step_reject(s));
+                    OK(s, spar_step_begin(s, way ? 2 * DT : DT));
+                    OK(s, spar_step_solve(s));
+                    OK(s, spar_step_solve(s));
+                }
+                OK(s, spar_step_accept(s));
+            }
+            scene_tip(b, q[way]);
+            spar_session_destroy(&s);
+        }
+        for (int i = 0; i < 7; i++) {
+            NEAR(q[0][i], q[1][i], 1e-11);
+        }
+    }
+}
+
+/* Damping acts on the deformation only, energy tells where it went. */
+static void test_energy(void **state) {
+    (void)state;
+    double e[2][4], mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3}, load[6] = {0, 0, 5, 0, 0, 0}, none[6] = {0};
+    for (int modal = 0; modal < 2; modal++) {
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "b", 1, 8, 10, K, M);
+        OK(s, spar_beam_set_damping(b, mu));
+        OK(s, spar_member_set_fidelity(b, modal ? SPAR_FIDELITY_MODAL : SPAR_FIDELITY_LINEAR, 5));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_session_set_integrator(s, 1, 1));
+        OK(s, spar_member_add_load(b, 7, load));
+        OK(s, spar_member_solve_static(b, 1));
+        OK(s, spar_member_add_load(b, 7, none));
+        OK(s, spar_member_get_energy(b, e[0]));
+        scene_run(s, 1e-3, 400);
+        OK(s, spar_member_get_energy(b, e[1]));
+        assert_true(e[1][3] > 0.01 * e[0][1]);
+        NEAR(e[1][0] + e[1][1] + e[1][3], e[0][1], 2e-3 * e[0][1]);
+        spar_session_destroy(&s);
+    }
+}
+
+static void test_refusals(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "b", 1, 4, 10, K, M), *p;
+    OK(s, spar_point_create(s, "p", NULL, NULL, &p));
+    assert_int_equal(spar_member_set_fidelity(NULL, 0, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_fidelity(b, 5, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_fidelity(p, SPAR_FIDELITY_RIGID, 0), SPAR_ERR_ARGUMENT);
+    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 19));
+    assert_int_equal(spar_member_commit(b), SPAR_ERR_ARGUMENT); /* it has 18 */
+    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 3));
+    OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
+    assert_int_equal(spar_member_commit(b), SPAR_ERR_UNSUPPORTED);
+    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_PRESCRIBED, 0));
+    assert_int_equal(spar_member_commit(b), SPAR_ERR_STATE);
+    OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
+    OK(s, spar_member_commit(b)); /* a refusal leaves all as it was */
+    assert_int_equal(spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 0), SPAR_ERR_STATE);
+    spar_session_destroy(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_linear_at_rest),
+        cmocka_unit_test(test_linear_turning),
+        cmocka_unit_test(test_all_modes_are_linear),
+        cmocka_unit_test(test_rigid_is_the_stiff_limit),
+        cmocka_unit_test(test_rigid_free_centre),
+        cmocka_unit_test(test_reactions),
+        cmocka_unit_test(test_skipped_work),
+        cmocka_unit_test(test_reject_and_substeps),
+        cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_refusals),
+    };
+    scene_box(K, M);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
