@@ -1,6 +1,8 @@
 /* The rungs below the exact beam: each is the exact one's limit for small deformation, and skips its work. */
 #include "scene.h"
 
+#include <stdio.h>
+
 #include "member/rung.h"
 #include "solve/frame.h"
 #include "solve/solver.h"
@@ -280,6 +282,33 @@ static void test_energy(void **state) {
     }
 }
 
+/* Saved and loaded in the middle of a run, each rung goes on with the same bits. */
+static void test_saved(void **state) {
+    (void)state;
+    const char *path = "test_fidelity.state";
+    for (int rung = SPAR_FIDELITY_PRESCRIBED; rung <= SPAR_FIDELITY_EXACT; rung++) {
+        double q[2][7];
+        for (int way = 0; way < 2; way++) {
+            spar_member *b;
+            spar_session *s = turning(rung, 6, SPAR_ROOT_DRIVEN, 2, NULL, &b);
+            if (way == 0) {
+                run(s, b, SPAR_ROOT_DRIVEN, 20);
+                OK(s, spar_session_save(s, path));
+            } else {
+                OK(s, spar_session_load(s, path));
+            }
+            for (int k = 21; k <= 40; k++) {
+                drive(s, b, k * DT);
+                scene_run(s, DT, 1);
+            }
+            scene_tip(b, q[way]);
+            spar_session_destroy(&s);
+        }
+        assert_memory_equal(q[0], q[1], sizeof q[0]);
+    }
+    remove(path);
+}
+
 static void test_refusals(void **state) {
     (void)state;
     spar_session *s = scene_session();
@@ -313,6 +342,7 @@ int main(void) {
         cmocka_unit_test(test_skipped_work),
         cmocka_unit_test(test_reject_and_substeps),
         cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_saved),
         cmocka_unit_test(test_refusals),
     };
     scene_box(K, M);

@@ -346,6 +346,52 @@ int spari_rung_static(spar_member *m) {
     return SPAR_OK;
 }
 
+int64_t spari_rung_state_size(const spar_member *m) {
+    if (m->solver) {
+        return spari_solver_state_size(m->solver);
+    }
+    if (!m->rung || spari_rung_prescribed(m) || m->owner != spari_comm_rank(m->session->comm)) {
+        return 0;
+    }
+    return m->rung->core ? 19 + spari_solver_state_size(m->rung->core->solver) : spari_frame_state_size(m->rung->frame);
+}
+
+void spari_rung_save(const spar_member *m, double *state) {
+    if (m->solver) {
+        spari_solver_save(m->solver, state);
+    } else if (m->rung->core) {
+        const spar_member *c = m->rung->core;
+        memcpy(state, c->now.q, 7 * sizeof *state);
+        memcpy(state + 7, c->now.v, 6 * sizeof *state);
+        memcpy(state + 13, c->now.a, 6 * sizeof *state);
+        spari_solver_save(c->solver, state + 19);
+    } else {
+        spari_frame_save(m->rung->frame, state);
+    }
+}
+
+int spari_rung_is_state(const spar_member *m, const double *state, int64_t count) {
+    if (m->solver) {
+        return spari_solver_is_state(m->solver, state, count);
+    }
+    return m->rung->core ? count > 19 && spari_solver_is_state(m->rung->core->solver, state + 19, count - 19)
+                         : spari_frame_is_state(m->rung->frame, state, count);
+}
+
+void spari_rung_load(spar_member *m, const double *state) {
+    if (m->solver) {
+        spari_solver_load(m->solver, state);
+    } else if (m->rung->core) {
+        spar_member *c = m->rung->core;
+        memcpy(c->now.q, state, 7 * sizeof *state);
+        memcpy(c->now.v, state + 7, 6 * sizeof *state);
+        memcpy(c->now.a, state + 13, 6 * sizeof *state);
+        spari_solver_load(c->solver, state + 19);
+    } else {
+        spari_frame_load(m->rung->frame, state);
+    }
+}
+
 int spari_rung_reaction(const spar_member *m, double load[6]) {
     int64_t n = m->body ? m->body->unique : m->nodes, wide = m->nodes > n ? m->nodes : n;
     int still = !(m->effects & SPAR_EFFECT_INERTIA);

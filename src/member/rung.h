@@ -37,6 +37,12 @@ void spari_rung_restart(spar_member *member);
 int spari_rung_advance(spar_member *member, double dt);
 void spari_rung_accept(spar_member *member);
 int spari_rung_static(spar_member *member);
+/* What the owner of a member keeps of it beside the member itself, of any fidelity, as doubles: see
+ * spari_solver_state_size. Size 0: this rank keeps nothing. */
+int64_t spari_rung_state_size(const spar_member *member);
+void spari_rung_save(const spar_member *member, double *state);
+int spari_rung_is_state(const spar_member *member, const double *state, int64_t count);
+void spari_rung_load(spar_member *member, const double *state);
 /* What the root gives the member in the motion after, from the balance of the whole: inertia less weight less loads,
  * each where its node is. Internal forces have no part in it. */
 int spari_rung_reaction(const spar_member *member, double load[6]);

@@ -7,6 +7,7 @@
 #include "image.h"
 #include "session.h"
 
+#include "../member/rung.h"
 #include "../solve/solver.h"
 
 #include <stdlib.h>
@@ -146,18 +147,18 @@ static int put_own(spari_image *image, const spar_session *s) {
     int64_t solvers = 0, fluids = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        solvers += m->solver != NULL;
+        solvers += spari_rung_state_size(m) > 0;
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         fluids++;
     }
     spari_image_put_int(image, solvers);
     for (const spar_member *m = s->members; m; m = m->next, k++) {
-        if (m->solver) {
-            int64_t n = spari_solver_state_size(m->solver);
+        int64_t n = spari_rung_state_size(m);
+        if (n > 0) {
             double *state = put_room(image, n);
             if (state) {
-                spari_solver_save(m->solver, state);
+                spari_rung_save(m, state);
                 spari_image_put_int(image, k);
                 spari_image_put_int(image, n);
                 spari_image_put(image, state, n);
@@ -393,8 +394,8 @@ static int check_solvers(spar_session *s, loading *l) {
         if (!m || k < 0 || !state) {
             return broken(s);
         }
-        if (m->solver) {
-            if (!spari_solver_is_state(m->solver, state, n)) {
+        if (spari_rung_state_size(m) > 0) {
+            if (!spari_rung_is_state(m, state, n)) {
                 return broken(s);
             }
             l->solver[k] = state;
@@ -437,7 +438,7 @@ static int check_own(spar_session *s, loading *l) {
     }
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
-        if (m->solver && !l->solver[k]) {
+        if (spari_rung_state_size(m) > 0 && !l->solver[k]) {
             return broken(s);
         }
     }
@@ -567,8 +568,8 @@ static void apply(spar_session *s, loading *l) {
     pass_clock(&t, s);
     for (spar_member *m = s->members; m; m = m->next, k++) {
         pass_member(&t, m);
-        if (m->solver) {
-            spari_solver_load(m->solver, l->solver[k]);
+        if (spari_rung_state_size(m) > 0) {
+            spari_rung_load(m, l->solver[k]);
         }
     }
     k = 0;

@@ -977,6 +977,45 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
     return SPAR_OK;
 }
 
+enum { STATE_HEAD = 14 };
+
+int64_t spari_frame_state_size(const spari_frame *f) {
+    return STATE_HEAD + 19 + 4 * (int64_t)f->n;
+}
+
+void spari_frame_save(const spari_frame *f, double *state) {
+    const double head[STATE_HEAD] = {f->n,        f->factored,      f->kept_cm,       f->kept_cv,      f->h_begin,
+                                     f->h_solved, f->started,       f->combined,      f->omega[0],     f->omega[1],
+                                     f->omega[2], f->kept_omega[0], f->kept_omega[1], f->kept_omega[2]};
+    memcpy(state, head, sizeof head);
+    memcpy(state + STATE_HEAD, f->begin.root, sizeof f->begin.root);
+    memcpy(state + STATE_HEAD + 19, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
+}
+
+int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
+    return count == spari_frame_state_size(f) && state[0] == f->n;
+}
+
+/* The kept factors are those of the kept turn and coefficients, to the last bit. */
+void spari_frame_load(spari_frame *f, const double *state) {
+    scheme c = {.cm = state[2], .cv = state[3]};
+    f->factored = 0;
+    f->combined = 0;
+    if (state[1] != 0) {
+        combine(f, state + 11);
+        factor(f, &c);
+    }
+    f->combined = 0;
+    if (state[7] != 0) {
+        combine(f, state + 8);
+    }
+    f->h_begin = state[4], f->h_solved = state[5];
+    f->started = state[6] != 0;
+    memcpy(f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
+    memcpy(f->begin.y, state + STATE_HEAD + 19, (size_t)(4 * f->n) * sizeof *state);
+    copy_state(f, &f->begin, &f->to);
+}
+
 double spari_frame_strain(spari_frame *f, const spar_member *m) {
     int64_t n = f->nodes;
     double *q = spari_zalloc(13 * n + 3 * f->n, sizeof *q), energy = 0;

@@ -56,6 +56,11 @@ void spari_frame_restart(spari_frame *frame, const spar_member *member);
 int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
 void spari_frame_accept(spari_frame *frame);
 int spari_frame_static(spari_frame *frame, spar_member *member);
+/* As spari_solver_state_size and its fellows, between steps. */
+int64_t spari_frame_state_size(const spari_frame *frame);
+void spari_frame_save(const spari_frame *frame, double *state);
+int spari_frame_is_state(const spari_frame *frame, const double *state, int64_t count);
+void spari_frame_load(spari_frame *frame, const double *state);
 /* Strain energy of the latest iterate in member->after: x^T K x / 2. */
 double spari_frame_strain(spari_frame *frame, const spar_member *member);
 
