@@ -20,6 +20,12 @@ if(TARGET test_rotor)
   spar_set_test(test_rotor unit 300 ${spar_example_environment})
 endif()
 
+# A gust of 50 m/s on the rotor when it stands still: the run ends, each step converged.
+add_test(NAME example_rotor_gust
+  COMMAND examples_rotor --rpm 0 --wind 15 --gust 35 --gust-start 1 --gust-length 10 --seconds 14 --coupling iqn --vtk-every 0
+          --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/rotor_gust)
+spar_set_test(example_rotor_gust stability 120 ${spar_example_environment})
+
 # At a hundred times the mass explicit coupling and fixed point must fail, the others must get the exact motion to 0.4 %
 # (backward Euler in 200 steps).
 add_test(NAME example_piston COMMAND examples_piston)

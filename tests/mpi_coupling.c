@@ -58,6 +58,8 @@ static void create(scene *c, int me, int ranks, int scheme) {
     OK(s, spar_fluid_set_motion_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
     OK(s, spar_fluid_set_force_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
     OK(s, spar_fluid_map(c->around));
+    double unused[NODES][3];
+    OK(s, spar_fluid_pull_forces(c->around, 1, c->n ? unused[0] : NULL)); /* node forces are kept from here on */
     OK(s, spar_fluid_create(c->piston, "added", &c->added));
     OK(s, spar_fluid_set_force_nodes(c->added, c->piston_here, c->piston_here ? where : NULL));
     OK(s, spar_fluid_map(c->added));
@@ -66,13 +68,15 @@ static void create(scene *c, int me, int ranks, int scheme) {
 /* A stiff and viscous medium around the beam, pulled sideways; twice its own mass of added mass on the piston. */
 static int solve(spar_session *s, double t, double dt, int iteration, void *context) {
     scene *c = context;
-    double x[NODES][3], v[NODES][3], f[NODES][3], moment[NODES][3], q[7], a[6], piston[3];
+    double x[NODES][3], v[NODES][3], f[NODES][3], old[NODES][3], moment[NODES][3], q[7], a[6], piston[3];
     (void)iteration;
     c->calls++;
     OK(s, spar_fluid_pull_motion(c->around, 1, c->n ? x[0] : NULL, c->n ? v[0] : NULL));
+    OK(s, spar_fluid_pull_forces(c->around, 0, c->n ? old[0] : NULL));
     for (int64_t i = 0; i < c->n; i++) {
         for (int k = 0; k < 3; k++) {
-            f[i][k] = -20 * (x[i][k] - c->x[i][k]) - 3 * v[i][k] + (k == 1 ? 2 * sin(3 * (t + dt)) : 0);
+            f[i][k] =
+                0.1 * old[i][k] - 20 * (x[i][k] - c->x[i][k]) - 3 * v[i][k] + (k == 1 ? 2 * sin(3 * (t + dt)) : 0);
             moment[i][k] = 0.1 * v[i][(k + 1) % 3];
         }
     }
@@ -283,6 +287,89 @@ static void different_members(void **state) {
     spar_session_destroy(&s);
 }
 
+/* ---- save and load ---- */
+
+static char file[32]; /* of this number of ranks: tests may run side by side */
+
+static void same_bits(const scene *a, const scene *b) {
+    double x[STATE], y[STATE];
+    state_of(a, x);
+    state_of(b, y);
+    assert_memory_equal(x, y, sizeof x);
+}
+
+static void steps(scene *c, int n) {
+    for (int i = 0; i < n; i++) {
+        OK(c->session, spar_step(c->session, 0.02, solve, c, NULL));
+    }
+}
+
+/* A run goes on from its file with the same bits on the same ranks; and on one process, which has all the nodes, with
+   what it would have had. Written on one process, it goes on on the ranks. */
+static void saved_on_some_ranks(void **state) {
+    (void)state;
+    scene all, again, alone, serial;
+    char own[48];
+    snprintf(own, sizeof own, "mpi_coupling_%d_%d.spar", size, rank);
+    create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
+    steps(&all, 5);
+    OK(all.session, spar_session_save(all.session, file));
+    create(&again, rank, size, SPAR_COUPLING_IQN_ILS);
+    OK(again.session, spar_session_load(again.session, file));
+    same_bits(&again, &all);
+    create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
+    OK(alone.session, spar_session_load(alone.session, file));
+    same_bits(&alone, &all);
+    steps(&all, 5);
+    steps(&again, 5);
+    steps(&alone, 5);
+    same_bits(&again, &all);
+    compare(&alone, &all);
+    /* the other way round: every rank has the same serial run, rank 0's file is read */
+    create(&serial, 0, 1, SPAR_COUPLING_IQN_ILS);
+    steps(&serial, 5);
+    OK(serial.session, spar_session_save(serial.session, own));
+    spar_session_destroy(&again.session);
+    create(&again, rank, size, SPAR_COUPLING_IQN_ILS);
+    OK(again.session, spar_session_load(again.session, own));
+    same_bits(&again, &serial);
+    steps(&serial, 5);
+    steps(&again, 5);
+    compare(&again, &serial);
+    remove(own);
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&again.session);
+    spar_session_destroy(&alone.session);
+    spar_session_destroy(&serial.session);
+}
+
+/* What only one rank sees is told to all. */
+static void refused_files(void **state) {
+    (void)state;
+    scene c;
+    create(&c, rank, size, SPAR_COUPLING_IQN_ILS);
+    int status = spar_session_load(c.session, "no/such/file");
+    assert_int_equal(status, rank == 0 ? SPAR_ERR_IO : SPAR_ERR_PEER);
+    status = spar_session_save(c.session, "no/such/folder/file");
+    assert_int_equal(status, rank == 0 ? SPAR_ERR_IO : SPAR_ERR_PEER);
+    status = spar_session_load(c.session, rank == size - 1 ? NULL : file);
+    assert_int_equal(status, rank == size - 1 ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
+    /* a fluid node that the saved run has not, on one rank */
+    spar_fluid_destroy(&c.around);
+    double place[3] = {1, 2, 3};
+    OK(c.session, spar_fluid_create(c.beam, "around", &c.around));
+    OK(c.session, spar_fluid_set_force_nodes(c.around, rank == 0, rank == 0 ? place : NULL));
+    OK(c.session, spar_fluid_map(c.around));
+    status = spar_session_load(c.session, file);
+    assert_int_equal(status, rank == 0 ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
+    assert_non_null(strstr(spar_session_message(c.session), "force node 0 is not in the saved run"));
+    spar_session_destroy(&c.session);
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank == 0) {
+        remove(file);
+    }
+}
+
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_serial),
@@ -291,11 +378,14 @@ int main(int argc, char **argv) {
         cmocka_unit_test(wrong_calls_on_one_rank),
         cmocka_unit_test(different_arguments),
         cmocka_unit_test(different_members),
+        cmocka_unit_test(saved_on_some_ranks),
+        cmocka_unit_test(refused_files),
     };
     int failed, worst = 0;
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
+    snprintf(file, sizeof file, "mpi_coupling_%d.spar", size);
     failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     MPI_Finalize();
