@@ -21,8 +21,11 @@ static inline void spari_add(double *s, double x) {
     s[1] += (a - (t - b)) + (x - b);
 }
 
-/* Two lanes are in every processor that has lanes at all; more are asked for at run time. */
-#if defined(__GNUC__) && !defined(SPARI_PORTABLE)
+/* Two lanes are in every processor that has lanes at all; more are asked for at run time. SPARI_PLAIN_LANES (1, 2, 4,
+   8) builds the portable kernel alone at a width of choice, so that every width can be tried on any processor. */
+#if defined(SPARI_PLAIN_LANES)
+#define W SPARI_PLAIN_LANES
+#elif defined(__GNUC__)
 #define W 2
 #else
 #define W 1
@@ -30,10 +33,12 @@ static inline void spari_add(double *s, double x) {
 #define NAME(x) x##_plain
 #define TARGET
 #define MADD(a, b, c) ((a) * (b) + (c))
-#if W == 2
+#if W == 1
+#define SPLAT(p) (*(p))
+#elif W == 2
 #define SPLAT(p) ((lanes_plain){*(p), *(p)})
 #else
-#define SPLAT(p) (*(p))
+#define SPLAT(p) ((lanes_plain){0} + *(p))
 #endif
 #include "kernel.h"
 #undef W
@@ -42,7 +47,7 @@ static inline void spari_add(double *s, double x) {
 #undef MADD
 #undef SPLAT
 
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(SPARI_PORTABLE)
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(SPARI_PLAIN_LANES)
 #define SPARI_X86 1
 #include <immintrin.h>
 
