@@ -38,7 +38,11 @@ list(APPEND spar_test_libraries spar_static spar_test_base)
 set(SPAR_TEST_LAUNCHER "" CACHE STRING "Program (a list) that runs the serial tests, such as valgrind")
 mark_as_advanced(SPAR_TEST_LAUNCHER)
 
+set(SPAR_TEST_TIME_FACTOR 1 CACHE STRING "What the tests' time limits are multiplied with")
+mark_as_advanced(SPAR_TEST_TIME_FACTOR)
+
 function(spar_set_test name label timeout)
+  math(EXPR timeout "${timeout} * ${SPAR_TEST_TIME_FACTOR}")
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT ${timeout} ENVIRONMENT "${spar_test_environment};${ARGN}")
 endfunction()
 
