@@ -136,6 +136,7 @@ module spar
     procedure :: get_energy => member_get_energy
     procedure :: solve_static => member_solve_static
     procedure :: get_modes => member_get_modes
+    procedure :: set_modal_damping => member_set_modal_damping
     procedure :: write_vtk => member_write_vtk
   end type spar_member
 
@@ -1100,6 +1101,19 @@ contains
 
     call finish(spar_member_solve_static(self%handle, load_steps), self%session, stat, errmsg)
   end subroutine member_solve_static
+
+  ! modes are counted from 1
+  subroutine member_set_modal_damping(self, mode, ratio, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: mode(2)
+    real(c_double), intent(in) :: ratio(2)
+    real(c_double), intent(inout), optional :: mu(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_modal_damping(self%handle, int(mode, c_int64_t) - 1, ratio, mu), self%session, stat, &
+        errmsg)
+  end subroutine member_set_modal_damping
 
   subroutine member_get_modes(self, frequency_hz, shapes, stat, errmsg)
     class(spar_member), intent(in) :: self

@@ -389,6 +389,15 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_solve_static
 
+    function spar_beam_set_modal_damping(beam, mode, ratio, mu) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), intent(in), optional :: mode(2)
+      real(c_double), intent(in), optional :: ratio(2)
+      real(c_double), intent(inout), optional :: mu(6)
+      integer(c_int) :: status
+    end function spar_beam_set_modal_damping
+
     function spar_member_get_modes(member, n, frequency_hz, shapes) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member

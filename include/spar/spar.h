@@ -377,6 +377,12 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
    the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out, displacement and rotation, normalised to
    unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity, commit, solve_static, get_modes. Local. */
 SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
+/* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
+   mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with shear
+   y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as spar_member_get_modes gives
+   them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not wanted. Between commit and the
+   first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind; SPAR_ERR_NUMERIC: no mu gives these ratios. */
+SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
 
