@@ -331,24 +331,20 @@ int spari_session_seal(spar_session *s, int status) {
 
 int spari_session_exchange_loads(spar_session *s, int status) {
     memset(s->pack, 0, (size_t)(s->pack_count + 1) * sizeof *s->pack);
-    double *at = s->pack;
+    int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
-        if (!m->committed) {
-            continue;
+        m->pack_at = at;
+        at += m->committed ? 6 * m->nodes : 0;
+    }
+    for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+        if (spari_fluid_member(f)->committed) {
+            spari_fluid_add_loads(f, s->pack + spari_fluid_member(f)->pack_at);
         }
-        for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
-            if (spari_fluid_member(f) == m) {
-                spari_fluid_add_loads(f, at);
-            }
-        }
-        at += 6 * m->nodes;
     }
     SPARI_TRY(spari_comm_sum(s->comm, s->pack, s->pack_count, status, s->message, sizeof s->message));
-    at = s->pack;
     for (spar_member *m = s->members; m; m = m->next) {
         if (m->committed) {
-            memcpy(m->load_pushed, at, (size_t)(6 * m->nodes) * sizeof *at);
-            at += 6 * m->nodes;
+            memcpy(m->load_pushed, s->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *s->pack);
         }
     }
     return SPAR_OK;
