@@ -134,6 +134,7 @@ module spar
     procedure :: get_reaction => member_get_reaction
     procedure :: get_section => member_get_section
     procedure :: get_energy => member_get_energy
+    procedure :: get_work => member_get_work
     procedure :: solve_static => member_solve_static
     procedure :: get_modes => member_get_modes
     procedure :: set_modal_damping => member_set_modal_damping
@@ -1092,6 +1093,15 @@ contains
 
     call finish(spar_member_get_energy(self%handle, energy), self%session, stat, errmsg)
   end subroutine member_get_energy
+
+  subroutine member_get_work(self, work, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(inout) :: work(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_work(self%handle, work), self%session, stat, errmsg)
+  end subroutine member_get_work
 
   subroutine member_solve_static(self, load_steps, stat, errmsg)
     class(spar_member), intent(inout) :: self

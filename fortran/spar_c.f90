@@ -382,6 +382,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_get_energy
 
+    function spar_member_get_work(member, work) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: work(3)
+      integer(c_int) :: status
+    end function spar_member_get_work
+
     function spar_member_solve_static(member, load_steps) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member

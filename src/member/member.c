@@ -7,6 +7,7 @@
 #include "applied.h"
 #include "beam.h"
 #include "rung.h"
+#include "work.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -435,6 +436,9 @@ static void restart(spar_member *m) {
     } else if (m->rung) {
         spari_rung_restart(m);
     }
+    if (m->work) {
+        spari_work_restart(m);
+    }
 }
 
 /* a's loads become b's */
@@ -455,6 +459,9 @@ void spari_member_settle(spar_member *m) {
 }
 
 void spari_member_accept(spar_member *m) {
+    if (m->work) {
+        spari_work_step(m);
+    }
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     memcpy(m->drive[0], m->drive[1], sizeof m->drive[0]);
@@ -621,6 +628,8 @@ static void release(spar_member *m) {
         free(*node_array(m, k));
         *node_array(m, k) = NULL;
     }
+    spari_work_free(m->work);
+    m->work = NULL;
     spari_applied_free(m->applied);
     m->applied = NULL;
     spari_rung_free(m->rung);

@@ -15,6 +15,7 @@ typedef struct spari_motion {
 
 typedef struct spari_solver spari_solver;   /* src/solve: the owner's integrator */
 typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
+typedef struct spari_work spari_work;       /* src/member/work.h: the work done on a member */
 typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
 typedef struct spari_rung spari_rung;       /* src/member/rung.h: a member of lower fidelity */
 typedef struct spari_arms spari_arms;       /* src/member/rung.h: loads on the arms of a rigid body */
@@ -56,6 +57,7 @@ struct spar_member {
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     spari_rung *rung;                   /* of members below the exact ones; NULL: none */
     spari_arms *arms;                   /* of the body that carries a rigid member; NULL: none */
+    spari_work *work;                   /* NULL: not asked for */
     spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 

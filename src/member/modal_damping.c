@@ -184,6 +184,10 @@ static int check(const spar_member *m, const int64_t mode[2], const double ratio
                   "%s: '%s': damping is off; leave SPAR_EFFECT_DAMPING in its effects and give spar_beam_set_damping "
                   "any value before commit, or set no effects",
                   CALL, m->name);
+    SPARI_REQUIRE(s, !m->rung, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s' is of a lower fidelity, made up at commit; find mu with an exact member and hand it to "
+                  "spar_beam_set_damping",
+                  CALL, m->name);
     SPARI_REQUIRE(s, mode && ratio, SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", CALL, m->name, mode ? "ratio" : "mode");
     for (int k = 0; k < 2; k++) {
         SPARI_REQUIRE(s, mode[k] >= 0 && mode[k] < 6 * m->nodes, SPAR_ERR_ARGUMENT, "%s: '%s': there is no mode %lld",

@@ -60,6 +60,7 @@ program test_bindings
   call refused(spar_member_get_reaction(none), 'spar_member_get_reaction')
   call refused(spar_beam_get_section(none, 0_c_int64_t), 'spar_beam_get_section')
   call refused(spar_member_get_energy(none), 'spar_member_get_energy')
+  call refused(spar_member_get_work(none), 'spar_member_get_work')
   call refused(spar_member_solve_static(none, 0_c_int), 'spar_member_solve_static')
   call refused(spar_beam_set_modal_damping(none), 'spar_beam_set_modal_damping')
   call refused(spar_member_get_modes(none, 0_c_int64_t), 'spar_member_get_modes')

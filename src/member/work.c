@@ -1,0 +1,100 @@
+#include "work.h"
+
+#include "../math/rotation.h"
+#include "../session/session.h"
+#include "applied.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct spari_work {
+    double sum[3];      /* kept loads, fluids, root */
+    double reaction[6]; /* at t^n, of a driven root */
+    double *fluid;      /* [nodes][6] fluid loads at t^n */
+    double *load;       /* [nodes][6] scratch */
+};
+
+void spari_work_free(spari_work *work) {
+    if (work) {
+        free(work->fluid);
+        free(work->load);
+        free(work);
+    }
+}
+
+/* Displacement and rotation vector of node i over the step */
+static void increment(const spar_member *m, int64_t i, double d[6]) {
+    const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
+    double conj[4], turn[4];
+    for (int c = 0; c < 3; c++) {
+        d[c] = to[c] - from[c];
+    }
+    spari_quat_conj(from + 3, conj);
+    spari_quat_mul(to + 3, conj, turn);
+    spari_quat_log(turn, d + 3);
+}
+
+static double dot6(const double *a, const double *b) {
+    return spari_dot(a, b) + spari_dot(a + 3, b + 3);
+}
+
+void spari_work_step(spar_member *m) {
+    spari_work *w = m->work;
+    int64_t n = m->nodes;
+    double d[6], reaction[6] = {0};
+    memset(w->load, 0, (size_t)(6 * n) * sizeof *w->load);
+    if (m->applied) {
+        spari_applied_nodal(m, m->now.q, w->load);
+        spari_applied_nodal(m, m->after.q, w->load);
+    }
+    for (int64_t i = 0; i < n; i++) {
+        double fluid[6], kept[6];
+        for (int c = 0; c < 6; c++) {
+            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c];
+            fluid[c] = 0.5 * (w->fluid[6 * i + c] + now);
+            kept[c] = m->dead[6 * i + c] + 0.5 * w->load[6 * i + c];
+            w->fluid[6 * i + c] = now;
+        }
+        increment(m, i, d);
+        w->sum[0] += dot6(kept, d);
+        w->sum[1] += dot6(fluid, d);
+    }
+    if (m->root == SPAR_ROOT_DRIVEN && spari_member_reaction(m, reaction) == SPAR_OK) {
+        increment(m, 0, d);
+        w->sum[2] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
+        memcpy(w->reaction, reaction, sizeof reaction);
+    }
+}
+
+void spari_work_restart(spar_member *m) {
+    spari_work *w = m->work;
+    memset(w->sum, 0, sizeof w->sum);
+    memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
+    if (spari_member_reaction(m, w->reaction) != SPAR_OK) {
+        memset(w->reaction, 0, sizeof w->reaction);
+    }
+}
+
+int spar_member_get_work(spar_member *member, double work[3]) {
+    const char *call = "spar_member_get_work";
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    spar_session *s = member->session;
+    SPARI_REQUIRE(s, member->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
+    SPARI_REQUIRE(s, work, SPAR_ERR_ARGUMENT, "%s: '%s': work is NULL", call, member->name);
+    if (!member->work) {
+        SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                      "%s: '%s': the account begins with the first call; make it between steps", call, member->name);
+        spari_work *w = spari_zalloc(1, sizeof *w);
+        int ok = w && (w->fluid = spari_zalloc(6 * member->nodes, sizeof *w->fluid)) &&
+                 (w->load = spari_zalloc(6 * member->nodes, sizeof *w->load));
+        if (!ok) {
+            spari_work_free(w);
+            return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, member->name);
+        }
+        member->work = w;
+        spari_work_restart(member);
+    }
+    memcpy(work, member->work->sum, sizeof member->work->sum);
+    return SPAR_OK;
+}

@@ -1,0 +1,14 @@
+/* The work done on a member, for those who ask: kept with the motion of accepted steps by the trapezoidal rule, loads
+   at both ends of a step against its displacement (exact for dead forces, of order 2 else, as the steps are). */
+#ifndef SPARI_WORK_H
+#define SPARI_WORK_H
+
+#include "member.h"
+
+/* The step is accepted: now -> after, before `after` becomes `now`. */
+void spari_work_step(spar_member *member);
+/* The motion has been set anew: the account starts at zero. */
+void spari_work_restart(spar_member *member);
+void spari_work_free(spari_work *work);
+
+#endif
