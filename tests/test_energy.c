@@ -45,7 +45,7 @@ static void test_static(void **state) {
 static double defect(int n, double T) {
     enum { P = 6 };
     const double eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 10, 0, 1}, twist[2] = {0.3, 0}, g[3] = {0, 0, -9.81},
-                 mu[6] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1}, dead[6] = {0, 3, 10, 1, 2, 3},
+                 mu[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01}, dead[6] = {0, 3, 10, 1, 2, 3},
                  follower[6] = {1, 0, -8, 2, 0, 0}, line[12] = {0, 0, 4, 1, 0, 0, 0, 2, 0, 0, 0, 1};
     double K[36], M[36], e[2][4], work[3];
     spar_session *s = scene_session();
@@ -82,14 +82,14 @@ static double defect(int n, double T) {
     for (int i = 0; i < 4; i++) {
         sum += e[1][i] - e[0][i];
     }
-    assert_true(fabs(work[0]) > 5 && fabs(work[2]) > 1 && e[1][3] > 0.01 && e[1][0] > 1);
+    assert_true(fabs(work[0]) > 5 && fabs(work[2]) > 1 && e[1][3] > 1e-3 && e[1][0] > 1);
     spar_session_destroy(&s);
     return fabs(sum);
 }
 
 static void test_dynamic(void **state) {
     (void)state;
-    double d[2] = {defect(100, 1), defect(200, 1)};
+    double d[2] = {defect(200, 1), defect(400, 1)};
     NEAR(d[0] / d[1], 4, 0.3);
     assert_true(d[1] < 1e-2);
 }
