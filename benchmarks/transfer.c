@@ -184,6 +184,17 @@ static void compare(scene *s) {
     }
 }
 
+/* Force, moment and power have passed the map, or the speed is worth nothing. */
+static void check_audit(scene *s) {
+    double audit[8];
+    MUST(s->session, spar_fluid_get_audit(s->loads, audit));
+    if (!(audit[3] < 1e-13 && audit[4] < 1e-13 && audit[5] < 1e-13)) {
+        fprintf(stderr, "transfer: lost on the way: %g of the force, %g of the moment, %g of the power\n", audit[3],
+                audit[4], audit[5]);
+        exit(1);
+    }
+}
+
 static void table(int64_t largest) {
     static const int order[] = {4, 6, 10, 16};
     printf("Million nodes a second on one core; state: 33 bytes a node (39 with several elements). audited: loads in "
@@ -202,6 +213,7 @@ static void table(int64_t largest) {
             double out = rate(&s, pull), on = rate(&s, pull_native), op = rate(&s, pull_portable),
                    ob = rate(&s, copy_as_pull);
             double audited = rate(&s, push);
+            check_audit(&s);
             MUST(s.session, spar_session_set_option(s.session, "fluid.audit", "off"));
             double in = rate(&s, push), in_n = rate(&s, push_native), ip = rate(&s, push_portable),
                    ib = rate(&s, copy_as_push);

@@ -178,12 +178,14 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
 
 int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment) {
     SPARI_FLUID_HANDLE(fluid);
-    return push_forces(fluid, (spari_source){.d = force}, (spari_source){.d = moment}, __func__);
+    const spari_source f = {.d = force}, m = {.d = moment};
+    return push_forces(fluid, f, m, __func__);
 }
 
 int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment) {
     SPARI_FLUID_HANDLE(fluid);
-    return push_forces(fluid, (spari_source){.f = force}, (spari_source){.f = moment}, __func__);
+    const spari_source f = {.f = force}, m = {.f = moment};
+    return push_forces(fluid, f, m, __func__);
 }
 
 /* Room for the means of n nodes, zeros. */
@@ -228,8 +230,8 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
         fluid->mean_next[i] = f + share * (force[i] - f);
         fluid->mean_next[n + i] = m + share * ((moment ? moment[i] : 0) - m);
     }
-    SPARI_TRY(push_forces(fluid, (spari_source){.d = fluid->mean_next},
-                          (spari_source){.d = with_moment ? fluid->mean_next + n : NULL}, __func__));
+    const spari_source means = {.d = fluid->mean_next}, moments = {.d = with_moment ? fluid->mean_next + n : NULL};
+    SPARI_TRY(push_forces(fluid, means, moments, __func__));
     double *old = fluid->mean;
     fluid->mean = fluid->mean_next, fluid->mean_next = old;
     fluid->mean_theta = theta;

@@ -65,7 +65,7 @@ static inline void spari_add(double *s, double x) {
 
 #define W 8
 #define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f,avx512dq,prefer-vector-width=512")))
+#define TARGET __attribute__((target("avx512f,avx512dq")))
 #define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
 #define SPLAT(p) _mm512_set1_pd(*(p))
 #include "kernel.h"
