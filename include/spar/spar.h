@@ -366,9 +366,9 @@ SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4])
    + potential + dissipated energy less the sum of the three stays constant to the order of the integrator. Local. */
 SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
 /* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
-   >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities become
-   0. A driven root that turns (spar_member_set_velocity, or driven so far): equilibrium in the frame that turns with
-   it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
+   >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities
+   become 0. A driven root that turns (spar_member_set_velocity, or driven so far): equilibrium in the frame that turns
+   with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
    accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
    result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
    refused. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
@@ -383,10 +383,11 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
    unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity, commit, solve_static, get_modes. Local. */
 SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
-   mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with shear
-   y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as spar_member_get_modes gives
-   them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not wanted. Between commit and the
-   first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind; SPAR_ERR_NUMERIC: no mu gives these ratios. */
+   mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
+   shear y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as
+   spar_member_get_modes gives them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not
+   wanted. Between commit and the first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind;
+   SPAR_ERR_NUMERIC: no mu gives these ratios. */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
@@ -505,8 +506,7 @@ SPAR_API int spar_step_begin(spar_session *session, double dt);
    SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. */
 SPAR_API int spar_step_solve(spar_session *session);
 /* Step 8: gathers the loads pushed on all ranks, forms the residual and the next loads. done: out, 1: accept, 0:
-   solve again. SPAR_ERR_NUMERIC: no convergence in max_iterations; SPAR_ERR_UNSUPPORTED: a scheme that is not there
-   yet. */
+   solve again. SPAR_ERR_NUMERIC: no convergence in max_iterations. */
 SPAR_API int spar_step_check(spar_session *session, int *done);
 /* The clock moves to t^{n+1}. */
 SPAR_API int spar_step_accept(spar_session *session);

@@ -20,6 +20,9 @@ int spari_comm_size(const spari_comm *comm); /* local */
    failed, with "rank R: " and the peer's text put into message (of `size` chars; in: own text, read only when status is
    a failure). The lowest failing rank's text is the one that is told. */
 int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size);
+#ifdef __clang_analyzer__ /* reads one file at a time: a failure of this rank is a failure */
+#define spari_comm_agree(comm, status, message, size) ((spari_comm_agree)(comm, status, message, size) ? 1 : (status))
+#endif
 
 /* As spari_comm_agree, at the entry of a collective call named `call`: ranks
    that are in different calls would wait for each other for ever, so this is SPAR_ERR_COMM on all of them. */

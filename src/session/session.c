@@ -411,7 +411,8 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     } else if (!member->body && !member->rung) {
         status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)", call,
                             member->name);
-    } else if (member->root == SPAR_ROOT_FREE || (member->root == SPAR_ROOT_PINNED && !member->body->C)) {
+    } else if (member->root == SPAR_ROOT_FREE ||
+               (member->root == SPAR_ROOT_PINNED && member->body && !member->body->C)) {
         status =
             spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
     }
