@@ -5,6 +5,9 @@
 #include "member/body.h"
 #include "member/member.h"
 
+#include <stdio.h>
+#include <unistd.h>
+
 /* A curved, twisted beam of coupled sections, 2 elements of 5 nodes */
 static spar_member *curved(spar_session *s) {
     const double eta[4] = {0, 0.3, 0.7, 1}, xyz[12] = {0, 0, 0, 1, 0.2, 0.1, 2.1, 0.3, 0.6, 3, 0.2, 1.4},
@@ -303,6 +306,40 @@ static void test_rigid_thrust(void **state) {
     NEAR(error[0] / error[1], 4, 0.4); /* order 2 in dt */
 }
 
+/* Saved in mid-motion and loaded into a session built anew, or into the same one whose loads have changed since, the
+   member goes on with the loads it had: the same bits as without stopping. */
+static void test_saved(void **state) {
+    (void)state;
+    const double zero[6] = {0};
+    double q[3][70];
+    char path[64];
+    snprintf(path, sizeof path, "applied_%d.spar", (int)getpid());
+    spar_session *s = scene_session();
+    spar_member *b = curved(s);
+    for (int k = 0; k < 3; k++) {
+        load_all(s, b, k);
+    }
+    scene_run(s, 0.01, 3);
+    OK(s, spar_session_save(s, path));
+    scene_run(s, 0.01, 3);
+    OK(s, spar_member_get_motion(b, q[0], NULL, NULL));
+    OK(s, spar_member_add_follower(b, 9, zero));
+    OK(s, spar_beam_set_line_load(b, 0, NULL, NULL, SPAR_LOAD_FOLLOWER));
+    OK(s, spar_session_load(s, path));
+    scene_run(s, 0.01, 3);
+    OK(s, spar_member_get_motion(b, q[1], NULL, NULL));
+    spar_session_destroy(&s);
+    s = scene_session();
+    b = curved(s);
+    OK(s, spar_session_load(s, path));
+    scene_run(s, 0.01, 3);
+    OK(s, spar_member_get_motion(b, q[2], NULL, NULL));
+    spar_session_destroy(&s);
+    remove(path);
+    assert_memory_equal(q[0], q[1], sizeof q[0]);
+    assert_memory_equal(q[0], q[2], sizeof q[0]);
+}
+
 static void test_refusals(void **state) {
     (void)state;
     spar_session *s = scene_session();
@@ -336,6 +373,7 @@ int main(void) {
         cmocka_unit_test(test_follower_cantilever),
         cmocka_unit_test(test_weight_as_line_load),
         cmocka_unit_test(test_rigid_thrust),
+        cmocka_unit_test(test_saved),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

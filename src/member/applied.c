@@ -291,6 +291,86 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
     }
 }
 
+/* ---- save and load ---- */
+
+/* Words: how many follow; then whether there are followers, and them; of each line load its points (-1: none), where
+   each element's begin, phi, load. */
+void spari_applied_save(const spar_member *m, spari_image *image) {
+    const spari_applied *a = m->applied;
+    int64_t at = image->count, P = m->per_element;
+    spari_image_put_int(image, 0);
+    if (a) {
+        spari_image_put_int(image, a->follower != NULL);
+        spari_image_put(image, a->follower, a->follower ? 6 * m->nodes : 0);
+        for (int k = 0; k < 2; k++) {
+            const line_load *line = &a->line[k];
+            int64_t points = line->first ? line->first[m->elements] : -1;
+            spari_image_put_int(image, points);
+            for (int e = 0; e < m->elements && points >= 0; e++) {
+                spari_image_put_int(image, line->first[e + 1]);
+            }
+            spari_image_put(image, line->phi, points > 0 ? points * P : 0);
+            spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
+        }
+    }
+    if (!image->failed) {
+        image->word[at] = (uint64_t)(image->count - at - 1);
+    }
+}
+
+/* n doubles of the image in memory of their own; NULL when there are none, or no memory */
+static double *take(spari_image *image, int64_t n) {
+    const uint64_t *from = spari_image_get(image, n);
+    double *x = from ? spari_zalloc(n, sizeof *x) : NULL;
+    if (x && n > 0) {
+        memcpy(x, from, (size_t)n * sizeof *x);
+    }
+    image->failed |= !x;
+    return x;
+}
+
+static void take_line(const spar_member *m, spari_image *image, line_load *line) {
+    int64_t points = spari_image_get_int(image);
+    if (points < 0 || image->failed) {
+        return;
+    }
+    line->first = spari_zalloc(m->elements + 1, sizeof *line->first);
+    image->failed |= !line->first || points > INT32_MAX;
+    for (int e = 0; e < m->elements && !image->failed; e++) {
+        int64_t next = spari_image_get_int(image);
+        image->failed |= next < line->first[e] || next > points;
+        line->first[e + 1] = (int)next;
+    }
+    if (!image->failed) {
+        line->phi = take(image, points * m->per_element);
+        line->load = take(image, points * 6);
+    }
+}
+
+void spari_applied_check(spar_member *m, spari_image *image) {
+    spari_applied_free(m->applied_next);
+    m->applied_next = NULL;
+    if (spari_image_get_int(image) == 0 || image->failed) {
+        return;
+    }
+    spari_applied *a = m->applied_next = spari_zalloc(1, sizeof *a);
+    if (!a) {
+        image->failed = 1;
+        return;
+    }
+    a->follower = spari_image_get_int(image) ? take(image, 6 * m->nodes) : NULL;
+    for (int k = 0; k < 2 && !image->failed; k++) {
+        take_line(m, image, &a->line[k]);
+    }
+}
+
+void spari_applied_load(spar_member *m, spari_image *image) {
+    spari_image_get(image, spari_image_get_int(image));
+    spari_applied_free(m->applied);
+    m->applied = m->applied_next;
+    m->applied_next = NULL;
+}
+
 /* ---- what the host says ---- */
 
 static int need_applied(spar_member *member, const char *call) {

@@ -5,6 +5,7 @@
 #ifndef SPARI_APPLIED_H
 #define SPARI_APPLIED_H
 
+#include "../session/image.h"
 #include "member.h"
 
 /* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. For members with
@@ -16,6 +17,11 @@ void spari_applied_tangent(const spar_member *member, int e, const double *q, do
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
 /* Whether the loads have a potential: dead forces only. */
 int spari_applied_potential(const spar_member *member);
+/* Into a file, and back in two passes: the first gets what it needs into member->applied_next (image->failed when it
+ * cannot), the second takes it. */
+void spari_applied_save(const spar_member *member, spari_image *image);
+void spari_applied_check(spar_member *member, spari_image *image);
+void spari_applied_load(spar_member *member, spari_image *image);
 void spari_applied_free(spari_applied *applied);
 
 #endif

@@ -631,7 +631,8 @@ static void release(spar_member *m) {
     spari_work_free(m->work);
     m->work = NULL;
     spari_applied_free(m->applied);
-    m->applied = NULL;
+    spari_applied_free(m->applied_next);
+    m->applied = m->applied_next = NULL;
     spari_rung_free(m->rung);
     m->rung = NULL;
     spari_solver_free(m->solver);

@@ -47,10 +47,11 @@ struct spar_member {
     double drive[2][19];     /* root q, v, a at t^n and t^{n+1} */
 
     /* nodal loads [n][6], global axes */
-    double *dead;            /* spar_member_add_load */
-    spari_applied *applied;  /* follower and line loads; NULL: none */
-    int64_t pack_at;         /* where its loads begin in the vector that the ranks sum */
-    double *load_used;       /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
+    double *dead;                /* spar_member_add_load */
+    spari_applied *applied;      /* follower and line loads; NULL: none */
+    spari_applied *applied_next; /* of a file being loaded */
+    int64_t pack_at;             /* where its loads begin in the vector that the ranks sum */
+    double *load_used;           /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
     double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2} */
     double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */

@@ -7,6 +7,7 @@
 #include "image.h"
 #include "session.h"
 
+#include "../member/applied.h"
 #include "../member/rung.h"
 #include "../solve/solver.h"
 
@@ -73,6 +74,13 @@ static void pass_member(stream *t, spar_member *m) {
     pass(t, &m->dissipated_step, 1);
     pass_int(t, &m->motion_given);
     pass_int(t, &m->drive_given);
+    if (t->mode == WRITE) {
+        spari_applied_save(m, t->image);
+    } else if (t->mode == CHECK) {
+        spari_applied_check(m, t->image);
+    } else {
+        spari_applied_load(m, t->image);
+    }
 }
 
 /* c: of the settings in the image; never only checked */
