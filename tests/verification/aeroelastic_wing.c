@@ -2,8 +2,8 @@
    16, chord 1, EI 2e4, GJ 1e4, chordwise 4e6, elastic axis at mid-chord, density 0.0889; lift 2 pi a_eff q c per
    undeformed length by the wind in the section's plane, at a quarter of the chord, following the section. Solution of
    the exact beam equations (unshearable, 1e10) with these loads, 25 m/s, 2 degrees at the root, without gravity, 10
-   digits. Here one element of 16 nodes, 24 strips at Gauss points; the fixed point of beam and strips. Tolerance 1e-6
-   of the span; angles 1e-6 rad. Divergence: q_D = (pi / 2 L)^2 GJ / (c/4 c 2 pi); the increments of the fixed point at
+   digits. Here one element of 16 nodes, 24 strips at Gauss points; the fixed point of beam and strips. Tolerance 1e-9
+   of the span; the angle to its last printed digit. Divergence: q_D = (pi / 2 L)^2 GJ / (c/4 c 2 pi); the increments of the fixed point at
    small angles shrink by q / q_D. */
 #include "verification.h"
 
