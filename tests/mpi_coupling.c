@@ -242,6 +242,32 @@ static void wrong_calls_on_one_rank(void **state) {
     }
 }
 
+/* One rank commits or solves another member than the others, or takes another call. */
+static void wrong_members_on_one_rank(void **state) {
+    (void)state;
+    static const double q[4] = {1, 0, 0, 0}, x[3] = {0, 9, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 1, 1};
+    scene c;
+    spar_member *more[2];
+    double mass[36];
+    int expected = size > 1 ? SPAR_ERR_COMM : SPAR_OK;
+    create(&c, rank, size, SPAR_COUPLING_EXPLICIT);
+    scene_mass(mass, 1, centre, J);
+    for (int k = 0; k < 2; k++) {
+        OK(c.session, spar_rigid_create(c.session, k ? "two" : "one", x, q, mass, &more[k]));
+        OK(c.session, spar_member_set_root(more[k], SPAR_ROOT_FIXED));
+    }
+    assert_int_equal(spar_member_commit(more[rank == 0]), expected);
+    if (size > 1) {
+        OK(c.session, spar_member_commit(more[1]));
+    }
+    OK(c.session, spar_member_commit(more[0]));
+    assert_int_equal(spar_member_solve_static(rank == 0 ? more[0] : c.beam, 1), expected);
+    int status = rank == 0 ? spar_member_solve_static(c.beam, 1) : spar_step_begin(c.session, 0.1);
+    assert_int_equal(status, expected);
+    OK(c.session, spar_member_solve_static(c.beam, 1));
+    spar_session_destroy(&c.session);
+}
+
 static void different_arguments(void **state) {
     (void)state;
     scene c;
@@ -376,6 +402,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(nan_on_one_rank),
         cmocka_unit_test(callback_fails_on_one_rank),
         cmocka_unit_test(wrong_calls_on_one_rank),
+        cmocka_unit_test(wrong_members_on_one_rank),
         cmocka_unit_test(different_arguments),
         cmocka_unit_test(different_members),
         cmocka_unit_test(saved_on_some_ranks),

@@ -702,7 +702,7 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    int agreed = spari_comm_agree(s->comm, status, s->message, sizeof s->message), same = 1;
+    int agreed = spari_session_enter(member, "spar_member_commit", status), same = 1;
     if (agreed == SPAR_OK) {
         agreed = spari_comm_same(s->comm, spari_member_hash(member) ^ (uint64_t)(member->owner + 1), &same);
         if (agreed == SPAR_OK && !same) {

@@ -214,7 +214,7 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
             status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, beam->name);
         }
     }
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_session_enter(beam, CALL, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
         return status;

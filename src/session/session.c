@@ -5,6 +5,7 @@
 #include "../solve/solver.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -394,6 +395,13 @@ int spari_session_share_motion(spar_session *s, int status) {
     return SPAR_OK;
 }
 
+int spari_session_enter(const spar_member *member, const char *call, int status) {
+    char what[SPARI_MESSAGE_SIZE / 2];
+    spar_session *s = member->session;
+    (void)snprintf(what, sizeof what, "%s: member '%s'", call, member->name);
+    return spari_comm_enter(s->comm, what, status, s->message, sizeof s->message);
+}
+
 int spar_member_solve_static(spar_member *member, int load_steps) {
     const char *call = "spar_member_solve_static";
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
@@ -416,9 +424,10 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
         status =
             spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
     }
-    SPARI_TRY(spari_session_seal(s, status));
+    SPARI_TRY(spari_session_enter(member, call, status));
+    SPARI_TRY(spari_session_seal(s, SPAR_OK));
     if (!s->started) {
-        SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
+        SPARI_TRY(spari_session_exchange_loads(s, s->refused));
     }
     if (member->rung) {
         status = spari_rung_static(member);

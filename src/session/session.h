@@ -56,6 +56,8 @@ struct spar_session {
 
 /* What all ranks must have set alike before a step, as one number. */
 uint64_t spari_session_hash(const spar_session *session);
+/* Entry of a collective call on one member: agrees on a status, the call and the member. */
+int spari_session_enter(const spar_member *member, const char *call, int status);
 /* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
 int spari_session_exchange_loads(spar_session *session, int status);
 /* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.
