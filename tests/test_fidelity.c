@@ -282,6 +282,31 @@ static void test_energy(void **state) {
     }
 }
 
+/* A root that starts suddenly, its accelerations not given: the nodes keep the velocity they have, in every rung that
+   bends. Without that the frame would take the whole beam along at once, and its tip be off by a third. */
+static void test_sudden_start(void **state) {
+    (void)state;
+    const int rungs[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    double tip[3][7];
+    for (int k = 0; k < 3; k++) {
+        spar_member *b;
+        spar_session *s = turning(rungs[k], 12, SPAR_ROOT_DRIVEN, 0.1, NULL, &b);
+        const double none[3] = {0};
+        OK(s, spar_member_set_velocity(b, none, none, none));
+        for (int i = 1; i <= 50; i++) {
+            const double q[7] = {0, 0, 2e-4 * i, 1, 0, 0, 0}, v[6] = {0, 0, 0.1, 0, 0, 0};
+            OK(s, spar_member_drive_root(b, q, v, NULL));
+            scene_run(s, DT, 1);
+        }
+        scene_tip(b, tip[k]);
+        spar_session_destroy(&s);
+    }
+    double off = fabs(tip[0][2] - 0.01); /* what it has beyond the root */
+    assert_true(off > 1e-3);
+    NEAR(tip[1][2], tip[0][2], 0.01 * off);
+    NEAR(tip[2][2], tip[0][2], 0.1 * off);
+}
+
 /* Saved and loaded in the middle of a run, each rung goes on with the same bits. */
 static void test_saved(void **state) {
     (void)state;
@@ -342,6 +367,7 @@ int main(void) {
         cmocka_unit_test(test_skipped_work),
         cmocka_unit_test(test_reject_and_substeps),
         cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_sudden_start),
         cmocka_unit_test(test_saved),
         cmocka_unit_test(test_refusals),
     };

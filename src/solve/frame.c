@@ -769,17 +769,48 @@ static void predict(const spari_frame *f, const scheme *c, const spari_frame_sta
     }
 }
 
+/* A root whose velocity changes by more than its accelerations say (hosts that give none, a sudden start) leaves the
+   nodes the velocity they have: seen from the root they lose the jump. Smooth driving has a jump of third order in h.
+ */
+static void jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                 const spari_frame_state *to) {
+    double J[6];
+    int P = m->per_element;
+    for (int k = 0; k < 6; k++) {
+        J[k] = to->root[7 + k] - from->root[7 + k] - 0.5 * h * (from->root[13 + k] + to->root[13 + k]);
+    }
+    spari_rotate_back(to->root + 3, J, J);
+    spari_rotate_back(to->root + 3, J + 3, J + 3);
+    for (int k = 6; k < f->n && f->basis; k++) { /* modal: to the nearest, in the norm of the mass */
+        from->v[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
+    }
+    for (int i = 1; i < f->nodes && !f->basis; i++) {
+        int64_t at = m->elements == 1 ? i : i + (i - 1) / (P - 1);
+        double arm[3], turn[3];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = m->xr[3 * at + k] - m->xr[k];
+        }
+        spari_cross(J + 3, arm, turn);
+        for (int k = 0; k < 3; k++) {
+            from->v[6 * i + k] -= J[k] + turn[k];
+            from->v[6 * i + 3 + k] -= J[3 + k];
+        }
+    }
+}
+
 enum { MOST_ITERATIONS = 30 };
 
 /* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
    other turn, or with loads that follow, the corrections shrink until they are rounding. */
-static int substep(spari_frame *f, spar_member *m, const scheme *c, const spari_frame_state *from,
-                   spari_frame_state *to) {
+static int substep(spari_frame *f, spar_member *m, const scheme *c, spari_frame_state *from, spari_frame_state *to) {
     double omega[3], last = 0, to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
     spari_rotate_back(to->root + 3, to->root + 10, omega);
     combine(f, omega);
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     f->factored = same;
+    if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
+        jump(f, m, c->h, from, to);
+    }
     predict(f, c, from, to);
     double *fixed = f->increment;
     for (int it = 0; it < MOST_ITERATIONS; it++) {
