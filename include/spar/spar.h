@@ -151,7 +151,7 @@ SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
    1, with loads interpolated linearly between t^n and t^{n+1}; default 1. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
-   rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-12, 1e-9,
+   rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
    50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
 /* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2.
