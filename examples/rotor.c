@@ -455,8 +455,8 @@ static void show_progress(const scene *s, double t, double begun, double *shown)
 }
 
 /* Bends the blades to where the loads of the turning rotor and gravity would hold them at rest: straight blades let go
-   in the wind swing for many turns. The loads depend on the shape: a few rounds bring both together. The static solution
-   takes along the centrifugal force of the turning root. */
+   in the wind swing for many turns. The loads depend on the shape: a few rounds bring both together. The static
+   solution takes along the centrifugal force of the turning root. */
 static int bend(scene *s) {
     enum { ROUNDS = 4, LOAD_STEPS = 4 };
     for (int round = 0; round < ROUNDS; round++) {

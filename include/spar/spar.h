@@ -360,9 +360,10 @@ SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const dou
 /* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
    since t = 0 (up to t^n). Members spar does not solve for give zeros. */
 SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);
-/* work[3]: out, J, done on the member in the accepted steps by the loads kept (dead, follower, line), by the fluids, and
-   by a driven root. The account begins at zero with the first call, between steps, and anew where the motion is set
-   (static solution, initial velocity, load): nothing is computed for members it has not been asked for. Kinetic + strain
+/* work[3]: out, J, done on the member in the accepted steps by the loads kept (dead, follower, line), by the fluids,
+   and by a driven root. The account begins at zero with the first call, between steps, and anew where the motion is set
+   (static solution, initial velocity, load): nothing is computed for members it has not been asked for. Kinetic +
+   strain
    + potential + dissipated energy less the sum of the three stays constant to the order of the integrator. Local. */
 SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
 /* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,

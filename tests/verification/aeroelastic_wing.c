@@ -3,8 +3,8 @@
    undeformed length by the wind in the section's plane, at a quarter of the chord, following the section. Solution of
    the exact beam equations (unshearable, 1e10) with these loads, 25 m/s, 2 degrees at the root, without gravity, 10
    digits. Here one element of 16 nodes, 24 strips at Gauss points; the fixed point of beam and strips. Tolerance 1e-9
-   of the span; the angle to its last printed digit. Divergence: q_D = (pi / 2 L)^2 GJ / (c/4 c 2 pi); the increments of the fixed point at
-   small angles shrink by q / q_D. */
+   of the span; the angle to its last printed digit. Divergence: q_D = (pi / 2 L)^2 GJ / (c/4 c 2 pi); the increments of
+   the fixed point at small angles shrink by q / q_D. */
 #include "verification.h"
 
 #include "math/basis.h"
