@@ -1,3 +1,4 @@
+#include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "state.h"
 #include <math.h>
@@ -254,20 +255,6 @@ void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
     }
 }
 
-/* Weights of the polynomial through t^n, t^{n-1}, t^{n-2} at t^{n+1} (Lagrange, steps of any length). */
-static void predictor(int order, double dt, const double dt_last[2], double w[3]) {
-    double a = dt_last[0], b = dt_last[0] + dt_last[1];
-    w[0] = 1, w[1] = w[2] = 0;
-    if (order == 1) {
-        w[1] = -dt / a;
-        w[0] = 1 - w[1];
-    } else if (order == 2) {
-        w[0] = (dt + a) * (dt + b) / (a * b);
-        w[1] = -dt * (dt + b) / (a * (b - a));
-        w[2] = dt * (dt + a) / (b * (b - a));
-    }
-}
-
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]) {
     spari_history *h = fluid->history;
     double w[3];
@@ -277,7 +264,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     if (!h->on) {
         return;
     }
-    predictor(order, dt, dt_last, w);
+    spari_predictor(order, dt, dt_last, w);
     for (int64_t i = 0; i < 3 * h->n; i++) {
         h->after[i] = w[0] * h->past[0][i];
         for (int k = 1; k <= order; k++) {

@@ -1,6 +1,7 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "session.h"
 
+#include "../math/predictor.h"
 #include "../member/body.h"
 #include "../member/rung.h"
 #include "../solve/solver.h"
@@ -41,16 +42,8 @@ static int check_begin(spar_session *s, double dt) {
 /* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. With order 1 the spec's
    f + dt^{n+1}/dt^n (f^n - f^{n-1}). */
 static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
-    double w[3] = {1, 0, 0};
-    if (order == 1) {
-        double r = dt / last[0];
-        w[0] = 1 + r, w[1] = -r;
-    } else if (order == 2) {
-        double a = last[0], b = last[0] + last[1]; /* nodes 0, -a, -b */
-        w[0] = (dt + a) * (dt + b) / (a * b);
-        w[1] = -dt * (dt + b) / (a * (b - a));
-        w[2] = dt * (dt + a) / (b * (b - a));
-    }
+    double w[3];
+    spari_predictor(order, dt, last, w);
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
         double f = w[0] * m->load_history[0][i];
         f += order > 0 ? w[1] * m->load_history[1][i] : 0;
