@@ -63,6 +63,11 @@ struct spar_member {
 };
 
 void spari_member_free(spar_member *member);
+/* All that commit makes of the description (nodes, body, loads at zero, solver or rung), its effects being in force; a
+   status and a message where it fails, which leaves parts to be released. */
+int spari_member_build(spar_member *m);
+/* Frees it; the description stays. */
+void spari_member_release(spar_member *m);
 /* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
 void spari_member_solved(spar_member *member, const double *fluid);
 /* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.

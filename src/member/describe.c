@@ -1,0 +1,378 @@
+/* The description of a member before commit: creation, setters and what they refuse. */
+#include "../math/rotation.h"
+#include "../session/session.h"
+#include "beam.h"
+#include "edge.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double *copy_of(const double *x, int64_t n) {
+    double *c = spari_zalloc(n, sizeof *c);
+    if (c && n > 0) {
+        memcpy(c, x, (size_t)n * sizeof *c);
+    }
+    return c;
+}
+
+/* ---- create ---- */
+
+static int member_create(spar_session *session, const char *call, const char *name, int kind, spar_member **out) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: no place for the new member (NULL)", call);
+    SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT, "%s: a member needs a name", call);
+    SPARI_REQUIRE(session, !session->started, SPAR_ERR_STATE,
+                  "%s: '%s': the clock has started; create members before the first step", call, name);
+    spar_member **end = &session->members;
+    for (; *end; end = &(*end)->next) {
+        SPARI_REQUIRE(session, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
+                      "%s: there is a member '%s' already; names are unique in a session", call, name);
+    }
+    spar_member *m = spari_zalloc(1, sizeof *m);
+    size_t size = strlen(name) + 1;
+    if (!m || !(m->name = spari_zalloc((int64_t)size, 1))) {
+        free(m);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the member", call, name);
+    }
+    memcpy(m->name, name, size);
+    m->session = session;
+    m->kind = kind;
+    m->elements = m->per_element = 1;
+    m->nodes = 1;
+    m->owner = session->member_count % spari_comm_size(session->comm);
+    m->root = kind == SPARI_BEAM ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE;
+    m->fidelity = SPAR_FIDELITY_EXACT;
+    m->place_q[0] = 1;
+    session->member_count++;
+    *end = m;
+    *out = m;
+    return SPAR_OK;
+}
+
+static int check_place(spar_session *session, const char *call, const char *name, const double x[3],
+                       const double q[4]) {
+    if (x) {
+        SPARI_TRY(spari_need_finite(session, call, name, "x", 3, x));
+    }
+    if (q) {
+        SPARI_TRY(spari_need_finite(session, call, name, "q", 4, q));
+        SPARI_TRY(spari_need_unit(session, call, name, "q", 1, q, 4));
+    }
+    return SPAR_OK;
+}
+
+static void place(spar_member *m, const double x[3], const double q[4]) {
+    if (x) {
+        memcpy(m->place_x, x, sizeof m->place_x);
+    }
+    if (q) {
+        memcpy(m->place_q, q, sizeof m->place_q);
+        spari_quat_normalise(m->place_q);
+    }
+}
+
+int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
+                      spar_member **member) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_point_create: the session is NULL; create it first");
+    SPARI_TRY(check_place(session, "spar_point_create", name ? name : "", x, q));
+    spar_member *m;
+    SPARI_TRY(member_create(session, "spar_point_create", name, SPARI_POINT, member ? &m : NULL));
+    place(m, x, q);
+    *member = m;
+    return SPAR_OK;
+}
+
+int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
+                      const double mass[36], spar_member **member) {
+    const char *call = "spar_rigid_create", *label = name ? name : "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_TRY(check_place(session, call, label, x, q));
+    SPARI_TRY(spari_need_finite(session, call, label, "mass", 36, mass));
+    double m0, c[3], J[6];
+    const char *wrong = spari_mass_split(mass, &m0, c, J);
+    SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the mass matrix is not that of a rigid body: %s", call,
+                  label, wrong);
+    spar_member *m;
+    SPARI_TRY(member_create(session, call, name, SPARI_RIGID, member ? &m : NULL));
+    place(m, x, q);
+    memcpy(m->mass, mass, sizeof m->mass);
+    *member = m;
+    return SPAR_OK;
+}
+
+int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
+                     spar_member **member) {
+    const char *call = "spar_beam_create", *label = name ? name : "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(session, elements >= 1 && elements <= 1000000, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %d elements; give 1 to 1000000", call, label, elements);
+    SPARI_REQUIRE(session, nodes_per_element >= 2 && nodes_per_element <= SPARI_MAX_NODES, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %d nodes per element; give 2 to %d", call, label, nodes_per_element, SPARI_MAX_NODES);
+    spari_beam *beam = spari_zalloc(1, sizeof *beam);
+    SPARI_REQUIRE(session, beam, SPAR_ERR_MEMORY, "%s: '%s': no memory for the beam", call, label);
+    beam->rule = -1;
+    spar_member *m;
+    int status = member_create(session, call, name, SPARI_BEAM, member ? &m : NULL);
+    if (status != SPAR_OK) {
+        spari_beam_free(beam);
+        return status;
+    }
+    m->beam = beam; /* NOLINT(clang-analyzer-core.NullDereference): create has set it */
+    m->elements = elements;
+    m->per_element = nodes_per_element;
+    m->nodes = (int64_t)elements * nodes_per_element;
+    *member = m;
+    return SPAR_OK;
+}
+
+/* ---- describe ---- */
+
+int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
+    const char *call = "spar_beam_set_axis";
+    SPARI_TRY(spari_need_beam(beam, call));
+    spar_session *session = beam->session;
+    SPARI_REQUIRE(session, n >= 2, SPAR_ERR_ARGUMENT, "%s: '%s': %lld axis points; give at least 2", call, beam->name,
+                  (long long)n);
+    SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
+    SPARI_REQUIRE(session, fabs(eta[0]) < 1e-9 && fabs(eta[n - 1] - 1) < 1e-9, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': eta runs from %g to %g; the first point is eta 0 and the last eta 1", call, beam->name,
+                  eta[0], eta[n - 1]);
+    SPARI_TRY(spari_need_finite(session, call, beam->name, "xyz", 3 * n, xyz));
+    if (twist) {
+        SPARI_TRY(spari_need_finite(session, call, beam->name, "twist", n, twist));
+    }
+    double *copies[3] = {copy_of(eta, n), copy_of(xyz, 3 * n), twist ? copy_of(twist, n) : NULL};
+    if (!copies[0] || !copies[1] || (twist && !copies[2])) {
+        free(copies[0]), free(copies[1]), free(copies[2]);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the axis", call, beam->name);
+    }
+    spari_beam *b = beam->beam;
+    free(b->eta), free(b->xyz), free(b->twist), free(b->node_x), free(b->node_q);
+    b->eta = copies[0], b->xyz = copies[1], b->twist = copies[2];
+    b->node_x = b->node_q = NULL;
+    b->axis_count = n;
+    return SPAR_OK;
+}
+
+int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q) {
+    const char *call = "spar_beam_set_nodes";
+    SPARI_TRY(spari_need_beam(beam, call));
+    spar_session *session = beam->session;
+    SPARI_REQUIRE(session, n == beam->nodes, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld nodes; it has %d elements of %d nodes, give %lld", call, beam->name, (long long)n,
+                  beam->elements, beam->per_element, (long long)beam->nodes);
+    SPARI_TRY(spari_need_finite(session, call, beam->name, "x", 3 * n, x));
+    if (q) {
+        SPARI_TRY(spari_need_finite(session, call, beam->name, "q", 4 * n, q));
+        SPARI_TRY(spari_need_unit(session, call, beam->name, "q", n, q, 4));
+    }
+    double size = 0;
+    for (int64_t i = 3; i < 3 * n; i++) {
+        size = fmax(size, fabs(x[i] - x[i % 3]));
+    }
+    for (int64_t i = beam->per_element; i < n; i += beam->per_element) {
+        for (int c = 0; c < 3; c++) {
+            SPARI_REQUIRE(session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
+                          "%s: '%s': the joint of elements %lld and %lld stands at two places (nodes %lld and %lld)",
+                          call, beam->name, (long long)(i / beam->per_element - 1), (long long)(i / beam->per_element),
+                          (long long)i - 1, (long long)i);
+        }
+    }
+    double *copies[2] = {copy_of(x, 3 * n), q ? copy_of(q, 4 * n) : NULL};
+    if (!copies[0] || (q && !copies[1])) {
+        free(copies[0]), free(copies[1]);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the nodes", call, beam->name);
+    }
+    for (int64_t i = 0; q && i < n; i++) {
+        spari_quat_normalise(copies[1] + 4 * i);
+    }
+    spari_beam *b = beam->beam;
+    free(b->eta), free(b->xyz), free(b->twist), free(b->node_x), free(b->node_q);
+    b->eta = b->xyz = b->twist = NULL;
+    b->axis_count = 0;
+    b->node_x = copies[0], b->node_q = copies[1];
+    return SPAR_OK;
+}
+
+/* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal (so that units do
+ * not matter). */
+const char *spari_stiffness_fault(const double C[36]) {
+    double d[6], scaled[36];
+    for (int i = 0; i < 6; i++) {
+        if (!(C[7 * i] > 0)) {
+            return "not positive definite";
+        }
+        d[i] = sqrt(C[7 * i]);
+    }
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            if (fabs(C[6 * i + j] - C[6 * j + i]) > 1e-6 * d[i] * d[j]) {
+                return "not symmetric";
+            }
+            scaled[6 * i + j] = 0.5 * (C[6 * i + j] + C[6 * j + i]) / (d[i] * d[j]);
+        }
+    }
+    gsl_matrix_view view = gsl_matrix_view_array(scaled, 6, 6);
+    return gsl_linalg_cholesky_decomp1(&view.matrix) == GSL_SUCCESS ? NULL : "not positive definite";
+}
+
+int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
+                           const double *mass) {
+    const char *call = "spar_beam_set_sections";
+    SPARI_TRY(spari_need_beam(beam, call));
+    spar_session *session = beam->session;
+    SPARI_REQUIRE(session, n >= 1, SPAR_ERR_ARGUMENT, "%s: '%s': %lld sections; give at least 1", call, beam->name,
+                  (long long)n);
+    SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
+    SPARI_TRY(spari_need_finite(session, call, beam->name, "stiffness", 36 * n, stiffness));
+    if (mass) {
+        SPARI_TRY(spari_need_finite(session, call, beam->name, "mass", 36 * n, mass));
+    }
+    for (int64_t i = 0; i < n; i++) {
+        const char *wrong = spari_stiffness_fault(stiffness + 36 * i);
+        SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the stiffness of section %lld is %s", call,
+                      beam->name, (long long)i, wrong);
+        double m, c[3], J[6];
+        wrong = mass ? spari_mass_split(mass + 36 * i, &m, c, J) : NULL;
+        SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': the mass of section %lld is not that of a rigid section: %s", call, beam->name,
+                      (long long)i, wrong);
+    }
+    double *copies[3] = {copy_of(eta, n), copy_of(stiffness, 36 * n), mass ? copy_of(mass, 36 * n) : NULL};
+    if (!copies[0] || !copies[1] || (mass && !copies[2])) {
+        free(copies[0]), free(copies[1]), free(copies[2]);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the sections", call, beam->name);
+    }
+    spari_beam *b = beam->beam;
+    free(b->section_eta), free(b->stiffness), free(b->mass);
+    b->section_eta = copies[0], b->stiffness = copies[1], b->mass = copies[2];
+    b->section_count = n;
+    return SPAR_OK;
+}
+
+int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
+    const char *call = "spar_beam_set_quadrature";
+    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no quadrature rule %d; see SPAR_QUADRATURE_*", call, beam->name, rule);
+    SPARI_REQUIRE(beam->session, points >= (rule == SPAR_QUADRATURE_LOBATTO ? 2 : 1) && points <= 512,
+                  SPAR_ERR_ARGUMENT, "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512", call, beam->name,
+                  points);
+    beam->beam->rule = rule;
+    beam->beam->points = points;
+    return SPAR_OK;
+}
+
+int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
+    const char *call = "spar_beam_set_damping";
+    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mu", 6, mu));
+    int any = 0;
+    for (int i = 0; i < 6; i++) {
+        SPARI_REQUIRE(beam->session, mu[i] >= 0, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': mu[%d] is negative; damping takes energy out", call, beam->name, i);
+        any |= mu[i] > 0;
+    }
+    memcpy(beam->beam->mu, mu, sizeof beam->beam->mu);
+    beam->beam->damped = any;
+    return SPAR_OK;
+}
+
+int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]) {
+    const char *call = "spar_member_set_placement";
+    SPARI_TRY(spari_need_open(member, call));
+    SPARI_TRY(check_place(member->session, call, member->name, x, q));
+    place(member, x, q);
+    return SPAR_OK;
+}
+
+int spar_member_set_root(spar_member *member, int kind) {
+    const char *call = "spar_member_set_root";
+    SPARI_TRY(spari_need_open(member, call));
+    SPARI_REQUIRE(member->session, kind >= SPAR_ROOT_FREE && kind <= SPAR_ROOT_DRIVEN, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no root condition %d; see SPAR_ROOT_*", call, member->name, kind);
+    member->root = kind;
+    return SPAR_OK;
+}
+
+int spar_member_set_external(spar_member *member, int on) {
+    SPARI_TRY(spari_need_open(member, "spar_member_set_external"));
+    member->external = on != 0;
+    return SPAR_OK;
+}
+
+int spar_member_set_effects(spar_member *member, int effects) {
+    const char *call = "spar_member_set_effects";
+    const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
+                    SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY;
+    SPARI_TRY(spari_need_open(member, call));
+    SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", call, member->name,
+                  (unsigned)(effects & ~all));
+    member->effects = effects;
+    member->effects_given = 1;
+    return SPAR_OK;
+}
+
+int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
+    const char *call = "spar_member_set_fidelity";
+    SPARI_TRY(spari_need_open(member, call));
+    spar_session *s = member->session;
+    SPARI_REQUIRE(s, kind >= SPAR_FIDELITY_PRESCRIBED && kind <= SPAR_FIDELITY_EXACT, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", call, member->name, kind);
+    SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", call, member->name);
+    SPARI_REQUIRE(s, kind != SPAR_FIDELITY_MODAL || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld modes; give at least 1", call, member->name, (long long)modes);
+    member->fidelity = kind;
+    member->modes = kind == SPAR_FIDELITY_MODAL ? modes : 0;
+    return SPAR_OK;
+}
+
+int spar_member_set_owner(spar_member *member, int rank) {
+    const char *call = "spar_member_set_owner";
+    SPARI_TRY(spari_need_open(member, call));
+    int size = spari_comm_size(member->session->comm);
+    SPARI_REQUIRE(member->session, rank >= 0 && rank < size, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no rank %d; the session has %d", call, member->name, rank, size);
+    member->owner = rank;
+    return SPAR_OK;
+}
+
+/* FNV-1a over what the ranks must agree on. */
+static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
+    const unsigned char *p = data;
+    for (size_t i = 0; i < size; i++) {
+        h = (h ^ p[i]) * UINT64_C(1099511628211);
+    }
+    return h;
+}
+
+uint64_t spari_member_hash(const spar_member *m) {
+    uint64_t h = UINT64_C(14695981039346656037);
+    int numbers[] = {m->kind,     m->external,    m->root,           m->effects,  m->effects_given,
+                     m->elements, m->per_element, m->velocity_given, m->fidelity, (int)m->modes};
+    h = hash_bytes(h, m->name, strlen(m->name));
+    h = hash_bytes(h, numbers, sizeof numbers);
+    h = hash_bytes(h, m->place_x, sizeof m->place_x);
+    h = hash_bytes(h, m->place_q, sizeof m->place_q);
+    h = hash_bytes(h, m->mass, sizeof m->mass);
+    h = hash_bytes(h, m->velocity, sizeof m->velocity);
+    const spari_beam *b = m->beam;
+    if (b) {
+        size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);
+        int more[] = {b->rule,           b->points,         b->eta != NULL, b->twist != NULL,
+                      b->node_x != NULL, b->node_q != NULL, b->mass != NULL};
+        h = hash_bytes(h, more, sizeof more);
+        h = hash_bytes(h, b->mu, sizeof b->mu);
+        h = b->eta ? hash_bytes(hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
+        h = b->twist ? hash_bytes(h, b->twist, n * d) : h;
+        h = b->node_x ? hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;
+        h = b->node_q ? hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
+        h = b->section_eta ? hash_bytes(hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
+        h = b->mass ? hash_bytes(h, b->mass, 36 * s * d) : h;
+    }
+    return h;
+}

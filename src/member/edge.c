@@ -1,0 +1,62 @@
+#include "edge.h"
+
+#include "../math/rotation.h"
+#include "../session/session.h"
+
+int spari_need_member(const spar_member *member, const char *call) {
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    return SPAR_OK;
+}
+
+int spari_need_open(spar_member *member, const char *call) {
+    SPARI_TRY(spari_need_member(member, call));
+    SPARI_REQUIRE(member->session, !member->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is committed; describe it before spar_member_commit", call, member->name);
+    return SPAR_OK;
+}
+
+int spari_need_committed(const spar_member *member, const char *call) {
+    SPARI_TRY(spari_need_member(member, call));
+    SPARI_REQUIRE(member->session, member->committed, SPAR_ERR_STATE,
+                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
+    return SPAR_OK;
+}
+
+int spari_need_beam(spar_member *member, const char *call) {
+    SPARI_TRY(spari_need_open(member, call));
+    SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,
+                  member->name);
+    return SPAR_OK;
+}
+
+int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
+                      const double *x) {
+    SPARI_REQUIRE(session, x || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, name, what);
+    int64_t at = spari_first_nonfinite(x, n);
+    SPARI_REQUIRE(session, at < 0, SPAR_ERR_ARGUMENT, "%s: '%s': entry %lld of %s is not a finite number", call, name,
+                  (long long)at, what);
+    return SPAR_OK;
+}
+
+int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
+                    const double *q, int stride) {
+    for (int64_t i = 0; i < n; i++) {
+        double size = spari_quat_dot(q + stride * i, q + stride * i);
+        SPARI_REQUIRE(session, fabs(size - 1) < 1e-6, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': quaternion %lld of %s has length %g; give unit quaternions, scalar first", call, name,
+                      (long long)i, what, sqrt(size));
+    }
+    return SPAR_OK;
+}
+
+int spari_need_increasing(spar_session *session, const char *call, const char *name, int64_t n, const double *eta) {
+    SPARI_TRY(spari_need_finite(session, call, name, "eta", n, eta));
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, name, (long long)i, eta[i]);
+        SPARI_REQUIRE(session, i == 0 || eta[i] > eta[i - 1], SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld (%.17g) does not increase on the one before", call, name, (long long)i,
+                      eta[i]);
+    }
+    return SPAR_OK;
+}

@@ -1,0 +1,23 @@
+/* Checks at the public edge that the calls on members share: 0, or a status with a message that begins with the name of
+   the call. */
+#ifndef SPARI_EDGE_H
+#define SPARI_EDGE_H
+
+#include "member.h"
+
+int spari_need_member(const spar_member *member, const char *call);
+/* Not committed yet. */
+int spari_need_open(spar_member *member, const char *call);
+int spari_need_committed(const spar_member *member, const char *call);
+/* A beam, not committed yet. */
+int spari_need_beam(spar_member *member, const char *call);
+/* x[n] must be there and finite; `what` names it. */
+int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
+                      const double *x);
+/* n unit quaternions, `stride` doubles apart */
+int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
+                    const double *q, int stride);
+/* eta[n] strictly increasing in [0,1] */
+int spari_need_increasing(spar_session *session, const char *call, const char *name, int64_t n, const double *eta);
+
+#endif
