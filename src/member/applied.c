@@ -4,6 +4,7 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "body.h"
+#include "edge.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -374,9 +375,7 @@ void spari_applied_load(spar_member *m, spari_image *image) {
 /* ---- what the host says ---- */
 
 static int need_applied(spar_member *member, const char *call) {
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
-    SPARI_REQUIRE(member->session, member->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
+    SPARI_TRY(spari_need_committed(member, call));
     if (!member->applied) {
         member->applied = spari_zalloc(1, sizeof *member->applied);
     }

@@ -8,6 +8,7 @@
 #include "../math/rotation.h"
 #include "../session/session.h"
 #include "beam.h"
+#include "edge.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -434,11 +435,7 @@ static int describe(spar_member *m, const reader *r, blade *b) {
 }
 
 int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path) {
-    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", CALL);
-    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", CALL,
-                  beam->name);
-    SPARI_REQUIRE(beam->session, !beam->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is committed; describe it before spar_member_commit", CALL, beam->name);
+    SPARI_TRY(spari_need_beam(beam, CALL));
     SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", CALL, beam->name);
     blade b = {0};
     reader *r = spari_zalloc(1, sizeof *r);

@@ -3,6 +3,7 @@
 #include "../math/rotation.h"
 #include "../session/session.h"
 #include "applied.h"
+#include "edge.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,10 +78,8 @@ void spari_work_restart(spar_member *m) {
 
 int spar_member_get_work(spar_member *member, double work[3]) {
     const char *call = "spar_member_get_work";
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_TRY(spari_need_committed(member, call));
     spar_session *s = member->session;
-    SPARI_REQUIRE(s, member->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
     SPARI_REQUIRE(s, work, SPAR_ERR_ARGUMENT, "%s: '%s': work is NULL", call, member->name);
     if (!member->work) {
         SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,

@@ -2,7 +2,7 @@
 #include "../fluid/transfer.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../member/member.h"
+#include "../member/edge.h"
 #include "vtk.h"
 #include <spar/spar_output.h>
 #include <stdlib.h>
@@ -151,9 +151,7 @@ static int write_picture(const spar_member *m, const sampled *s, const char *pat
 }
 
 int spar_member_write_vtk(const spar_member *member, const char *path) {
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "spar_member_write_vtk: the member is NULL; create it first");
-    SPARI_REQUIRE(member->session, member->committed, SPAR_ERR_STATE,
-                  "spar_member_write_vtk: member '%s' is not committed; call spar_member_commit first", member->name);
+    SPARI_TRY(spari_need_committed(member, "spar_member_write_vtk"));
     int64_t n = member->nodes;
     sampled s = {.n = (int64_t)member->elements * ((member->per_element - 1) * SPARI_PIECES + 1)};
     double *work = spari_zalloc(33 * n, sizeof *work);

@@ -5,6 +5,7 @@
    is 0 where K is positive definite, else the smallest tried that makes it so. */
 #include "../math/rotation.h"
 #include "../member/applied.h"
+#include "../member/edge.h"
 #include "../session/session.h"
 #include "solver.h"
 #include "turn.h"
@@ -163,10 +164,8 @@ static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequen
 
 int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
     const char *call = "spar_member_get_modes";
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_TRY(spari_need_committed(member, call));
     spar_session *s = member->session;
-    SPARI_REQUIRE(s, member->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is not committed; call spar_member_commit first", call, member->name);
     SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", call, member->name);
     int first, end;
