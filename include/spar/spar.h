@@ -423,7 +423,8 @@ SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const dou
 SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x);
 /* Sections of a blade element model, instead: motion nodes and force nodes at given places of the line. n: in; xi[n]:
    in, in [-1,1] over the whole beam; offset[n][3]: in, m, from the line to the node in the section frame (x tangent,
-   y, z), NULL: 0. Keeps the node forces (SPAR_EFFECT_FLUID_HISTORY) from the first pull_forces on. To be mapped. */
+   y, z), NULL: 0. Keeps the node forces, unless spar_member_set_effects has left SPAR_EFFECT_FLUID_HISTORY out. To be
+   mapped. */
 SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
 /* method: in, SPAR_PROJECT_*, default bounded; max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and
    refused under the option fluid.far = refuse); <= 0: no limit (default). For the next spar_fluid_map. */

@@ -31,16 +31,14 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
                   "spar_fluid_create: member '%s': the fluid needs a name; messages use it", member->name);
     spar_fluid *made = spari_zalloc(1, sizeof *made);
     char *copy = spari_zalloc((int64_t)strlen(name) + 1, 1);
-    spari_history *kept = spari_zalloc(1, sizeof *kept);
-    if (!made || !copy || !kept) {
+    if (!made || !copy) {
         free(made);
         free(copy);
-        free(kept);
         return spari_fail(session, SPAR_ERR_MEMORY, "spar_fluid_create: member '%s': no memory for a fluid",
                           member->name);
     }
     strcpy(copy, name);
-    made->member = member, made->name = copy, made->history = kept;
+    made->member = member, made->name = copy;
     spar_fluid **end = &session->fluids; /* at the end: loads are added in order of creation */
     while (*end) {
         end = &(*end)->next;
@@ -57,12 +55,34 @@ static void clear_set(spari_node_set *set) {
     *set = (spari_node_set){0};
 }
 
-void spari_fluid_clear_history(spari_history *h) {
+void spari_history_free(spari_history *h) {
+    if (!h) {
+        return;
+    }
     free(h->after);
     for (int i = 0; i < 3; i++) {
         free(h->past[i]);
     }
-    *h = (spari_history){0};
+    free(h);
+}
+
+spari_history *spari_history_create(int64_t n) {
+    spari_history *h = spari_zalloc(1, sizeof *h);
+    if (!h) {
+        return NULL;
+    }
+    h->n = n;
+    h->after = spari_zalloc(3 * n, sizeof *h->after);
+    int whole = h->after != NULL;
+    for (int i = 0; i < 3; i++) {
+        h->past[i] = spari_zalloc(3 * n, sizeof *h->past[i]);
+        whole = whole && h->past[i];
+    }
+    if (!whole) {
+        spari_history_free(h);
+        return NULL;
+    }
+    return h;
 }
 
 void spari_fluid_free(spar_fluid *fluid) {
@@ -71,11 +91,11 @@ void spari_fluid_free(spar_fluid *fluid) {
     }
     clear_set(&fluid->set[0]);
     clear_set(&fluid->set[1]);
-    spari_fluid_clear_history(fluid->history);
-    free(fluid->history);
-    double *all[] = {fluid->modal,         fluid->field[0], fluid->field[1], fluid->reference, fluid->blend[0],
-                     fluid->blend[1],      fluid->blend[2], fluid->work,     fluid->load,      fluid->load_new,
-                     fluid->load_accepted, fluid->mean,     fluid->mean_next};
+    spari_history_free(fluid->history);
+    spari_history_free(fluid->history_next);
+    double *all[] = {fluid->modal,   fluid->field[0], fluid->field[1],     fluid->reference,
+                     fluid->work,    fluid->load,     fluid->load_new,     fluid->load_accepted,
+                     fluid->mean[0], fluid->mean[1],  fluid->mean_next[0], fluid->mean_next[1]};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }
@@ -242,10 +262,6 @@ static int prepare_member(spar_fluid *fluid) {
         double **to;
         int64_t width;
     } all[] = {{&fluid->field[0], SPARI_FIELDS},
-               {&fluid->field[1], SPARI_FIELDS},
-               {&fluid->blend[0], 7},
-               {&fluid->blend[1], 6},
-               {&fluid->blend[2], 6},
                {&fluid->work, 14},
                {&fluid->load, 6},
                {&fluid->load_new, 6},
@@ -350,7 +366,7 @@ double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *s) {
     double *x = spari_zalloc(3 * s->n, sizeof *x);
     for (int64_t p = 0; x && p < s->n; p++) {
         double foot[3], q[4];
-        spari_fluid_reference(fluid, spari_nodes_element(s, p), s->xi[p], foot, q);
+        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), foot, q);
         for (int i = 0; i < 3; i++) {
             x[3 * spari_nodes_node(s, p) + i] = foot[i] + s->con[i][p];
         }
@@ -397,18 +413,20 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
 
 /* A history for n nodes in place of the old one. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
-    spari_history h = {.on = 1, .n = n};
-    h.after = spari_zalloc(3 * n, sizeof *h.after);
-    for (int i = 0; i < 3; i++) {
-        h.past[i] = spari_zalloc(3 * n, sizeof *h.past[i]);
-    }
-    if (!h.after || !h.past[0] || !h.past[1] || !h.past[2]) {
-        spari_fluid_clear_history(&h);
+    spari_history *h = spari_history_create(n);
+    if (!h) {
         return SPAR_ERR_MEMORY;
     }
-    spari_fluid_clear_history(fluid->history);
-    *fluid->history = h;
+    spari_history_free(fluid->history);
+    fluid->history = h;
     return SPAR_OK;
+}
+
+/* Sections imply it (a blade element host has one set of nodes, an actuator line asks for their forces), unless the
+   host has said which effects it wants. */
+static int keeps_forces(const spar_fluid *fluid) {
+    const spar_member *m = fluid->member;
+    return fluid->history || (m->effects & SPAR_EFFECT_FLUID_HISTORY) || (fluid->shared && !m->effects_given);
 }
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
@@ -435,8 +453,7 @@ int spar_fluid_map(spar_fluid *fluid) {
         }
     }
     spari_line_free(line);
-    if (status == SPAR_OK && fresh &&
-        (fluid->history->on || fluid->shared || (m->effects & SPAR_EFFECT_FLUID_HISTORY))) {
+    if (status == SPAR_OK && fresh && keeps_forces(fluid)) {
         if (spari_fluid_renew_history(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->n) != SPAR_OK) {
             status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
         }
@@ -501,7 +518,7 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *d
         int64_t j = spari_nodes_node(s, p);
         double con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
         if (xi) {
-            xi[j] = spari_member_xi(fluid->member, spari_nodes_element(s, p), s->xi[p]);
+            xi[j] = spari_member_xi(fluid->member, spari_nodes_element(s, p), spari_nodes_xi(s, p));
         }
         if (distance) {
             distance[j] = spari_norm(con);
@@ -521,7 +538,7 @@ int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, doubl
     for (int64_t p = 0; s && p < s->n; p++) {
         int64_t j = spari_nodes_node(s, p);
         double x[3], q[4];
-        spari_fluid_reference(fluid, spari_nodes_element(s, p), s->xi[p], x, q);
+        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
         if (x_map) {
             memcpy(x_map + 3 * j, x, sizeof x);
         }
@@ -549,7 +566,7 @@ int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node
             first_node[j] = (int64_t)spari_nodes_element(s, p) * n;
         }
         if (phi) {
-            spari_lagrange(n, x, bary, s->xi[p], phi + j * n, NULL);
+            spari_lagrange(n, x, bary, spari_nodes_xi(s, p), phi + j * n, NULL);
         }
     }
     return SPAR_OK;

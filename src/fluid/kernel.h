@@ -204,6 +204,13 @@ SPARI_INLINE void NAME(spin)(const L *d, const L *q, L over, L *w) {
 
 /* ---- motion out ---- */
 
+SPARI_INLINE void NAME(put_row)(int width, const L *x, double (*row)[SPARI_ROW], int at) {
+    SPARI_UNROLL
+    for (int i = 0; i < width; i++) {
+        NAME(put)(row[i] + at, x[i]);
+    }
+}
+
 /* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. */
 SPARI_INLINE void NAME(accelerate)(const int consistent, const L *q, L over, const L *r, const L *d, const L *w,
                                    const L *wr, const L *accel, const L *twist, double (*buf)[SPARI_ROW], int at) {
@@ -220,19 +227,15 @@ SPARI_INLINE void NAME(accelerate)(const int consistent, const L *q, L over, con
     NAME(cross)(w, wr, wt);
     NAME(cross)(alpha, r, ar);
     for (int i = 0; i < 3; i++) {
-        NAME(put)(buf[SPARI_R_OMEGA + i] + at, w[i]);
         NAME(put)(buf[SPARI_R_ACCEL + i] + at, accel[i] + ar[i] + wt[i]);
-        NAME(put)(buf[SPARI_R_ALPHA + i] + at, alpha[i]);
     }
-    for (int i = 0; i < 4; i++) {
-        NAME(put)(buf[SPARI_R_QUAT + i] + at, q[i]);
-    }
+    NAME(put_row)(3, alpha, buf + SPARI_R_ALPHA, at);
 }
 
 /* PAIR nodes of one element; in: xi and con of either vector. Returns the lesser |Q|^2, lane by lane. */
-SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, const int upto, const L (*in)[2],
+SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
                           double (*buf)[SPARI_ROW], int at) {
-    const int spins = consistent ? 4 : 3;
+    const int spins = consistent ? 4 : 3, upto = what & SPARI_UPTO, poses = what & SPARI_POSES;
     double t[SPARI_MAX_NODES * PAIR];
     const int linear = upto >= SPARI_UPTO_RATE ? 6 : 3; /* place, and velocity behind it */
     L place[12], quat[8], spin[8], accel[6], twist[8], least[2];
@@ -255,6 +258,9 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
         for (int i = 0; i < 3; i++) {
             NAME(put)(buf[SPARI_R_PLACE + i] + at, place[linear * u + i] + r[i]);
         }
+        if (poses) {
+            NAME(put_row)(4, q, buf + SPARI_R_QUAT, at);
+        }
         if (upto < SPARI_UPTO_RATE) {
             continue;
         }
@@ -266,6 +272,9 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
         NAME(cross)(w, r, wr);
         for (int i = 0; i < 3; i++) {
             NAME(put)(buf[SPARI_R_RATE + i] + at, place[6 * u + 3 + i] + wr[i]);
+        }
+        if (poses) {
+            NAME(put_row)(3, w, buf + SPARI_R_OMEGA, at);
         }
         if (upto >= SPARI_UPTO_ACCEL) {
             NAME(accelerate)
@@ -291,20 +300,94 @@ SPARI_INLINE void NAME(fetch)(const double *const *from, int n, int64_t p, int c
 }
 
 SPARI_INLINE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
-                              const int upto, double (*buf)[SPARI_ROW], int at) {
+                              const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     L least = SPLAT(&huge), in[4][2];
     for (int i = 0; i < count; i += PAIR) {
         NAME(fetch)(from, 4, first + i, count - i, in);
-        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, upto, (const L(*)[2])in, buf, at + i));
+        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, buf, at + i));
     }
     return NAME(least)(least);
 }
 
+/* The same of a point or rigid body, whose one node carries all: nothing of its motion is found node by node. */
+SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
+                              double (*buf)[SPARI_ROW]) {
+    const double *const *from = (const double *const *)s->con;
+    const int upto = what & SPARI_UPTO;
+    L turn[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
+    for (int i = 0; i < 9; i++) {
+        turn[i] = SPLAT(m->turn + i);
+    }
+    for (int i = 0; i < 3; i++) {
+        place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
+        accel[i] = SPLAT(m->accel + i), alpha[i] = SPLAT(m->alpha + i);
+    }
+    for (int at = 0; at < count; at += PAIR) {
+        NAME(fetch)(from, 3, first + at, count - at, c);
+        SPARI_UNROLL
+        for (int u = 0; u < 2; u++) {
+            L r[3], wr[3], ar[3], wwr[3];
+            for (int i = 0; i < 3; i++) {
+                r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
+                NAME(put)(buf[SPARI_R_PLACE + i] + at + W * u, place[i] + r[i]);
+            }
+            if (upto < SPARI_UPTO_RATE) {
+                continue;
+            }
+            NAME(cross)(w, r, wr);
+            for (int i = 0; i < 3; i++) {
+                NAME(put)(buf[SPARI_R_RATE + i] + at + W * u, rate[i] + wr[i]);
+            }
+            if (upto < SPARI_UPTO_ACCEL) {
+                continue;
+            }
+            NAME(cross)(w, wr, wwr);
+            NAME(cross)(alpha, r, ar);
+            for (int i = 0; i < 3; i++) {
+                NAME(put)(buf[SPARI_R_ACCEL + i] + at + W * u, accel[i] + ar[i] + wwr[i]);
+            }
+        }
+    }
+    if (what & SPARI_POSES) {
+        for (int at = 0; at < count; at += W) {
+            for (int i = 0; i < 4; i++) {
+                NAME(put)(buf[SPARI_R_QUAT + i] + at, SPLAT(m->q + i));
+            }
+            if (upto >= SPARI_UPTO_RATE) {
+                NAME(put_row)(3, w, buf + SPARI_R_OMEGA, at);
+            }
+            if (upto >= SPARI_UPTO_ACCEL) {
+                NAME(put_row)(3, alpha, buf + SPARI_R_ALPHA, at);
+            }
+        }
+    }
+}
+
 TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
-                                  int upto, double (*buf)[SPARI_ROW], int at) {
-    switch (2 * upto + consistent) {
+                                  int what, double (*buf)[SPARI_ROW], int at) {
+    if (s->per_element == 1) {
+        const carrier m = carrier_of(c);
+        switch (what) {
+        case SPARI_UPTO_PLACE:
+            NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE, buf);
+            break;
+        case SPARI_UPTO_RATE:
+            NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE, buf);
+            break;
+        case SPARI_UPTO_PLACE | SPARI_POSES:
+            NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE | SPARI_POSES, buf);
+            break;
+        case SPARI_UPTO_RATE | SPARI_POSES:
+            NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE | SPARI_POSES, buf);
+            break;
+        default:
+            NAME(carry)(s, first, count, &m, SPARI_UPTO_ACCEL | SPARI_POSES, buf);
+        }
+        return m.square;
+    }
+    switch (2 * what + !!consistent) {
     case 2 * SPARI_UPTO_PLACE:
     case 2 * SPARI_UPTO_PLACE + 1: /* places are the same in both kinds */
         return NAME(run)(s, first, count, c, 0, SPARI_UPTO_PLACE, buf, at);
@@ -312,10 +395,16 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
         return NAME(run)(s, first, count, c, 0, SPARI_UPTO_RATE, buf, at);
     case 2 * SPARI_UPTO_RATE + 1:
         return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE, buf, at);
-    case 2 * SPARI_UPTO_ACCEL:
-        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_ACCEL, buf, at);
+    case 2 * (SPARI_UPTO_PLACE | SPARI_POSES):
+    case 2 * (SPARI_UPTO_PLACE | SPARI_POSES) + 1:
+        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_PLACE | SPARI_POSES, buf, at);
+    case 2 * (SPARI_UPTO_RATE | SPARI_POSES):
+        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_RATE | SPARI_POSES, buf, at);
+    case 2 * (SPARI_UPTO_RATE | SPARI_POSES) + 1:
+        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE | SPARI_POSES, buf, at);
     default:
-        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_ACCEL, buf, at);
+        return consistent ? NAME(run)(s, first, count, c, 1, SPARI_UPTO_ACCEL | SPARI_POSES, buf, at)
+                          : NAME(run)(s, first, count, c, 0, SPARI_UPTO_ACCEL | SPARI_POSES, buf, at);
     }
 }
 
@@ -423,13 +512,94 @@ SPARI_INLINE void NAME(project)(const int rows, int modes, int count, double (*t
     }
 }
 
+/* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
+SPARI_INLINE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int at, int count, L (*to)[2]) {
+    const double *from[6] = {f[0], f[1], f[2], f[3], f[4], f[5]};
+    NAME(fetch)(from, rows, at, count, to);
+    if (count < PAIR) {
+        double keep[PAIR];
+        for (int j = 0; j < PAIR; j++) {
+            keep[j] = j < count;
+        }
+        for (int j = 0; j < rows; j++) {
+            to[j][0] *= NAME(get)(keep), to[j][1] *= NAME(get)(keep + W);
+        }
+    }
+}
+
+SPARI_INLINE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops) {
+    for (int i = 0; i < 9; i++) {
+        spari_add(sums + 2 * i, NAME(total)(add[i]));
+    }
+    for (int i = 0; i < 3; i++) {
+        double m = NAME(least)(top[i]);
+        tops[i] = m < tops[i] ? m : tops[i];
+    }
+}
+
+/* The loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T, in which the rotation waits
+   until the sum over the tile is done. */
+SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m,
+                                     const int has_moment, double (*f)[SPARI_ROW], const int audited, double *modal,
+                                     double *sums, double *tops) {
+    static const double zero = 0;
+    const double *const *from = (const double *const *)s->con;
+    const int rows = has_moment ? 6 : 3;
+    const L none = SPLAT(&zero);
+    L c[3][2], in[6][2], Z[9], total[6], add[9], top[3], turn[9], place[3], rate[3], w[3];
+    double z[9], load[6];
+    for (int i = 0; i < 9; i++) {
+        Z[i] = add[i] = none, turn[i] = SPLAT(m->turn + i);
+    }
+    for (int i = 0; i < 3; i++) {
+        total[i] = total[3 + i] = top[i] = none;
+        place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
+    }
+    for (int at = 0; at < count; at += PAIR) {
+        NAME(fetch)(from, 3, first + at, count - at, c);
+        NAME(fetch_loads)(f, rows, at, count - at, in);
+        SPARI_UNROLL
+        for (int u = 0; u < 2; u++) {
+            for (int i = 0; i < rows; i++) {
+                total[i] += in[i][u];
+            }
+            for (int i = 0; i < 9; i++) {
+                Z[i] = MADD(c[i / 3][u], in[i % 3][u], Z[i]);
+            }
+            if (audited) {
+                L r[3], force[3] = {in[0][u], in[1][u], in[2][u]}, moment[3] = {none, none, none};
+                for (int i = 0; i < 3; i++) {
+                    r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
+                    moment[i] = has_moment ? in[3 + i][u] : none;
+                }
+                NAME(audit)(has_moment, place, r, rate, w, force, moment, add, top);
+            }
+        }
+    }
+    for (int i = 0; i < 9; i++) {
+        z[i] = NAME(total)(Z[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *a = m->turn + 3 * ((i + 1) % 3), *b = m->turn + 3 * ((i + 2) % 3);
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        load[i] = NAME(total)(total[i]);
+        load[3 + i] = a[0] * z[k] + a[1] * z[3 + k] + a[2] * z[6 + k] - b[0] * z[j] - b[1] * z[3 + j] - b[2] * z[6 + j];
+        load[3 + i] += has_moment ? NAME(total)(total[3 + i]) : 0;
+    }
+    for (int i = 0; i < 6; i++) {
+        spari_add(modal + (ptrdiff_t)2 * i, load[i]);
+    }
+    if (audited) {
+        NAME(add_audit)(add, top, sums, tops);
+    }
+}
+
 SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                                  const int has_moment, double (*f)[SPARI_ROW], int at, const int audited, double *modal,
                                  double *sums, double *tops) {
     static const double huge = HUGE_VAL, zero = 0;
     double t[SPARI_MAX_NODES][SPARI_ROW], g[4][SPARI_ROW];
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
-    const double *loads[6] = {f[0], f[1], f[2], f[3], f[4], f[5]};
     const int modes = s->per_element, rows = has_moment ? 6 : 3;
     L least = SPLAT(&huge), in[10][2], add[9], top[3];
     for (int i = 0; i < 9; i++) {
@@ -438,16 +608,7 @@ SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count,
     top[0] = top[1] = top[2] = SPLAT(&zero);
     for (int i = 0; i < count; i += PAIR) {
         NAME(fetch)(from, 4, first + i, count - i, in);
-        NAME(fetch)(loads, rows, at + i, count - i, in + 4);
-        if (count - i < PAIR) { /* the repeated lanes carry nothing */
-            double keep[PAIR];
-            for (int j = 0; j < PAIR; j++) {
-                keep[j] = j < count - i;
-            }
-            for (int j = 4; j < 4 + rows; j++) {
-                in[j][0] *= NAME(get)(keep), in[j][1] *= NAME(get)(keep + W);
-            }
-        }
+        NAME(fetch_loads)(f, rows, at + i, count - i, in + 4);
         least = NAME(less)(
             least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in, t[0] + i, g, i, add, top));
     }
@@ -458,13 +619,7 @@ SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count,
     }
     NAME(project)(consistent ? 7 : 6, modes, count, t, f, g, at, modal);
     if (audited) {
-        for (int i = 0; i < 9; i++) {
-            spari_add(sums + 2 * i, NAME(total)(add[i]));
-        }
-        for (int i = 0; i < 3; i++) {
-            double m = NAME(least)(top[i]);
-            tops[i] = m < tops[i] ? m : tops[i];
-        }
+        NAME(add_audit)(add, top, sums, tops);
     }
     return NAME(least)(least);
 }
@@ -472,16 +627,46 @@ SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count,
 TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
                                  int has_moment, double (*f)[SPARI_ROW], int at, int audited, double *modal,
                                  double *sums, double *tops) {
-    switch (2 * !!audited + !!consistent) {
-    case 0:
-        return NAME(gather)(s, first, count, c, 0, has_moment, f, at, 0, modal, sums, tops);
-    case 1:
-        return NAME(gather)(s, first, count, c, 1, has_moment, f, at, 0, modal, sums, tops);
-    case 2:
-        return NAME(gather)(s, first, count, c, 0, has_moment, f, at, 1, modal, sums, tops);
-    default:
-        return NAME(gather)(s, first, count, c, 1, has_moment, f, at, 1, modal, sums, tops);
+#define GATHER(consistent, moment, audited)                                                                            \
+    NAME(gather)(s, first, count, c, consistent, moment, f, at, audited, modal, sums, tops)
+#define CARRY(moment, audited) NAME(load_carrier)(s, first, count, &m, moment, f, audited, modal, sums, tops)
+    if (s->per_element == 1) {
+        const carrier m = carrier_of(c);
+        switch (2 * !!has_moment + !!audited) {
+        case 0:
+            CARRY(0, 0);
+            break;
+        case 1:
+            CARRY(0, 1);
+            break;
+        case 2:
+            CARRY(1, 0);
+            break;
+        default:
+            CARRY(1, 1);
+        }
+        return m.square;
     }
+    switch (4 * !!has_moment + 2 * !!audited + !!consistent) {
+    case 0:
+        return GATHER(0, 0, 0);
+    case 1:
+        return GATHER(1, 0, 0);
+    case 2:
+        return GATHER(0, 0, 1);
+    case 3:
+        return GATHER(1, 0, 1);
+    case 4:
+        return GATHER(0, 1, 0);
+    case 5:
+        return GATHER(1, 1, 0);
+    case 6:
+        return GATHER(0, 1, 1);
+    default:
+        return GATHER(1, 1, 1);
+    }
+#undef GATHER
+#undef CARRY
 }
 
 #undef L

@@ -12,14 +12,15 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
     return SPAR_OK;
 }
 
-/* Node motion between the two times on the group R^3 x SO(3): the chord of places, the geodesic of rotations. */
-static void blend_motion(const spar_fluid *fluid, double theta) {
-    const spari_motion *now = &fluid->member->now, *after = &fluid->member->after;
-    for (int64_t l = 0; l < fluid->member->nodes; l++) {
-        const double *q0 = now->q + 7 * l, *q1 = after->q + 7 * l;
-        double *q = fluid->blend[0] + 7 * l, back[4], turn[4], psi[3];
+/* Node motion between the two times on the group R^3 x SO(3), of the nodes of one element: the chord of places, the
+   geodesic of rotations. */
+static void blend_motion(const spar_member *m, int64_t first, double theta, double (*q)[7], double (*v)[6],
+                         double (*a)[6]) {
+    const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first;
+    for (int l = 0; l < m->per_element; l++, q0 += 7, q1 += 7) {
+        double back[4], turn[4], psi[3];
         for (int i = 0; i < 3; i++) {
-            q[i] = (1 - theta) * q0[i] + theta * q1[i];
+            q[l][i] = (1 - theta) * q0[i] + theta * q1[i];
         }
         spari_quat_conj(q0 + 3, back);
         spari_quat_mul(back, q1 + 3, turn);
@@ -28,31 +29,65 @@ static void blend_motion(const spar_fluid *fluid, double theta) {
             psi[i] *= theta;
         }
         spari_quat_exp(psi, turn);
-        spari_quat_mul(q0 + 3, turn, q + 3);
-        spari_quat_normalise(q + 3);
-        for (int64_t i = 6 * l; i < 6 * l + 6; i++) {
-            fluid->blend[1][i] = (1 - theta) * now->v[i] + theta * after->v[i];
-            fluid->blend[2][i] = (1 - theta) * now->a[i] + theta * after->a[i];
+        spari_quat_mul(q0 + 3, turn, q[l] + 3);
+        spari_quat_normalise(q[l] + 3);
+        for (int i = 0; i < 6; i++) {
+            int64_t k = 6 * (first + l) + i;
+            v[l][i] = (1 - theta) * m->now.v[k] + theta * m->after.v[k];
+            a[l][i] = (1 - theta) * m->now.a[k] + theta * m->after.a[k];
         }
     }
+}
+
+static void fill_blended(const spar_fluid *fluid, double theta, int upto) {
+    const spar_member *m = fluid->member;
+    double q[SPARI_MAX_NODES][7], v[SPARI_MAX_NODES][6], a[SPARI_MAX_NODES][6];
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * m->per_element;
+        blend_motion(m, first, theta, q, v, a);
+        spari_field_fill(1, m->per_element, fluid->modal, fluid->consistent, upto, m->xr + 3 * first, q[0], v[0], a[0],
+                         fluid->field[0] + first * SPARI_FIELDS);
+    }
+}
+
+static void fill_one(const spar_fluid *fluid, const spari_motion *at, int upto, double *field) {
+    const spar_member *m = fluid->member;
+    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, at->q, at->v, at->a,
+                     field);
+}
+
+static int is_between(double theta) {
+    return theta > 0 && theta < 1;
 }
 
 /* Coefficients of the one or two states that make up time theta, and their shares. Returns their number. */
 static int fill_states(const spar_fluid *fluid, double theta, int upto, double share[2]) {
     const spar_member *m = fluid->member;
-    spari_motion blended = {fluid->blend[0], fluid->blend[1], fluid->blend[2]};
-    const spari_motion *state[2] = {theta == 0 ? &m->now : &m->after, &m->now};
-    int n = theta > 0 && theta < 1 ? 2 : 1;
-    share[0] = n == 2 ? theta : 1, share[1] = 1 - theta;
-    if (n == 2 && m->session->theta_on_group) {
-        blend_motion(fluid, theta);
-        state[0] = &blended, share[0] = 1, n = 1;
+    share[0] = 1, share[1] = 0;
+    if (!is_between(theta)) {
+        fill_one(fluid, theta == 0 ? &m->now : &m->after, upto, fluid->field[0]);
+        return 1;
     }
-    for (int i = 0; i < n; i++) {
-        spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, state[i]->q,
-                         state[i]->v, state[i]->a, fluid->field[i]);
+    if (m->session->theta_on_group) {
+        fill_blended(fluid, theta, upto);
+        return 1;
     }
-    return n;
+    share[0] = theta, share[1] = 1 - theta;
+    fill_one(fluid, &m->after, upto, fluid->field[0]);
+    fill_one(fluid, &m->now, upto, fluid->field[1]);
+    return 2;
+}
+
+/* The first average of two states takes the memory for the second. */
+static int need_states(spar_fluid *fluid, double theta, const char *caller) {
+    const spar_member *m = fluid->member;
+    if (fluid->field[1] || !fluid->field[0] || !is_between(theta) || m->session->theta_on_group) {
+        return SPAR_OK;
+    }
+    fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS, sizeof *fluid->field[1]);
+    return fluid->field[1]
+               ? SPAR_OK
+               : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for a pull between two times");
 }
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {
@@ -83,11 +118,13 @@ static int is_wanted(sink s) {
     return s.d || s.f;
 }
 
-static int upto_of(const wanted *w) {
-    if (is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->accel) || is_wanted(w->alpha)) {
-        return SPARI_UPTO_ACCEL;
+/* As the kernels are asked. */
+static int what_of(const wanted *w) {
+    int poses = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) ? SPARI_POSES : 0;
+    if (is_wanted(w->accel) || is_wanted(w->alpha)) {
+        return SPARI_UPTO_ACCEL | SPARI_POSES;
     }
-    return is_wanted(w->v) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE;
+    return poses | (is_wanted(w->v) || is_wanted(w->omega) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE);
 }
 
 /* The tiles of the one or two states that make up a time. */
@@ -142,7 +179,7 @@ static void orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t p
             q[0][c] = t->share[0] * q[0][c] + sign * t->share[1] * q[1][c];
         }
     }
-    spari_fluid_reference(fluid, spari_nodes_element(s, p), s->xi[p], x, reference);
+    spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, reference);
     spari_quat_mul(q[0], reference, now);
     spari_quat_normalise(now);
     double sign = now[0] < 0 ? -1 : 1;
@@ -165,15 +202,17 @@ static void matrix_of(const double q[4], int convention, double m[9]) {
 static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int64_t first, const states *t,
                               const wanted *w) {
     int count = is_wanted(w->q) || is_wanted(w->matrix) ? spari_tile_count(s, first) : 0;
+    double q[4], m[9];
     for (int i = 0; i < count; i++) {
-        double q[4], m[9];
         int64_t node = spari_nodes_node(s, first + i);
-        orientation(fluid, s, first + i, i, t, q);
-        put(w->q, node, 4, q);
-        if (is_wanted(w->matrix)) {
-            matrix_of(q, w->convention, m);
-            put(w->matrix, node, 9, m);
+        if (i == 0 || s->per_element > 1) { /* else all turn with the one node */
+            orientation(fluid, s, first + i, i, t, q);
+            if (is_wanted(w->matrix)) {
+                matrix_of(q, w->convention, m);
+            }
         }
+        put(w->q, node, 4, q);
+        put(w->matrix, node, 9, m);
     }
 }
 
@@ -182,16 +221,16 @@ static int pull(const spar_fluid *fluid, int which, double theta, const wanted *
     double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], least = HUGE_VAL;
     states t = {.buf = {a, b}};
     const spari_nodes *s;
-    int upto = upto_of(w);
+    int what = what_of(w);
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
     SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &s));
     if (!s || s->n == 0) {
         return SPAR_OK;
     }
-    t.n = fill_states(fluid, theta, upto, t.share);
+    t.n = fill_states(fluid, theta, what & SPARI_UPTO, t.share);
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
         for (int i = 0; i < t.n; i++) {
-            least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, upto, t.buf[i]));
+            least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, what, t.buf[i]));
         }
         emit(s, first, &t, SPARI_R_PLACE, w->x);
         emit(s, first, &t, SPARI_R_RATE, w->v);
@@ -203,35 +242,41 @@ static int pull(const spar_fluid *fluid, int which, double theta, const wanted *
     return spari_fluid_check_rotation(fluid, least, caller);
 }
 
+/* The host's pulls are of the motion nodes. */
+static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
+    SPARI_TRY(need_states(fluid, theta, caller));
+    return pull(fluid, SPAR_NODES_MOTION, theta, w, caller);
+}
+
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .v.d = v};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v) {
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.f = x, .v.f = v};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.d = q, .omega.d = omega, .accel.d = accel};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.f = q, .omega.f = omega, .accel.f = accel};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
                           double *accel, double *alpha) {
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .q.d = q, .v.d = v, .omega.d = omega, .accel.d = accel, .alpha.d = alpha};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
@@ -248,7 +293,7 @@ int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, do
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     wanted w = {.matrix.d = matrix, .convention = convention};
-    return pull(fluid, SPAR_NODES_MOTION, theta, &w, __func__);
+    return pull_motion(fluid, theta, &w, __func__);
 }
 
 /* Largest entry of a - b, b transposed on demand. */
@@ -324,5 +369,5 @@ int spari_fluid_has_sections(const spar_fluid *fluid) {
 }
 
 const double *spari_fluid_forces(const spar_fluid *fluid) {
-    return fluid->history->on ? fluid->history->after : NULL;
+    return fluid->history ? fluid->history->after : NULL;
 }

@@ -9,7 +9,7 @@
 
 /* Node forces are kept from now on, if they can still be kept from the beginning. */
 static int start_history(spar_fluid *fluid, int64_t n, const char *caller) {
-    if (fluid->history->on) {
+    if (fluid->history) {
         return SPAR_OK;
     }
     if (fluid->pushes > 0) {
@@ -55,7 +55,7 @@ int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
 }
 
 static void keep_forces(spari_history *h, spari_source force, int before_start) {
-    if (!h->on || h->n == 0) {
+    if (!h || h->n == 0) {
         return;
     }
     for (int64_t i = 0; i < 3 * h->n; i++) {
@@ -189,23 +189,30 @@ int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const floa
     return push_forces(fluid, f, m, __func__);
 }
 
-/* Room for the means of n nodes, zeros. */
-static int prepare_mean(spar_fluid *fluid, int64_t n, const char *caller) {
-    if (fluid->mean && fluid->mean_count == n) {
+/* Room for the means of n forces (which 0) or moments (1), zeros. */
+static int prepare_mean(spar_fluid *fluid, int which, int64_t n, const char *caller) {
+    if (fluid->mean[which] && fluid->mean_count[which] == n) {
         return SPAR_OK;
     }
-    double *mean = spari_zalloc(6 * n, sizeof *mean), *next = spari_zalloc(6 * n, sizeof *next);
+    double *mean = spari_zalloc(3 * n, sizeof *mean), *next = spari_zalloc(3 * n, sizeof *next);
     if (!mean || !next) {
         free(mean);
         free(next);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the mean of its loads");
     }
-    free(fluid->mean);
-    free(fluid->mean_next);
-    fluid->mean = mean, fluid->mean_next = next;
-    fluid->mean_count = n;
-    fluid->mean_theta = 0;
+    free(fluid->mean[which]);
+    free(fluid->mean_next[which]);
+    fluid->mean[which] = mean, fluid->mean_next[which] = next;
+    fluid->mean_count[which] = n;
     return SPAR_OK;
+}
+
+/* The mean of n numbers with a new part in it: mean NULL, from NULL: zeros. */
+static void average(int64_t n, const double *mean, const double *from, double share, double *next) {
+    for (int64_t i = 0; i < n; i++) {
+        double m = mean ? mean[i] : 0;
+        next[i] = m + share * ((from ? from[i] : 0) - m);
+    }
 }
 
 int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment) {
@@ -219,22 +226,28 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     if (!s) {
         return SPAR_OK;
     }
-    int64_t n = 3 * s->n;
-    SPARI_FLUID_REQUIRE(fluid, n == 0 || force, SPAR_ERR_ARGUMENT,
+    SPARI_FLUID_REQUIRE(fluid, s->n == 0 || force, SPAR_ERR_ARGUMENT,
                         "the force array is NULL though there are force nodes");
-    SPARI_TRY(prepare_mean(fluid, s->n, __func__));
+    int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
+    if (fluid->mean_count[0] != s->n) {
+        fluid->mean_theta = 0; /* other nodes than the mean is of */
+    }
+    SPARI_TRY(prepare_mean(fluid, 0, s->n, __func__));
     double last = theta > fluid->mean_theta ? fluid->mean_theta : 0; /* else the fluid goes through the step again */
     double share = (theta - last) / theta;
-    int with_moment = moment || (last > 0 && fluid->mean_moment);
-    for (int64_t i = 0; i < n; i++) {
-        double f = last > 0 ? fluid->mean[i] : 0, m = last > 0 ? fluid->mean[n + i] : 0;
-        fluid->mean_next[i] = f + share * (force[i] - f);
-        fluid->mean_next[n + i] = m + share * ((moment ? moment[i] : 0) - m);
+    int had_moment = last > 0 && fluid->mean_moment, with_moment = had_moment || (moments && moment);
+    average(3 * s->n, last > 0 ? fluid->mean[0] : NULL, force, share, fluid->mean_next[0]);
+    if (with_moment) {
+        SPARI_TRY(prepare_mean(fluid, 1, s->n, __func__));
+        average(3 * s->n, had_moment ? fluid->mean[1] : NULL, moment, share, fluid->mean_next[1]);
     }
-    const spari_source means = {.d = fluid->mean_next}, moments = {.d = with_moment ? fluid->mean_next + n : NULL};
-    SPARI_TRY(push_forces(fluid, means, moments, __func__));
-    double *old = fluid->mean;
-    fluid->mean = fluid->mean_next, fluid->mean_next = old;
+    const spari_source means = {.d = fluid->mean_next[0]},
+                       mean_moments = {.d = with_moment ? fluid->mean_next[1] : NULL};
+    SPARI_TRY(push_forces(fluid, means, mean_moments, __func__));
+    for (int k = 0; k < 2; k++) {
+        double *old = fluid->mean[k];
+        fluid->mean[k] = fluid->mean_next[k], fluid->mean_next[k] = old;
+    }
     fluid->mean_theta = theta;
     fluid->mean_moment = with_moment;
     return SPAR_OK;
@@ -260,10 +273,10 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     double w[3];
     fluid->refused = SPAR_OK;
     fluid->mean_theta = 0;
-    h->pushed = 0;
-    if (!h->on) {
+    if (!h) {
         return;
     }
+    h->pushed = 0;
     spari_predictor(order, dt, dt_last, w);
     for (int64_t i = 0; i < 3 * h->n; i++) {
         h->after[i] = w[0] * h->past[0][i];
@@ -280,7 +293,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
-    if (!h->on || h->n == 0) {
+    if (!h || h->n == 0) {
         return;
     }
     size_t size = sizeof *h->after * 3 * (size_t)h->n;
@@ -299,8 +312,10 @@ void spari_fluid_reject(spar_fluid *fluid) {
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
-    if (h->on && h->n > 0) {
+    if (h) {
+        h->pushed = 0;
+    }
+    if (h && h->n > 0) {
         memcpy(h->after, h->past[0], sizeof *h->after * 3 * (size_t)h->n);
     }
-    h->pushed = 0;
 }

@@ -17,8 +17,8 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     const spari_history *h = fluid->history;
     head[S_NODES] = s ? (double)s->n : 0;
-    head[S_KEPT] = h->on && s;
-    head[S_PUSHED] = h->pushed;
+    head[S_KEPT] = h && s;
+    head[S_PUSHED] = h && h->pushed;
     head[S_PUSHES] = (double)fluid->pushes;
     head[S_MAPPED] = fluid->load != NULL;
     memcpy(head + S_AUDIT, fluid->audit, sizeof fluid->audit);
@@ -104,10 +104,10 @@ static const double **find_nodes(const spar_fluid *fluid, int count, const doubl
     return found;
 }
 
-/* Node forces from the states: to find, or to copy. */
-static int take_forces(spar_fluid *fluid, int count, const double *const *states, int copy) {
+/* Node forces from the states: to find (h NULL), or to copy. */
+static int take_forces(const spar_fluid *fluid, int count, const double *const *states, spari_history *h) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
-    spari_history *h = fluid->history;
+    int copy = h != NULL;
     double *places = spari_fluid_places(fluid, s);
     const double **found = places ? find_nodes(fluid, count, states, places, s->n) : NULL;
     int64_t missing = found ? -1 : s->n;
@@ -118,10 +118,10 @@ static int take_forces(spar_fluid *fluid, int count, const double *const *states
             const double *x = state_places(fluid, states[k]);
             n = found[i] >= x && found[i] < x + 3 * (int64_t)states[k][S_NODES] ? (int64_t)states[k][S_NODES] : n;
         }
-        double *to[] = {h->after, h->past[0], h->past[1], h->past[2]};
         for (int k = 0; k < 4 && copy; k++) {
+            double *to = k == 0 ? h->after : h->past[k - 1];
             /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker) */
-            memcpy(to[k] + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof **to);
+            memcpy(to + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof *to);
         }
     }
     int ok = found != NULL;
@@ -141,7 +141,9 @@ static int take_forces(spar_fluid *fluid, int count, const double *const *states
 int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states) {
     const char *call = "spar_session_load";
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
-    int kept = 0, mapped_then = 0, on = fluid->history->on;
+    int kept = 0, mapped_then = 0, on = fluid->history != NULL;
+    spari_history_free(fluid->history_next); /* of a load that another rank could not do */
+    fluid->history_next = NULL;
     for (int k = 0; k < count; k++) {
         kept |= states[k][S_KEPT] != 0;
         mapped_then |= states[k][S_MAPPED] != 0;
@@ -159,12 +161,12 @@ int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states)
     if (!kept || !s) {
         return SPAR_OK;
     }
-    SPARI_TRY(take_forces(fluid, count, states, 0));
-    if (!on || fluid->history->n != s->n) {
-        if (spari_fluid_renew_history(fluid, s->n) != SPAR_OK) {
+    SPARI_TRY(take_forces(fluid, count, states, NULL));
+    if (!on || fluid->history->n != s->n) { /* not in use before all ranks can load */
+        fluid->history_next = spari_history_create(s->n);
+        if (!fluid->history_next) {
             return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for the node forces");
         }
-        fluid->history->on = on; /* not before all ranks can load */
     }
     return SPAR_OK;
 }
@@ -176,7 +178,14 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
     fluid->pushes = 0;
     fluid->refused = SPAR_OK;
     fluid->mean_theta = 0;
-    fluid->history->pushed = 0;
+    if (fluid->history_next) {
+        spari_history_free(fluid->history);
+        fluid->history = fluid->history_next, fluid->history_next = NULL;
+    }
+    spari_history *h = fluid->history;
+    if (h) {
+        h->pushed = 0;
+    }
     if (fluid->load) {
         memset(fluid->load, 0, loads * sizeof *fluid->load);
         memset(fluid->load_accepted, 0, loads * sizeof *fluid->load);
@@ -184,7 +193,9 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
     for (int k = 0; k < count; k++) {
         const double *load = states[k] + S_HEAD;
         fluid->pushes += (int64_t)states[k][S_PUSHES];
-        fluid->history->pushed |= states[k][S_PUSHED] != 0;
+        if (h) {
+            h->pushed |= states[k][S_PUSHED] != 0;
+        }
         kept |= states[k][S_KEPT] != 0;
         memcpy(fluid->audit, states[k] + S_AUDIT, sizeof fluid->audit);
         int gives = takes_loads && states[k][S_MAPPED] != 0;
@@ -195,7 +206,6 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
         taken |= gives;
     }
     if (kept && s) {
-        fluid->history->on = 1;
-        (void)take_forces(fluid, count, states, 1); /* what can be missing was looked for before */
+        (void)take_forces(fluid, count, states, h); /* what can be missing was looked for before */
     }
 }

@@ -19,7 +19,7 @@ typedef struct spari_node_set {
 
 /* Node forces over time, for hosts that want them back between the steps (SPAR_EFFECT_FLUID_HISTORY). */
 typedef struct spari_history {
-    int on, pushed; /* pushed: a push came in the step under way */
+    int pushed; /* a push came in the step under way */
     int64_t n;
     double *after;   /* [n][3] at t^{n+1}: predicted, then pushed */
     double *past[3]; /* at t^n, t^{n-1}, t^{n-2} */
@@ -37,20 +37,19 @@ struct spar_fluid {
     int refused; /* status of the last push of this step */
 
     /* allocated by the map */
-    double *modal;                           /* [P][P] */
-    double *field[2];                        /* coefficients of two states [nodes][SPARI_FIELDS] */
-    double *reference;                       /* of the reference configuration */
-    double *blend[3];                        /* node motion at theta */
-    double *work;                            /* [nodes][14] */
+    double *modal;     /* [P][P] */
+    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on */
+    double *reference; /* of the reference configuration */
+    double *work;      /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     double audit[8];
-    /* several pushes within a step: mean force and moment [2][n][3] over [t^n, t^n + theta dt], and room for the next
-     */
-    double *mean, *mean_next;
-    int64_t mean_count; /* n of these */
-    int mean_moment;    /* a moment was given */
-    double mean_theta;  /* 0: none pushed yet in this step */
-    spari_history *history;
+    /* several pushes within a step: mean force and moment [n][3] over [t^n, t^n + theta dt], and room for the next;
+       moments from the first one given on */
+    double *mean[2], *mean_next[2];
+    int64_t mean_count[2];                 /* n of these */
+    int mean_moment;                       /* the mean has a moment */
+    double mean_theta;                     /* 0: none pushed yet in this step */
+    spari_history *history, *history_next; /* NULL: not kept; next: of a file being loaded */
 };
 
 /* Message with the caller, the fluid and its member in front; gives back status. */
@@ -82,8 +81,10 @@ int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
+/* Node forces for n nodes, zeros; NULL: no memory. */
+spari_history *spari_history_create(int64_t n);
+void spari_history_free(spari_history *history);
 /* Keeps node forces for n nodes from now on, beginning with zeros. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);
-void spari_fluid_clear_history(spari_history *history);
 
 #endif

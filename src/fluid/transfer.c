@@ -21,6 +21,28 @@ static inline void spari_add(double *s, double x) {
     s[1] += (a - (t - b)) + (x - b);
 }
 
+/* How the one node of a point or rigid body moves what is tied to it: place + R arm. */
+typedef struct carrier {
+    double place[3], rate[3], q[4], turn[9], omega[3], accel[3], alpha[3];
+    double square; /* |q|^2 */
+} carrier;
+
+static carrier carrier_of(const double *c) {
+    carrier m;
+    double unit[4];
+    memcpy(m.place, c + SPARI_F_PLACE, sizeof m.place);
+    memcpy(m.rate, c + SPARI_F_RATE, sizeof m.rate);
+    memcpy(m.q, c + SPARI_F_QUAT, sizeof m.q);
+    memcpy(m.omega, c + SPARI_F_SPIN, sizeof m.omega);
+    memcpy(m.accel, c + SPARI_F_ACCEL, sizeof m.accel);
+    memcpy(m.alpha, c + SPARI_F_TWIST, sizeof m.alpha);
+    memcpy(unit, m.q, sizeof unit);
+    m.square = spari_quat_dot(unit, unit);
+    spari_quat_normalise(unit);
+    spari_quat_matrix(unit, m.turn);
+    return m;
+}
+
 /* Two lanes are in every processor that has lanes at all; more are asked for at run time. SPARI_PLAIN_LANES (1, 2, 4,
    8) builds the portable kernel alone at a width of choice, so that every width can be tried on any processor. */
 #if defined(SPARI_PLAIN_LANES)
@@ -78,7 +100,7 @@ static inline void spari_add(double *s, double x) {
 
 /* The kernels of one instruction set. */
 typedef struct kernels {
-    double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int upto,
+    double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int what,
                      double (*buf)[SPARI_ROW], int at);
     double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
                     double (*f)[SPARI_ROW], int at, int audited, double *modal, double *sums, double *tops);
@@ -108,12 +130,15 @@ spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element) {
         return NULL;
     }
     s->n = n, s->elements = elements, s->per_element = per_element;
-    s->xi = spari_zalloc(n, sizeof *s->xi);
     s->flags = spari_zalloc(n, sizeof *s->flags);
     for (int i = 0; i < 3; i++) {
         s->con[i] = spari_zalloc(n, sizeof *s->con[i]);
     }
-    int whole = s->xi && s->flags && s->con[0] && s->con[1] && s->con[2];
+    int whole = s->flags && s->con[0] && s->con[1] && s->con[2];
+    if (per_element > 1) {
+        s->xi = spari_zalloc(n, sizeof *s->xi);
+        whole = whole && s->xi;
+    }
     if (elements > 1) {
         s->element = spari_zalloc(n, sizeof *s->element);
         s->place = spari_zalloc(n, sizeof *s->place);
@@ -157,7 +182,9 @@ void spari_nodes_put(spari_nodes *s, const int *element, const double *xi, const
     }
     for (int64_t p = 0; p < s->n; p++) {
         int64_t node = spari_nodes_node(s, p);
-        s->xi[p] = xi[node];
+        if (s->xi) {
+            s->xi[p] = xi[node];
+        }
         for (int i = 0; i < 3; i++) {
             s->con[i][p] = con[3 * node + i];
         }
@@ -212,20 +239,20 @@ void spari_chain(int n, const double *q, int stride, double *out) {
 /* Fields of one node: what is interpolated. */
 static void node_fields(const double *xr, const double *q, const double *v, const double *a, const double chained[4],
                         int consistent, int upto, double g[SPARI_FIELDS]) {
-    memset(g, 0, sizeof *g * SPARI_FIELDS);
     for (int i = 0; i < 3; i++) {
         g[SPARI_F_PLACE + i] = xr[i] + q[i];
+        g[SPARI_F_RATE + i] = upto < SPARI_UPTO_RATE ? 0 : v[i];
     }
     memcpy(g + SPARI_F_QUAT, chained, 4 * sizeof *g);
     if (upto < SPARI_UPTO_RATE) {
         return;
     }
-    memcpy(g + SPARI_F_RATE, v, 3 * sizeof *g);
     double spin[4] = {0, v[3], v[4], v[5]};
     if (consistent) {
         spari_quat_mul(spin, chained, g + SPARI_F_SPIN);
     } else {
         memcpy(g + SPARI_F_SPIN, v + 3, 3 * sizeof *g);
+        g[SPARI_F_SPIN + 3] = 0;
     }
     if (upto < SPARI_UPTO_ACCEL) {
         return;
@@ -236,6 +263,7 @@ static void node_fields(const double *xr, const double *q, const double *v, cons
         spari_quat_mul(twist, chained, g + SPARI_F_TWIST);
     } else {
         memcpy(g + SPARI_F_TWIST, a + 3, 3 * sizeof *g);
+        g[SPARI_F_TWIST + 3] = 0;
     }
 }
 
@@ -244,10 +272,13 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
     static const int width[] = {SPARI_F_SPIN, SPARI_F_ACCEL, SPARI_FIELDS};
     double chained[4 * SPARI_MAX_NODES], g[SPARI_FIELDS];
     ptrdiff_t block = (ptrdiff_t)per_element * SPARI_FIELDS;
+    consistent = consistent && per_element > 1; /* with one node both kinds are the same */
     for (int e = 0; e < elements; e++) {
         ptrdiff_t node = (ptrdiff_t)e * per_element;
         double *to = c + e * block;
-        memset(to, 0, sizeof *to * (size_t)block);
+        for (int k = 0; k < per_element; k++) {
+            memset(to + (ptrdiff_t)k * SPARI_FIELDS, 0, sizeof *to * (size_t)width[upto]);
+        }
         spari_chain(per_element, q + 7 * node + 3, 7, chained);
         for (int l = 0; l < per_element; l++, node++) {
             node_fields(xr + 3 * node, q + 7 * node, v + 6 * node, a + 6 * node, chained + 4 * l, consistent, upto, g);
@@ -275,7 +306,7 @@ static int run_length(const spari_nodes *s, int64_t p, int count) {
     return i;
 }
 
-double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, int consistent, int upto,
+double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, int consistent, int what,
                          double (*buf)[SPARI_ROW]) {
     const kernels kernel = choose_kernels(s);
     double least = HUGE_VAL;
@@ -283,7 +314,7 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
     ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
     for (int at = 0; at < count;) {
         int run = run_length(s, first + at, count - at);
-        double d = kernel.motion(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, upto,
+        double d = kernel.motion(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, what,
                                  buf, at);
         least = d < least ? d : least;
         at += run;
@@ -336,6 +367,7 @@ void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPA
 static void spread(int elements, int per_element, const double *modal, int consistent, const double *q,
                    const double *work, double *load) {
     double chained[4 * SPARI_MAX_NODES], back[4], g[7], m[4];
+    consistent = consistent && per_element > 1;
     for (int e = 0; e < elements; e++) {
         ptrdiff_t node = (ptrdiff_t)e * per_element;
         const double *sums = work + node * 14;

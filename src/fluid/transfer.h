@@ -3,7 +3,8 @@
 
    Nodal fields are turned once per call into Chebyshev coefficients per element (spari_field_fill), so that a node
    stores its coordinate and its arm and nothing else; the sum over T_k is as well conditioned as the Lagrange sum, for
-   any number of nodes (monomials are not). Loads go the other way through the transposed sums. */
+   any number of nodes (monomials are not). Loads go the other way through the transposed sums. A point or rigid body is
+   one element of one node: there is no sum, and a node stores its arm. */
 #ifndef SPARI_TRANSFER_H
 #define SPARI_TRANSFER_H
 
@@ -18,7 +19,7 @@ enum { SPARI_TILE = 256, SPARI_LANES_MAX = 16, /* two vectors of eight */ SPARI_
 typedef struct spari_nodes {
     int64_t n;
     int elements, per_element;
-    double *xi;      /* [n] coordinate within the element, in storage order */
+    double *xi;      /* [n] coordinate within the element, in storage order; NULL with one node per element */
     double *con[3];  /* [n] each: from the reference foot to the node, global axes */
     int *element;    /* [n]; NULL when there is only one */
     uint16_t *place; /* [n] storage place -> node within its tile; NULL: as they come */
@@ -36,7 +37,9 @@ enum {
     SPARI_F_TWIST = 17, /* nodal: alpha (3); consistent: alpha q - |omega|^2 q / 2 (4) */
     SPARI_FIELDS = 21
 };
-enum { SPARI_UPTO_PLACE, SPARI_UPTO_RATE, SPARI_UPTO_ACCEL };
+/* What of the motion is wanted: places; velocities too; accelerations too, which come with the poses. Poses (rotations,
+   and with velocities the angular ones) or-ed to it. */
+enum { SPARI_UPTO_PLACE, SPARI_UPTO_RATE, SPARI_UPTO_ACCEL, SPARI_UPTO, SPARI_POSES };
 
 /* What a kernel gives for a tile: rows of SPARI_ROW doubles. */
 enum {
@@ -78,6 +81,9 @@ static inline int spari_tile_count(const spari_nodes *s, int64_t first) {
 static inline int spari_nodes_element(const spari_nodes *s, int64_t p) {
     return s->element ? s->element[p] : 0;
 }
+static inline double spari_nodes_xi(const spari_nodes *s, int64_t p) {
+    return s->xi ? s->xi[p] : 0;
+}
 
 /* c_k = sum_l m[k][l] f_l: nodal values at the GLL points to Chebyshev coefficients. */
 void spari_modal_matrix(int n, double *m);
@@ -91,9 +97,9 @@ void spari_chain(int n, const double *q, int stride, double *out);
 void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
                       const double *q, const double *v, const double *a, double *c);
 
-/* One tile, beginning at node `first`: rows of buf filled as far as `upto`. Returns the least |Q|^2 met (0: no rotation
-   can be interpolated there). Rows are in storage order. */
-double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *c, int consistent, int upto,
+/* One tile, beginning at node `first`: the rows of buf that `what` (SPARI_UPTO_*, SPARI_POSES) asks for; c must be
+   filled as far. Returns the least |Q|^2 met (0: no rotation can be interpolated there). Rows are in storage order. */
+double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *c, int consistent, int what,
                          double (*buf)[SPARI_ROW]);
 
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
