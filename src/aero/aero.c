@@ -11,18 +11,20 @@ struct spar_aero {
     int blades;            /* on this rank */
     int64_t n;             /* sections per blade */
     spar_fluid **fluid;
-    spari_rotor rotor;
+    spari_rotor rotor, first; /* first: as it was described first */
     int rotor_given, effects_given, solved;
-    spari_section *section;  /* [n] */
-    gsl_interp_accel *accel; /* [blades][n] */
-    gsl_root_fsolver *solver;
-    double *place;       /* reference places [blades][n][3] */
-    double *length;      /* [blades][n - 1] */
-    double *loss_radius; /* [blades][n] */
-    double *x, *v, *q, *omega;
+    spari_section *section;   /* [n] */
+    gsl_interp_accel *accel;  /* [blades][n] */
+    gsl_root_fsolver *solver; /* NULL: no induction so far */
+    double *place;            /* reference places [blades][n][3] */
+    double *length;           /* [blades][n - 1] */
+    double *loss_radius;      /* [blades][n], of the first rotor; NULL: no loss asked for so far */
+    double *x, *v, *q;
+    double *omega;          /* NULL: no rotor */
     spari_element *element; /* [blades][n] */
-    double *force, *moment;
-    double thrust, torque, speed;
+    double *force, *moment; /* moment: NULL before there is one to push */
+    spari_rotor used;       /* in the last solve; rotor_used: it was given then */
+    int rotor_used;
 };
 
 /* What a solve without momentum theory of its own asking has. */
@@ -63,11 +65,9 @@ static int allocate(spar_aero *aero) {
     aero->section = spari_zalloc(aero->n, sizeof *aero->section);
     aero->accel = spari_zalloc(all, sizeof *aero->accel);
     aero->element = spari_zalloc(all, sizeof *aero->element);
-    aero->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-    double **array[] = {&aero->place, &aero->length, &aero->loss_radius, &aero->x,     &aero->v,
-                        &aero->q,     &aero->omega,  &aero->force,       &aero->moment};
-    static const int width[] = {3, 1, 1, 3, 3, 4, 3, 3, 3};
-    int whole = aero->fluid && aero->section && aero->accel && aero->element && aero->solver;
+    double **array[] = {&aero->place, &aero->length, &aero->x, &aero->v, &aero->q, &aero->force};
+    static const int width[] = {3, 1, 3, 3, 4, 3};
+    int whole = aero->fluid && aero->section && aero->accel && aero->element;
     for (size_t i = 0; i < sizeof array / sizeof array[0]; i++) {
         *array[i] = spari_zalloc(width[i] * all, sizeof(double));
         whole = whole && *array[i];
@@ -158,16 +158,43 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
                   __func__)
 
 /* Effects the description implies, unless they were given. */
-static void imply_effects(spar_aero *aero) {
+static int implied_effects(const spar_aero *aero) {
     if (aero->effects_given) {
-        return;
+        return aero->rotor.effects;
     }
-    aero->rotor.effects = SPAR_AERO_DRAG | (aero->rotor_given ? momentum_effects : 0);
+    int effects = SPAR_AERO_DRAG | (aero->rotor_given ? momentum_effects : 0);
     for (int64_t i = 0; i < aero->n; i++) {
         if (aero->section[i].table && spari_table_has_moment(aero->section[i].table)) {
-            aero->rotor.effects |= SPAR_AERO_MOMENT;
+            effects |= SPAR_AERO_MOMENT;
         }
     }
+    return effects;
+}
+
+/* n doubles into *x, unless they are there. */
+static int have(double **x, int64_t n) {
+    *x = *x ? *x : spari_zalloc(n, sizeof **x);
+    return *x != NULL;
+}
+
+/* Puts effects in force, with the memory that they and a rotor need. */
+static int adopt(spar_aero *aero, int effects, const char *caller) {
+    int64_t all = count(aero);
+    int whole = !(effects & SPAR_AERO_MOMENT) || have(&aero->moment, 3 * all);
+    whole = whole && (!aero->rotor_given || have(&aero->omega, 3 * all));
+    if ((effects & SPAR_AERO_INDUCTION) && !aero->solver) {
+        aero->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+        whole = whole && aero->solver;
+    }
+    if (aero->rotor_given && (effects & (SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS)) && !aero->loss_radius) {
+        whole = whole && have(&aero->loss_radius, all);
+        for (int64_t k = 0; whole && k < all; k++) {
+            aero->loss_radius[k] = spari_rotor_radius(&aero->first, aero->place + 3 * k);
+        }
+    }
+    SPARI_REQUIRE(aero->session, whole, SPAR_ERR_MEMORY, "%s: no memory for the effects", caller);
+    aero->rotor.effects = effects;
+    return SPAR_OK;
 }
 
 int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar) {
@@ -184,13 +211,18 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     if (aero->blades == 0) {
         return SPAR_OK;
     }
-    spari_table *old = aero->section[i].table;
+    spari_section old = aero->section[i];
     aero->section[i] = (spari_section){chord, cos(twist), sin(twist), spari_polar_share(polar)};
-    spari_table_release(old);
+    int status = adopt(aero, implied_effects(aero), "spar_aero_set_section");
+    if (status != SPAR_OK) {
+        spari_table_release(aero->section[i].table);
+        aero->section[i] = old;
+        return status;
+    }
+    spari_table_release(old.table);
     for (int b = 0; b < aero->blades; b++) {
         aero->accel[b * aero->n + i] = (gsl_interp_accel){0, 0, 0}; /* its interval was one of the old table */
     }
-    imply_effects(aero);
     return SPAR_OK;
 }
 
@@ -206,18 +238,22 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
     SPARI_REQUIRE(
         aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius), SPAR_ERR_ARGUMENT,
         "spar_aero_set_rotor: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius", hub_radius, tip_radius);
+    spari_rotor old = aero->rotor;
+    int was_given = aero->rotor_given;
     for (int i = 0; i < 3; i++) {
         aero->rotor.hub[i] = hub[i];
         aero->rotor.axis[i] = axis[i] / length;
     }
     aero->rotor.hub_radius = hub_radius;
     aero->rotor.tip_radius = tip_radius;
-    for (int64_t k = 0; !aero->rotor_given && k < count(aero); k++) {
-        aero->loss_radius[k] = spari_rotor_radius(&aero->rotor, aero->place + 3 * k);
-    }
+    aero->first = was_given ? aero->first : aero->rotor;
     aero->rotor_given = 1;
-    imply_effects(aero);
-    return SPAR_OK;
+    int status = adopt(aero, implied_effects(aero), "spar_aero_set_rotor");
+    if (status != SPAR_OK) {
+        aero->rotor = old;
+        aero->rotor_given = was_given;
+    }
+    return status;
 }
 
 int spar_aero_set_turn(spar_aero *aero, int turn) {
@@ -240,7 +276,7 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
                   "spar_aero_set_effects: %d has bits that are no SPAR_AERO_ effect", effects);
-    aero->rotor.effects = effects;
+    SPARI_TRY(adopt(aero, effects, "spar_aero_set_effects"));
     aero->effects_given = 1;
     return SPAR_OK;
 }
@@ -278,67 +314,53 @@ static int pull(spar_aero *aero, double theta) {
             "spar_aero_solve: fluid '%s' had %lld sections when the aero object was made and has %lld now; make "
             "a new one",
             spari_fluid_name(aero->fluid[b]), (long long)aero->n, (long long)n);
-        SPARI_TRY(spar_fluid_pull_motion(aero->fluid[b], theta, aero->x + 3 * at, aero->v + 3 * at));
-        SPARI_TRY(spar_fluid_pull_sections(aero->fluid[b], theta, aero->q + 4 * at, aero->omega + 3 * at, NULL));
+        double *omega = aero->rotor_given ? aero->omega + 3 * at : NULL;
+        SPARI_TRY(spar_fluid_pull_poses(aero->fluid[b], theta, aero->x + 3 * at, aero->q + 4 * at, aero->v + 3 * at,
+                                        omega, NULL, NULL));
     }
     return SPAR_OK;
 }
 
-/* Node forces and moments of one blade: loads per length linear over each interval, shared consistently between its
- * ends. */
-static void lump(spar_aero *aero, int blade) {
+/* Loads per length (those of element.load from `from` on), linear over each interval of a blade, shared consistently
+   between its ends. */
+static void lump(const spar_aero *aero, int blade, int from, double *node) {
     int64_t at = blade * aero->n;
-    int width = aero->rotor.effects & SPAR_AERO_MOMENT ? 6 : 3;
-    memset(aero->force + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *aero->force);
-    memset(aero->moment + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *aero->moment);
+    memset(node + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *node);
     for (int64_t i = at; i + 1 < at + aero->n; i++) {
         double sixth = aero->length[i] / 6.0;
-        const double *f = aero->element[i].load, *g = aero->element[i + 1].load;
-        for (int c = 0; c < width; c++) {
-            double *to = c < 3 ? aero->force + 3 * i + c : aero->moment + 3 * i + c - 3;
+        const double *f = aero->element[i].load + from, *g = aero->element[i + 1].load + from;
+        for (int c = 0; c < 3; c++) {
+            double *to = node + 3 * i + c;
             to[0] += sixth * (2.0 * f[c] + g[c]);
             to[3] += sixth * (f[c] + 2.0 * g[c]);
         }
     }
 }
 
-/* Thrust, torque and speed of the blades here about the shaft. */
-static void sum_rotor(spar_aero *aero) {
-    const spari_rotor *rotor = &aero->rotor;
-    aero->thrust = aero->torque = aero->speed = 0.0;
-    for (int64_t k = 0; k < count(aero); k++) {
-        const double *x = aero->x + 3 * k, *f = aero->force + 3 * k;
-        double arm[3] = {x[0] - rotor->hub[0], x[1] - rotor->hub[1], x[2] - rotor->hub[2]}, turn[3];
-        spari_cross(arm, f, turn);
-        aero->thrust += spari_dot(rotor->axis, f);
-        aero->torque += spari_dot(rotor->axis, turn) + spari_dot(rotor->axis, aero->moment + 3 * k);
-    }
-    for (int b = 0; b < aero->blades; b++) {
-        aero->speed += spari_dot(rotor->axis, aero->omega + 3 * b * aero->n) / aero->blades;
-    }
-}
-
 static int solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_TRY(check_solve(aero, density, inflow));
-    SPARI_TRY(pull(aero, theta));
     aero->solved = 0;
+    SPARI_TRY(pull(aero, theta));
+    int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0;
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;
-            spari_station station = {aero->x + 3 * k, aero->q + 4 * k,      aero->v + 3 * k,
-                                     inflow + 3 * k,  aero->loss_radius[k], aero->accel + k};
+            double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
+            spari_station station = {aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss,
+                                     aero->accel + k};
             spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
         }
-        lump(aero, b);
+        lump(aero, b, 0, aero->force);
+        if (moments) {
+            lump(aero, b, 3, aero->moment);
+        }
     }
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = 3 * b * aero->n;
-        const double *moment = aero->rotor.effects & SPAR_AERO_MOMENT ? aero->moment + at : NULL;
-        SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moment));
+        SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));
     }
-    if (aero->rotor_given) {
-        sum_rotor(aero);
-    }
+    aero->used = aero->rotor;
+    aero->rotor_used = aero->rotor_given;
     aero->solved = 1;
     return SPAR_OK;
 }
@@ -373,12 +395,33 @@ static int check_solved(const spar_aero *aero, const char *caller) {
     return SPAR_OK;
 }
 
+/* Thrust, torque about the shaft and speed of the blades here, in the last solve. */
+static void sum_rotor(const spar_aero *aero, double *thrust, double *torque, double *speed) {
+    const spari_rotor *rotor = &aero->used;
+    *thrust = *torque = *speed = 0.0;
+    for (int64_t k = 0; k < count(aero); k++) {
+        const double *x = aero->x + 3 * k, *f = aero->force + 3 * k;
+        double arm[3] = {x[0] - rotor->hub[0], x[1] - rotor->hub[1], x[2] - rotor->hub[2]}, turn[3];
+        spari_cross(arm, f, turn);
+        *thrust += spari_dot(rotor->axis, f);
+        *torque += spari_dot(rotor->axis, turn);
+        if (rotor->effects & SPAR_AERO_MOMENT) {
+            *torque += spari_dot(rotor->axis, aero->moment + 3 * k);
+        }
+    }
+    for (int b = 0; b < aero->blades; b++) {
+        *speed += spari_dot(rotor->axis, aero->omega + 3 * b * aero->n) / aero->blades;
+    }
+}
+
 int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power) {
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
-    SPARI_REQUIRE(aero->session, aero->rotor_given, SPAR_ERR_STATE,
+    SPARI_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
                   "spar_aero_get_rotor: there is no shaft; call spar_aero_set_rotor before spar_aero_solve");
-    double value[] = {aero->thrust, aero->torque, aero->torque * aero->speed}, *out[] = {thrust, torque, power};
+    double thrust_now, torque_now, speed;
+    sum_rotor(aero, &thrust_now, &torque_now, &speed);
+    double value[] = {thrust_now, torque_now, torque_now * speed}, *out[] = {thrust, torque, power};
     for (int i = 0; i < 3; i++) {
         if (out[i]) {
             *out[i] = value[i];
@@ -430,8 +473,10 @@ int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force
     if (force && bytes > 0) {
         memcpy(force, aero->force, bytes);
     }
-    if (moment && bytes > 0) {
+    if (moment && bytes > 0 && (aero->used.effects & SPAR_AERO_MOMENT)) {
         memcpy(moment, aero->moment, bytes);
+    } else if (moment && bytes > 0) {
+        memset(moment, 0, bytes);
     }
     return SPAR_OK;
 }

@@ -104,15 +104,16 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
     double place = spari_table_wrap(section->table, element->alpha, &beyond);
     element->flags |= beyond ? SPAR_AERO_FLAG_BEYOND_POLAR : 0;
     element->cl = spari_table_lift(section->table, place, station->accel);
-    if (rotor->effects & SPAR_AERO_DRAG) {
-        element->cd = spari_table_drag(section->table, place, station->accel);
-    }
     /* lift across the flow towards the suction side, drag along it */
     double speed = hypot(flow[0], flow[1]), scale = 0.5 * density * section->chord * speed;
-    double along = scale * (element->cd * flow[0] - element->cl * flow[1]);
-    double across = scale * (element->cl * flow[0] + element->cd * flow[1]);
+    double along = -element->cl * flow[1], across = element->cl * flow[0];
+    if (rotor->effects & SPAR_AERO_DRAG) {
+        element->cd = spari_table_drag(section->table, place, station->accel);
+        along += element->cd * flow[0];
+        across += element->cd * flow[1];
+    }
     for (int i = 0; i < 3; i++) {
-        element->load[i] = along * f.chord[i] + across * f.normal[i];
+        element->load[i] = scale * along * f.chord[i] + scale * across * f.normal[i];
     }
     if (rotor->effects & SPAR_AERO_MOMENT) { /* nose up */
         double moment =

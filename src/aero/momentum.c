@@ -39,7 +39,10 @@ spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi) {
     double place = spari_table_wrap(annulus->table, side * phi - annulus->twist, &beyond);
     double lift = side * annulus->sigma * spari_table_lift(annulus->table, place, annulus->accel);
     spari_balance b;
-    b.loss = spari_prandtl(annulus->tip, s) * spari_prandtl(annulus->hub, s);
+    b.loss = annulus->tip < 0.0 ? 1.0 : spari_prandtl(annulus->tip, s);
+    if (annulus->hub >= 0.0) {
+        b.loss *= spari_prandtl(annulus->hub, s);
+    }
     double share = lift / (4.0 * b.loss);
     b.g = axial(s, share * c, b.loss);
     b.h = annulus->swirl ? c - spari_swirl_sign(s) * share : c;
