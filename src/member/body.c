@@ -311,17 +311,50 @@ static void point_strain(const spari_body *body, int k, int moving, point_state 
     }
 }
 
+/* What of its mass a section shows. */
+typedef struct regime {
+    int moving, accelerated; /* rates are given; accelerations too */
+    int heavy;
+    double weight[3]; /* gravity times its factor */
+} regime;
+
+static regime regime_of(const spari_body *body, const double *v, const double *a, double factor) {
+    regime how = {.moving = v != NULL, .accelerated = a != NULL && body->mass};
+    for (int i = 0; i < 3; i++) {
+        how.weight[i] = factor * body->gravity[i];
+        how.heavy = how.heavy || (how.weight[i] != 0 && body->mass);
+    }
+    return how;
+}
+
 /* Inertia and gravity of a section: forces and what is needed for their tangent. Body axes: A = angular acceleration,
    h = R^T (udd - g), y = A x mc + W x (W x mc), mb = J A + W x J W + mc x h. */
 typedef struct point_inertia {
     double A[3], A0[3], JW[3], h[3], y[3], mb[3], Wc[3];
 } point_inertia;
 
-static void point_inertia_forces(const spari_body *body, int k, double factor, const point_state *s, point_inertia *n) {
+/* The weight alone: h = -R^T g, mb = mc x h. */
+static void point_weight(const spari_body *body, int k, const regime *how, const point_state *s, point_inertia *n) {
+    double net[3];
+    for (int i = 0; i < 3; i++) {
+        net[i] = -how->weight[i];
+        n->y[i] = 0;
+    }
+    spari_rotate_back(s->r, net, n->h);
+    spari_cross(body->mass + 10 * (int64_t)k + 1, n->h, n->mb);
+}
+
+static void point_inertia_forces(const spari_body *body, int k, const regime *how, const point_state *s,
+                                 point_inertia *n) {
     const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *J = mass + 4;
     double net[3], rdd[4], JA[3], x[3];
     for (int i = 0; i < 3; i++) {
-        net[i] = s->f[UDD + i] - factor * body->gravity[i];
+        net[i] = s->f[UDD + i];
+    }
+    if (how->heavy) {
+        for (int i = 0; i < 3; i++) {
+            net[i] -= how->weight[i];
+        }
     }
     for (int i = 0; i < 4; i++) {
         rdd[i] = s->f[QDD + i] / s->N;
@@ -333,14 +366,14 @@ static void point_inertia_forces(const spari_body *body, int k, double factor, c
     }
     spari_rotate_back(s->r, net, n->h);
     symmetric_times(J, n->A, JA);
-    symmetric_times(J, s->omega, n->JW);
     spari_cross(n->A, mc, n->y);
     spari_cross(mc, n->h, n->mb);
-    spari_cross(s->omega, mc, n->Wc);
     for (int i = 0; i < 3; i++) {
         n->mb[i] += JA[i];
     }
     if (body->gyroscopic) {
+        symmetric_times(J, s->omega, n->JW);
+        spari_cross(s->omega, mc, n->Wc);
         spari_cross(s->omega, n->Wc, x);
         for (int i = 0; i < 3; i++) {
             n->y[i] += x[i];
@@ -383,22 +416,26 @@ static void add_moment(const double g[4], const double q[4], double m[3]) {
 }
 
 /* What the point gives back, times its weight: value (u, Q), slope (u', Q'). Returns the size of its forces. */
-static double point_forces(const spari_body *body, int k, double factor, int moving, const double *f, double *back,
+static double point_forces(const spari_body *body, int k, const regime *how, const double *f, double *back,
                            double *power) {
     point_state s;
     double *value = back, *slope = back + BACK, w = body->weight[k], scale = 0;
     memset(back, 0, BACK_ROW * sizeof *back);
     point_fields(f, &s);
     if (body->C) {
-        point_strain(body, k, moving, &s);
+        point_strain(body, k, how->moving, &s);
         elastic_forces(&s, value, slope);
-        *power += body->D && moving ? w * s.damped : 0;
+        *power += body->D && how->moving ? w * s.damped : 0;
         scale = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
     }
-    if (body->mass) {
+    if (how->accelerated || how->heavy) {
         point_inertia n;
         double force[3], m4[4];
-        point_inertia_forces(body, k, factor, &s, &n);
+        if (how->accelerated) {
+            point_inertia_forces(body, k, how, &s, &n);
+        } else {
+            point_weight(body, k, how, &s, &n);
+        }
         for (int i = 0; i < 3; i++) {
             force[i] = n.y[i] + body->mass[10 * (int64_t)k] * n.h[i];
         }
@@ -424,17 +461,18 @@ double spari_body_residual(const spari_body *body, const double *q, const double
     if (body->linear[0]) {
         return linear_residual(body, q, v, a, factor, r, power);
     }
-    int P = body->per_element, moving = v != NULL;
+    int P = body->per_element;
+    const regime how = regime_of(body, v, a, factor);
     double *z = body->scratch, *g = z + (int64_t)P * ROW, *f = g + (int64_t)P * BACK, scale = 0, damped = 0;
     memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
     for (int e = 0; e < body->elements; e++) {
         int first = body->first[e], n = body->first[e + 1] - first;
         double *back = f + (int64_t)n * POINT_ROW;
         gather(body, e, q, v, a, z);
-        interpolate(body, e, z, moving, f);
+        interpolate(body, e, z, how.moving, f);
         for (int k = 0; k < n; k++) {
-            double size = point_forces(body, first + k, factor, moving, f + (int64_t)POINT_ROW * k,
-                                       back + (int64_t)BACK_ROW * k, &damped);
+            double size =
+                point_forces(body, first + k, &how, f + (int64_t)POINT_ROW * k, back + (int64_t)BACK_ROW * k, &damped);
             scale = size > scale ? size : scale;
         }
         collect(body, e, back, g);
@@ -633,13 +671,25 @@ static void add_elastic(const spari_body *body, int k, int moving, double w, con
     }
 }
 
+/* K of the rows g_Q = 2 Q mb / N^2 of a moment mb in body axes that changes by mQ dQ. */
+static void add_moment_rows(double w, const point_state *s, const double L[3][4], const double mQ[3][4],
+                            const double mb[3], double *K) {
+    double Rm[4][4], rm[4], in = 1 / s->N;
+    add_transposed_product(&K[14 * AT_Q + AT_Q], 14, 2 * w * in, L, mQ);
+    right_matrix(mb, Rm);
+    quat_vec(s->r, mb, rm);
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            K[14 * (AT_Q + i) + AT_Q + j] += w * in * in * (2 * Rm[i][j] - 4 * rm[i] * s->r[j]);
+        }
+    }
+}
+
 /* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
-static void add_inertia(const spari_body *body, int k, double factor, double w, const point_state *s,
+static void add_inertia(const spari_body *body, int k, double w, const point_state *s, const point_inertia *n,
                         point_matrices *m) {
     const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *Js = mass + 4;
-    point_inertia n;
     double L[3][4], Ld[3][4], Ldd[3][4], rdd[4], in = 1 / s->N;
-    point_inertia_forces(body, k, factor, s, &n);
     for (int i = 0; i < 4; i++) {
         rdd[i] = s->f[QDD + i] * in;
     }
@@ -652,21 +702,25 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
         for (int j = 0; j < 4; j++) {
             WQ[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) * in;
             AQd[i][j] = -2 * s->omega[i] * s->r[j] * in - 4 * s->b * L[i][j] * in;
-            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n.A0[i] * s->r[j]) * in -
+            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n->A0[i] * s->r[j]) * in -
                        2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in - 2 * s->b * WQ[i][j];
         }
     }
     double J[3][3] = {{Js[0], Js[1], Js[2]}, {Js[1], Js[3], Js[4]}, {Js[2], Js[4], Js[5]}};
-    double cx[3][3], hx[3][3], yx[3][3], mW[3][3] = {{0}}, fW[3][3] = {{0}};
+    double cx[3][3], hx[3][3], yx[3][3];
     skew(mc, cx);
-    skew(n.h, hx);
-    double ym[3] = {n.y[0], n.y[1], n.y[2]};
-    skew(ym, yx);
+    skew(n->h, hx);
+    skew(n->y, yx);
+    double R[9], Rc[3][3], Ry[3][3], cRt[3][3], ch[3][3];
+    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}},
+           mQdd[3][4] = {{0}};
+    const double(*Lc)[4] = (const double(*)[4])L;
+    spari_quat_matrix(s->r, R);
     if (body->gyroscopic) {
-        double Wx[3][3], JWx[3][3], Wcx[3][3];
+        double Wx[3][3], JWx[3][3], Wcx[3][3], mW[3][3], fW[3][3], RfW[3][3];
         skew(s->omega, Wx);
-        skew(n.JW, JWx);
-        skew(n.Wc, Wcx);
+        skew(n->JW, JWx);
+        skew(n->Wc, Wcx);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
                 double wj = 0, wc = 0;
@@ -678,37 +732,36 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
                 fW[i][j] = -Wcx[i][j] - wc; /* d(W x (W x c))/dW */
             }
         }
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                RfW[i][j] = R[3 * i] * fW[0][j] + R[3 * i + 1] * fW[1][j] + R[3 * i + 2] * fW[2][j];
+            }
+        }
+        add_product(&fQd[0][0], 4, 2 * in, (const double(*)[3])RfW, Lc);
+        add_product(&fQ[0][0], 4, 1, (const double(*)[3])RfW, (const double(*)[4])WQ);
+        add_product(&mQd[0][0], 4, 2 * in, (const double(*)[3])mW, Lc);
+        add_product(&mQ[0][0], 4, 1, (const double(*)[3])mW, (const double(*)[4])WQ);
     }
-    double R[9], Rc[3][3], Ry[3][3], RfW[3][3], cRt[3][3], ch[3][3];
-    spari_quat_matrix(s->r, R);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            Rc[i][j] = Ry[i][j] = RfW[i][j] = cRt[i][j] = ch[i][j] = 0;
+            Rc[i][j] = Ry[i][j] = cRt[i][j] = ch[i][j] = 0;
             for (int l = 0; l < 3; l++) {
-                Rc[i][j] -= R[3 * i + l] * cx[l][j]; /* R d(A x c)/dA */
-                Ry[i][j] -= R[3 * i + l] * yx[l][j]; /* dR y = R (dtheta x y) */
-                RfW[i][j] += R[3 * i + l] * fW[l][j];
+                Rc[i][j] -= R[3 * i + l] * cx[l][j];  /* R d(A x c)/dA */
+                Ry[i][j] -= R[3 * i + l] * yx[l][j];  /* dR y = R (dtheta x y) */
                 cRt[i][j] += cx[i][l] * R[3 * j + l]; /* c x R^T d udd */
                 ch[i][j] += cx[i][l] * hx[l][j];      /* c x (h x dtheta) */
             }
         }
     }
     /* force rows */
-    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}},
-           mQdd[3][4] = {{0}};
-    const double(*Lc)[4] = (const double(*)[4])L;
     add_product(&fQdd[0][0], 4, 2 * in, (const double(*)[3])Rc, Lc);
     add_product(&fQd[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQd);
     add_product(&fQ[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQ);
-    add_product(&fQd[0][0], 4, 2 * in, (const double(*)[3])RfW, Lc);
-    add_product(&fQ[0][0], 4, 1, (const double(*)[3])RfW, (const double(*)[4])WQ);
     add_product(&fQ[0][0], 4, 2 * in, (const double(*)[3])Ry, Lc);
     /* moment, body axes */
     add_product(&mQdd[0][0], 4, 2 * in, (const double(*)[3])J, Lc);
     add_product(&mQd[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQd);
     add_product(&mQ[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQ);
-    add_product(&mQd[0][0], 4, 2 * in, (const double(*)[3])mW, Lc);
-    add_product(&mQ[0][0], 4, 1, (const double(*)[3])mW, (const double(*)[4])WQ);
     add_product(&mQ[0][0], 4, 2 * in, (const double(*)[3])ch, Lc);
     for (int i = 0; i < 3; i++) {
         m->M[7 * i + i] += w * mass[0];
@@ -719,7 +772,7 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
         }
     }
     /* g_Q = 2 Q mb / N^2: rows through 2 L^T mb / N, and the change of Q itself */
-    double mU[4][3], Rm[4][4], rm[4];
+    double mU[4][3];
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j < 3; j++) {
             mU[i][j] = 2 * in * (L[0][i] * cRt[0][j] + L[1][i] * cRt[1][j] + L[2][i] * cRt[2][j]);
@@ -728,14 +781,23 @@ static void add_inertia(const spari_body *body, int k, double factor, double w, 
     }
     add_transposed_product(&m->M[7 * 3 + 3], 7, 2 * w * in, Lc, (const double(*)[4])mQdd);
     add_transposed_product(&m->B[14 * AT_Q + AT_Q], 14, 2 * w * in, Lc, (const double(*)[4])mQd);
-    add_transposed_product(&m->K[14 * AT_Q + AT_Q], 14, 2 * w * in, Lc, (const double(*)[4])mQ);
-    right_matrix(n.mb, Rm);
-    quat_vec(s->r, n.mb, rm);
-    for (int i = 0; i < 4; i++) {
-        for (int j = 0; j < 4; j++) {
-            m->K[14 * (AT_Q + i) + AT_Q + j] += w * in * in * (2 * Rm[i][j] - 4 * rm[i] * s->r[j]);
+    add_moment_rows(w, s, Lc, (const double(*)[4])mQ, n->mb, m->K);
+}
+
+/* The weight alone: its moment about the node turns with the section. */
+static void add_weight(const spari_body *body, int k, double w, const point_state *s, const point_inertia *n,
+                       point_matrices *m) {
+    double L[3][4], cx[3][3], hx[3][3], ch[3][3], mQ[3][4] = {{0}};
+    body_spin(s->r, L);
+    skew(body->mass + 10 * (int64_t)k + 1, cx);
+    skew(n->h, hx);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            ch[i][j] = cx[i][0] * hx[0][j] + cx[i][1] * hx[1][j] + cx[i][2] * hx[2][j];
         }
     }
+    add_product(&mQ[0][0], 4, 2 / s->N, (const double(*)[3])ch, (const double(*)[4])L);
+    add_moment_rows(w, s, (const double(*)[4])L, (const double(*)[4])mQ, n->mb, m->K);
 }
 
 /* Nodal maps: dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm
@@ -821,14 +883,15 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         linear_tangent(body, e, cm, cv, S);
         return;
     }
-    int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first, moving = v != NULL;
+    int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first;
+    const regime how = regime_of(body, v, a, factor);
     int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
-    int rates = (cv != 0 || v) && (body->D || body->mass), masses = (cm != 0 || a) && body->mass;
+    int masses = (cm != 0 || a) && body->mass, rates = (cv != 0 || v) && (body->D || masses);
     double *z = body->scratch, *f = z + (int64_t)P * (ROW + BACK), *K7 = f + (int64_t)n * (POINT_ROW + BACK_ROW),
            *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
     double *XK = g + pp, *XB = XK + 2 * n * row, *table = XB + 2 * n * row;
     gather(body, e, q, v, a, z);
-    interpolate(body, e, z, moving, f);
+    interpolate(body, e, z, how.moving, f);
     memset(g, 0, (size_t)P * 4 * sizeof *g);
     double *XM = XB + n * row; /* B has no slopes unless damped: its second half is then free for M */
     memset(M7, 0, (size_t)pp * sizeof *M7);
@@ -843,15 +906,20 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         point_fields(f + (int64_t)POINT_ROW * k, &s);
         double value[BACK] = {0}, slope[BACK] = {0};
         if (body->C) {
-            point_strain(body, at, moving, &s);
-            add_elastic(body, at, moving, w, &s, &m);
+            point_strain(body, at, how.moving, &s);
+            add_elastic(body, at, how.moving, w, &s, &m);
             elastic_forces(&s, value, slope);
         }
-        if (body->mass) {
+        if (masses || how.heavy) {
             point_inertia in;
             double m4[4];
-            add_inertia(body, at, factor, w, &s, &m);
-            point_inertia_forces(body, at, factor, &s, &in);
+            if (masses) {
+                point_inertia_forces(body, at, &how, &s, &in);
+                add_inertia(body, at, w, &s, &in, &m);
+            } else {
+                point_weight(body, at, &how, &s, &in);
+                add_weight(body, at, w, &s, &in, &m);
+            }
             quat_vec(s.r, in.mb, m4);
             for (int i = 0; i < 4; i++) {
                 value[3 + i] += 2 * m4[i] / s.N;
