@@ -1037,7 +1037,7 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
 
 void spari_body_gravity_changed(spari_body *body) {
     double *stiffness = body->linear[0];
-    if (!stiffness) {
+    if (!stiffness || !body->weights) {
         return;
     }
     double *q = body->at_rest;
@@ -1046,14 +1046,14 @@ void spari_body_gravity_changed(spari_body *body) {
     body->linear[0] = stiffness;
 }
 
-int spari_body_linearise(spari_body *body) {
+int spari_body_linearise(spari_body *body, int heavy) {
     int P = body->per_element;
     int64_t size = (int64_t)36 * P * P;
-    double *matrices[3] = {0}, *q = spari_zalloc((int64_t)body->unique * 7, sizeof *q);
-    double *weights = spari_zalloc((int64_t)body->unique * 6, sizeof *weights);
-    int ok = q && weights;
+    const int there[3] = {1, body->D != NULL, body->mass != NULL};
+    double *matrices[3] = {0}, *q = spari_zalloc((int64_t)body->unique * 7, sizeof *q), *weights = NULL;
+    int ok = q && (!heavy || (weights = spari_zalloc((int64_t)body->unique * 6, sizeof *weights)));
     for (int k = 0; k < 3 && ok; k++) {
-        ok = (matrices[k] = spari_zalloc(size * body->elements, sizeof *matrices[k])) != NULL;
+        ok = !there[k] || (matrices[k] = spari_zalloc(size * body->elements, sizeof *matrices[k]));
     }
     if (!ok) {
         free(q), free(weights);
@@ -1064,15 +1064,17 @@ int spari_body_linearise(spari_body *body) {
         q[7 * i + 3] = 1;
     }
     for (int e = 0; e < body->elements; e++) {
-        double *K = matrices[0] + size * e, *B = matrices[1] + size * e, *M = matrices[2] + size * e;
         /* at rest and unloaded the tangent is K + cv B + cm M: three calls tell them apart; gravity stays out of K
          * (first order) */
-        spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 0, NULL, K);
-        spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 1, NULL, B);
-        spari_body_tangent(body, e, q, NULL, NULL, 0, 1, 0, NULL, M);
-        for (int64_t i = 0; i < size; i++) {
-            B[i] -= K[i];
-            M[i] -= K[i];
+        const double *K = matrices[0] + size * e;
+        for (int k = 0; k < 3; k++) {
+            double *to = there[k] ? matrices[k] + size * e : NULL;
+            if (to) {
+                spari_body_tangent(body, e, q, NULL, NULL, 0, k == 2, k == 1, NULL, to);
+            }
+            for (int64_t i = 0; i < size && to && k > 0; i++) {
+                to[i] -= K[i];
+            }
         }
     }
     body->at_rest = q;
@@ -1093,7 +1095,7 @@ static double linear_residual(const spari_body *body, const double *q, const dou
     int P = body->per_element, n = 6 * P;
     double *x = body->scratch, scale = 0, damped = 0;
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
-        r[i] = factor * body->weights[i];
+        r[i] = body->weights ? factor * body->weights[i] : 0;
     }
     for (int e = 0; e < body->elements; e++) {
         int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
@@ -1104,7 +1106,7 @@ static double linear_residual(const spari_body *body, const double *q, const dou
         }
         const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
         for (int k = 0; k < 3; k++) {
-            if (in[k] && (k == 0 || (k == 1 ? body->D != NULL : body->mass != NULL))) {
+            if (in[k] && body->linear[k] && (k != 1 || body->D)) {
                 if (k == 1) {
                     damped += rate_power(n, body->linear[1] + at, in[1], x + n);
                 }
@@ -1123,8 +1125,12 @@ static double linear_residual(const spari_body *body, const double *q, const dou
 }
 
 static void linear_tangent(const spari_body *body, int e, double cm, double cv, double *S) {
-    int64_t size = (int64_t)36 * body->per_element * body->per_element, at = size * e;
-    for (int64_t i = 0; i < size; i++) {
-        S[i] = body->linear[0][at + i] + cv * body->linear[1][at + i] + cm * body->linear[2][at + i];
+    int64_t size = (int64_t)36 * body->per_element * body->per_element;
+    const double c[3] = {1, cv, cm};
+    memcpy(S, body->linear[0] + size * e, (size_t)size * sizeof *S);
+    for (int k = 1; k < 3; k++) {
+        for (int64_t i = 0; i < size && body->linear[k]; i++) {
+            S[i] += c[k] * body->linear[k][size * e + i];
+        }
     }
 }

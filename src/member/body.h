@@ -27,8 +27,8 @@ typedef struct spari_body {
     double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
     double
         stiffest; /* size of a force that rounding in the places makes: largest stiffness, and moments over this size */
-    double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; else NULL */
-    double *weights;   /* linear members: forces [unique][6] of gravity at the reference */
+    double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; NULL: none */
+    double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */
     double *scratch;   /* work space of one element */
 } spari_body;
@@ -52,9 +52,9 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
 /* kinetic, strain, gravity potential (zero at the reference), power dissipated; v NULL: at rest */
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
 
-/* Makes the body linear about its reference: element matrices are formed once. Returns 0, or 1 when there is no memory.
- */
-int spari_body_linearise(spari_body *body);
+/* Makes the body linear about its reference: element matrices are formed once. heavy: gravity may come. Returns 0, or 1
+   when there is no memory. */
+int spari_body_linearise(spari_body *body, int heavy);
 /* A linear body keeps its weight as nodal loads: call this after gravity has changed. */
 void spari_body_gravity_changed(spari_body *body);
 

@@ -232,8 +232,8 @@ int spari_member_build(spar_member *m) {
         spari_member_gravity(m);
         SPARI_TRY(spari_rung_create(m));
         if (!m->rung && !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
-            SPARI_REQUIRE(session, spari_body_linearise(m->body) == 0, SPAR_ERR_MEMORY,
-                          "spar_member_commit: no memory for '%s'", m->name);
+            SPARI_REQUIRE(session, spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY) == 0,
+                          SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
         }
         if (!m->rung && m->owner == spari_comm_rank(session->comm)) {
             m->solver = spari_solver_create(m);

@@ -289,19 +289,23 @@ int spar_session_get_time(const spar_session *session, double *t, int64_t *step,
 
 /* ---- between the ranks ---- */
 
-enum { MEMBER_EXTRA = 1 }; /* energy dissipated in the step */
+/* Of a damped member the energy dissipated in the step goes along. */
+static int is_damped(const spar_member *m) {
+    return (m->effects & SPAR_EFFECT_DAMPING) != 0;
+}
 
 static int64_t block_size(const spar_member *m) {
-    return m->body ? 19 * (int64_t)m->body->unique + MEMBER_EXTRA : 0;
+    return m->body ? 19 * (int64_t)m->body->unique + is_damped(m) : 0;
 }
 
 int spari_session_seal(spar_session *s, int status) {
     int ranks = spari_comm_size(s->comm);
-    int64_t count = 0;
+    int64_t count = 0, down = ranks; /* a status of each */
     for (spar_member *m = s->members; m; m = m->next) {
         count += m->committed ? 6 * m->nodes : 0;
+        down += block_size(m);
     }
-    if (status == SPAR_OK && (!s->pack || s->pack_count != count)) {
+    if (status == SPAR_OK && (!s->pack || s->pack_count != count || (s->first && s->first[ranks] != down))) {
         free(s->pack);
         free(s->first);
         free(s->motion);
@@ -357,7 +361,9 @@ static void pack_member(spar_member *m, double *to) {
     spari_member_to_unique(m, 7, m->after.q, to);
     spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
     spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
-    to[19 * n] = m->dissipated_step;
+    if (is_damped(m)) {
+        to[19 * n] = m->dissipated_step;
+    }
 }
 
 static void unpack_member(spar_member *m, const double *from) {
@@ -365,7 +371,7 @@ static void unpack_member(spar_member *m, const double *from) {
     spari_member_from_unique(m, 7, from, m->after.q);
     spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
     spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
-    m->dissipated_step = from[19 * n];
+    m->dissipated_step = is_damped(m) ? from[19 * n] : 0;
 }
 
 int spari_session_share_motion(spar_session *s, int status) {
