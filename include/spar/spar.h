@@ -294,10 +294,13 @@ SPAR_API int spar_member_set_effects(spar_member *member, int effects);
                  Coriolis, gyroscopic and centrifugal terms and the stiffening by centrifugal forces. Neglected: terms
                  of second order in the deformation (shortening of a bent beam; moments of loads on displaced arms),
                  stiffening by other loads. One factorisation as long as dt and the root's turning speed, in its own
-                 axes, do not change. Free or pinned root: linear about the reference, as with LARGE_ROTATION off
-     modal       fixed or driven root; as linear, with the lowest `modes` modes of the beam with its root held.
-                 Initial deformation is brought to the nearest one that the modes have
-   Beams only, before commit. Local. SPAR_ERR_UNSUPPORTED at commit: modal with a free or pinned root. */
+                 axes, do not change. Free or pinned root: linear about the reference, LARGE_ROTATION is off; nothing
+                 holds such a beam for solve_static
+     modal       as linear, with the lowest `modes` modes of the beam with its root held; of a free or pinned beam those
+                 it has so, of which the first 6 or 3 move it as a rigid body. Initial deformation is brought to the
+                 nearest one that the modes have
+   Beams only, before commit. Local. At commit SPAR_ERR_ARGUMENT: more modes than the nodes have, or fewer than those 6
+   or 3; SPAR_ERR_STATE: linear or modal, free or pinned, with INERTIA off; SPAR_ERR_NUMERIC: fewer modes with mass. */
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
 /* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
    step, before or after commit. Local. */
@@ -353,18 +356,23 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    bending y, bending z; x[n][3] place; q[n][4] orientation. force is the section's stiffness times its strain and
    converges with the nodes as the strains do, one order behind the displacements; the reaction and the nodal balance
    are exact to rounding. In static equilibrium under loads at element ends, with Gauss quadrature of P - 1 points in a
-   straight element, the forces (turned to global axes) at those points balance the loads to rounding too. Local.
+   straight element, the forces (turned to global axes) at those points balance the loads to rounding too. Of a linear
+   or modal member, or one with LARGE_ROTATION off, strains are those of linear theory, as in its strain energy: of the
+   displacement and rotation vector seen from the root where that is fixed or driven, else from the reference. Local.
    SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
-   since t = 0 (up to t^n). Members spar does not solve for give zeros. */
+   since t = 0 (up to t^n). Members spar does not solve for give zeros. With LARGE_ROTATION off, and of linear and modal
+   members, the quadratic forms of their equations; on a driven root only the strain energy, the others are those of the
+   motion. */
 SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);
 /* work[3]: out, J, done on the member in the accepted steps by the loads kept (dead, follower, line), by the fluids,
    and by a driven root. The account begins at zero with the first call, between steps, and anew where the motion is set
    (static solution, initial velocity, load): nothing is computed for members it has not been asked for. Kinetic +
    strain
-   + potential + dissipated energy less the sum of the three stays constant to the order of the integrator. Local. */
+   + potential + dissipated energy less the sum of the three stays constant to the order of the integrator; of a linear
+   or modal member on a root that turns but for the shortening of the bent beam, which they neglect. Local. */
 SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
 /* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
    >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities
@@ -379,7 +387,8 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
    terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
-   those of its reference. n: in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where
+   those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
+   load stiffness; of a rigid one those of the rigid body. n: in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where
    the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out, displacement and rotation, normalised to
    unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity, commit, solve_static, get_modes. Local. */
 SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);

@@ -997,10 +997,16 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
 
 /* ---- energy ---- */
 
+static void linear_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
+
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
     int moving = v != NULL;
     double *z = body->scratch, *f = z + (int64_t)body->per_element * (ROW + BACK);
     memset(energy, 0, 4 * sizeof *energy);
+    if (body->linear[0]) {
+        linear_energy(body, q, v, energy);
+        return;
+    }
     for (int e = 0; e < body->elements; e++) {
         gather(body, e, q, v, NULL, z);
         interpolate(body, e, z, moving, f);
@@ -1028,6 +1034,22 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
                 for (int i = 0; i < 3; i++) {
                     energy[2] -= w * body->gravity[i] * (mass[0] * s.f[U + i] + offset[i] - mass[1 + i]);
                 }
+            }
+        }
+    }
+}
+
+/* The tangent is linear in cm and cv. With a large one what is subtracted does not take digits: with 1 a stiff beam's
+   mass would keep few. */
+void spari_body_rates(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
+                      const double *S, double *C, double *M) {
+    const double large = 0x1p60;
+    double *out[2] = {C, M};
+    for (int k = 0; k < 2; k++) {
+        if (out[k]) {
+            spari_body_tangent(body, e, q, v, a, factor, k == 1 ? large : 0, k == 0 ? large : 0, NULL, out[k]);
+            for (int i = 0; i < 36 * body->per_element * body->per_element; i++) {
+                out[k][i] = (out[k][i] - S[i]) / large;
             }
         }
     }
@@ -1064,18 +1086,10 @@ int spari_body_linearise(spari_body *body, int heavy) {
         q[7 * i + 3] = 1;
     }
     for (int e = 0; e < body->elements; e++) {
-        /* at rest and unloaded the tangent is K + cv B + cm M: three calls tell them apart; gravity stays out of K
-         * (first order) */
-        const double *K = matrices[0] + size * e;
-        for (int k = 0; k < 3; k++) {
-            double *to = there[k] ? matrices[k] + size * e : NULL;
-            if (to) {
-                spari_body_tangent(body, e, q, NULL, NULL, 0, k == 2, k == 1, NULL, to);
-            }
-            for (int64_t i = 0; i < size && to && k > 0; i++) {
-                to[i] -= K[i];
-            }
-        }
+        double *K = matrices[0] + size * e; /* gravity stays out of it: first order */
+        spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 0, NULL, K);
+        spari_body_rates(body, e, q, NULL, NULL, 0, K, there[1] ? matrices[1] + size * e : NULL,
+                         there[2] ? matrices[2] + size * e : NULL);
     }
     body->at_rest = q;
     body->weights = weights;
@@ -1085,9 +1099,32 @@ int spari_body_linearise(spari_body *body, int heavy) {
 }
 
 /* v . B v of one element */
-static double rate_power(int n, const double *B, const double *v, double *work) {
+static double quadratic(int n, const double *B, const double *v, double *work) {
     cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, B, n, v, 1, 0, work, 1);
     return cblas_ddot(n, v, 1, work, 1);
+}
+
+/* Displacements and rotation vectors of n nodes */
+static void displacements(int n, const double *q, double *x) {
+    for (int l = 0; l < n; l++) {
+        memcpy(x + 6 * l, q + 7 * l, 3 * sizeof *x);
+        spari_quat_log(q + 7 * l + 3, x + 6 * l + 3);
+    }
+}
+
+static void linear_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
+    int P = body->per_element, n = 6 * P;
+    double *x = body->scratch;
+    for (int e = 0; e < body->elements; e++) {
+        int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
+        displacements(P, q + 7 * first, x);
+        energy[1] += 0.5 * quadratic(n, body->linear[0] + at, x, x + n);
+        energy[0] += body->linear[2] && v ? 0.5 * quadratic(n, body->linear[2] + at, v + 6 * first, x + n) : 0;
+        energy[3] += body->linear[1] && v ? quadratic(n, body->linear[1] + at, v + 6 * first, x + n) : 0;
+        for (int i = e > 0 ? 6 : 0; i < n && body->weights; i++) { /* a joint counts once */
+            energy[2] += body->weights[6 * first + i] * x[i];
+        }
+    }
 }
 
 static double linear_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
@@ -1099,16 +1136,12 @@ static double linear_residual(const spari_body *body, const double *q, const dou
     }
     for (int e = 0; e < body->elements; e++) {
         int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
-        for (int l = 0; l < P; l++) {
-            const double *qn = q + 7 * (first + l);
-            memcpy(x + 6 * l, qn, 3 * sizeof *x);
-            spari_quat_log(qn + 3, x + 6 * l + 3);
-        }
+        displacements(P, q + 7 * first, x);
         const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
         for (int k = 0; k < 3; k++) {
             if (in[k] && body->linear[k] && (k != 1 || body->D)) {
                 if (k == 1) {
-                    damped += rate_power(n, body->linear[1] + at, in[1], x + n);
+                    damped += quadratic(n, body->linear[1] + at, in[1], x + n);
                 }
                 cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first,
                             1);

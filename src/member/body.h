@@ -49,6 +49,11 @@ double spari_body_residual(const spari_body *body, const double *q, const double
 void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv, double *S);
 
+/* The parts of it that belong to velocities and accelerations, dr = C dv + M da, row-major [6P][6P]; S is the tangent
+   with cm = cv = 0. C, M NULL: not wanted. */
+void spari_body_rates(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
+                      const double *S, double *C, double *M);
+
 /* kinetic, strain, gravity potential (zero at the reference), power dissipated; v NULL: at rest */
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
 

@@ -506,9 +506,8 @@ int spar_member_get_energy(const spar_member *member, double energy[4]) {
     spari_body_energy(b, q, v, energy);
     energy[0] = member->effects & SPAR_EFFECT_INERTIA ? energy[0] : 0;
     energy[3] = member->dissipated;
-    if (member->rung) {
-        spari_rung_energy(member, energy);
-    }
     free(q);
+    SPARI_REQUIRE(member->session, !member->rung || spari_rung_energy(member, energy) == SPAR_OK, SPAR_ERR_MEMORY,
+                  "spar_member_get_energy: no memory for '%s'", member->name);
     return SPAR_OK;
 }

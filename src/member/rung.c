@@ -70,17 +70,18 @@ int spari_rung_check(const spar_member *m) {
                   "%s: '%s' is prescribed and its root is free or pinned: nothing says where it goes; fix or drive its "
                   "root, or make it rigid",
                   call, m->name);
-    SPARI_REQUIRE(m->session, m->fidelity != SPAR_FIDELITY_MODAL || root_is_given(m), SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' is modal and its root is free or pinned: modes are those of a root that is held; fix or "
-                  "drive its root, or make it rigid, linear or exact",
-                  call, m->name);
     SPARI_REQUIRE(m->session,
                   m->beam->mass || (m->fidelity != SPAR_FIDELITY_RIGID && m->fidelity != SPAR_FIDELITY_MODAL),
                   SPAR_ERR_STATE, "%s: '%s' has no mass, which a rigid or modal member needs; give its sections mass",
                   call, m->name);
-    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - 6;
+    int first, held;
+    spari_solver_fixed(m, &first, &held);
+    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - held, least = 6 - held;
     SPARI_REQUIRE(m->session, m->fidelity != SPAR_FIDELITY_MODAL || m->modes <= most, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld modes; its nodes have %lld", call, m->name, (long long)m->modes, (long long)most);
+    SPARI_REQUIRE(m->session, m->fidelity != SPAR_FIDELITY_MODAL || m->modes >= least, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld modes; its first %lld move it as a rigid body, give as many at least", call, m->name,
+                  (long long)m->modes, (long long)least);
     return SPAR_OK;
 }
 
@@ -90,7 +91,8 @@ int spari_rung_effects(const spar_member *m, int effects) {
         return effects & ~(SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING);
     case SPAR_FIDELITY_RIGID:
         return effects & ~SPAR_EFFECT_DAMPING;
-    case SPAR_FIDELITY_LINEAR: /* the frame's rotation is large all the same */
+    case SPAR_FIDELITY_LINEAR:
+    case SPAR_FIDELITY_MODAL: /* the rotation of a root that is given is large all the same */
         return root_is_given(m) ? effects : effects & ~SPAR_EFFECT_LARGE_ROTATION;
     default:
         return effects;
@@ -217,9 +219,7 @@ static int core_advance(spar_member *m, double dt) {
     SPARI_REQUIRE(m->session, extra || !m->applied, SPAR_ERR_MEMORY, "spar_step_solve: no memory for '%s'", m->name);
     int status = SPAR_OK;
     memcpy(c->drive, m->drive, sizeof c->drive);
-    for (int k = 0; k < 3; k++) {
-        c->body->gravity[k] = m->body->gravity[k];
-    }
+    memcpy(c->body->gravity, m->body->gravity, sizeof c->body->gravity);
     memcpy(c->after.q, c->now.q, 7 * sizeof(double));
     for (int pass = 0; pass < PASSES && status == SPAR_OK; pass++) {
         double dead[9] = {0};
@@ -261,6 +261,38 @@ static int core_advance(spar_member *m, double dt) {
     return status;
 }
 
+int spari_rung_core(const spar_member *m, spar_member **core) {
+    spar_member *c = m->rung->core;
+    double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0};
+    *core = c;
+    if (!load) {
+        return SPAR_ERR_MEMORY;
+    }
+    memcpy(c->after.q, m->after.q, 7 * sizeof(double));
+    memcpy(c->after.v, m->after.v, 6 * sizeof(double));
+    memcpy(c->after.a, m->after.a, 6 * sizeof(double));
+    memcpy(c->body->gravity, m->body->gravity, sizeof c->body->gravity);
+    memset(c->arms->Z, 0, sizeof c->arms->Z);
+    int status = spar_member_get_loads(m, load);
+    gather(m, load, sum, c->arms->Z);
+    free(load);
+    return status;
+}
+
+void spari_rung_carry(const spar_member *m, const double root[6], double *nodes) {
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double *x = nodes + 6 * i, r[3];
+        for (int k = 0; k < 3; k++) {
+            r[k] = m->xr[3 * i + k] + m->after.q[7 * i + k] - m->xr[k] - m->after.q[k];
+        }
+        spari_cross(root + 3, r, x);
+        for (int k = 0; k < 3; k++) {
+            x[k] += root[k];
+            x[3 + k] = root[3 + k];
+        }
+    }
+}
+
 /* ---- members without a solution ---- */
 
 static void prescribed_advance(spar_member *m) {
@@ -277,9 +309,15 @@ static void prescribed_advance(spar_member *m) {
 /* ---- life and time ---- */
 
 int spari_rung_create(spar_member *m) {
-    if (m->fidelity == SPAR_FIDELITY_EXACT || (m->fidelity == SPAR_FIDELITY_LINEAR && !root_is_given(m))) {
+    if (m->fidelity == SPAR_FIDELITY_EXACT) {
         return SPAR_OK;
     }
+    SPARI_REQUIRE(m->session,
+                  root_is_given(m) || m->fidelity == SPAR_FIDELITY_RIGID || (m->effects & SPAR_EFFECT_INERTIA),
+                  SPAR_ERR_STATE,
+                  "spar_member_commit: '%s' is linear without inertia and nothing holds it: fix or drive its root, or "
+                  "leave INERTIA on",
+                  m->name);
     m->rung = spari_zalloc(1, sizeof *m->rung);
     int status = m->rung ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && m->fidelity == SPAR_FIDELITY_RIGID) {
@@ -441,6 +479,48 @@ int spari_rung_reaction(const spar_member *m, double load[6]) {
     return SPAR_OK;
 }
 
-void spari_rung_energy(const spar_member *m, double energy[4]) {
-    energy[1] = m->rung->frame ? spari_frame_strain(m->rung->frame, m) : 0;
+int spari_rung_energy(const spar_member *m, double energy[4]) {
+    energy[1] = 0;
+    return m->rung->frame ? spari_frame_energy(m->rung->frame, m, energy) : SPAR_OK;
+}
+
+/* ---- what a frame sees ---- */
+
+void spari_rung_pose(const spar_member *m, const spari_motion *nodes, double pose[13]) {
+    memset(pose, 0, 13 * sizeof *pose);
+    pose[3] = 1;
+    if (m->rung && root_is_given(m)) {
+        memcpy(pose, nodes->q, 7 * sizeof *pose);
+    }
+    if (m->rung && m->root == SPAR_ROOT_DRIVEN) {
+        memcpy(pose + 7, nodes->v, 6 * sizeof *pose);
+    }
+}
+
+void spari_rung_deformation(const spar_member *m, const double pose[13], const spari_motion *nodes, int64_t node,
+                            double x[6], double rate[6]) {
+    const double *q = nodes->q + 7 * node, *v = nodes->v + 6 * node;
+    double arm[3], d[3], back[4], p[4], omega[3], turn[3], T[9];
+    for (int k = 0; k < 3; k++) {
+        arm[k] = m->xr[3 * node + k] - m->xr[k];
+        d[k] = arm[k] + q[k] - pose[k];
+    }
+    for (int k = 0; k < 6; k++) {
+        rate[k] = v[k] - pose[7 + k];
+    }
+    spari_rotate_back(pose + 3, d, d);
+    spari_rotate_back(pose + 3, pose + 10, omega);
+    spari_rotate_back(pose + 3, rate, rate);
+    spari_rotate_back(pose + 3, rate + 3, rate + 3);
+    spari_cross(omega, d, turn);
+    spari_quat_conj(pose + 3, back);
+    spari_quat_mul(back, q + 3, p);
+    spari_quat_log(p, x + 3);
+    spari_tangent_inverse(x + 3, T);
+    double spin[3] = {rate[3], rate[4], rate[5]};
+    for (int k = 0; k < 3; k++) {
+        x[k] = d[k] - arm[k];
+        rate[k] -= turn[k];
+        rate[3 + k] = T[3 * k] * spin[0] + T[3 * k + 1] * spin[1] + T[3 * k + 2] * spin[2];
+    }
 }

@@ -1,7 +1,6 @@
 /* Members below the exact ones. Prescribed: the nodes follow the root as one rigid body; nothing is solved for. Rigid:
    the same about a body of the member's whole mass, which the solver of rigid bodies advances. Linear and modal: see
-   solve/frame.h. A linear member whose root turns freely has no frame that is given: it is linear about its reference
-   instead, as with LARGE_ROTATION off, and has no rung. */
+   solve/frame.h. */
 #ifndef SPARI_RUNG_H
 #define SPARI_RUNG_H
 
@@ -23,6 +22,12 @@ struct spari_rung {
     spar_member *core;         /* rigid: a body of one node; NULL: none */
     struct spari_frame *frame; /* linear, modal; NULL: none */
 };
+
+/* The body that carries a rigid member (not NULL), with the latest iterate and the arms of the loads in use. 0, or
+   SPAR_ERR_MEMORY. */
+int spari_rung_core(const spar_member *member, spar_member **core);
+/* A small motion of its root, displacement and rotation, carried to all nodes [nodes][6] of the latest iterate. */
+void spari_rung_carry(const spar_member *member, const double root[6], double *nodes);
 
 /* Whether the member is one whose nodes follow its root without a solution. */
 int spari_rung_prescribed(const spar_member *member);
@@ -46,7 +51,13 @@ void spari_rung_load(spar_member *member, const double *state);
 /* What the root gives the member in the motion after, from the balance of the whole: inertia less weight less loads,
  * each where its node is. Internal forces have no part in it. */
 int spari_rung_reaction(const spar_member *member, double load[6]);
-/* Puts what linear theory says in place of the strain energy of the exact one. */
-void spari_rung_energy(const spar_member *member, double energy[4]);
+/* Puts what a rung's own equations say in place of the energies of the exact member. 0, or SPAR_ERR_MEMORY. */
+int spari_rung_energy(const spar_member *member, double energy[4]);
+/* Place, orientation and velocity of the frame that a linear or modal member is seen from: those of its root where they
+   are given, else it stands at the reference. Members that are linear about their reference otherwise: the same. */
+void spari_rung_pose(const spar_member *member, const spari_motion *nodes, double pose[13]);
+/* Deformation of a node seen from there, displacement and rotation vector in the axes of the pose, and its rates. */
+void spari_rung_deformation(const spar_member *member, const double pose[13], const spari_motion *nodes, int64_t node,
+                            double x[6], double rate[6]);
 
 #endif

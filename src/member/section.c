@@ -3,6 +3,7 @@
 #include "../math/rotation.h"
 #include "../session/session.h"
 #include "beam.h"
+#include "rung.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,23 +76,31 @@ static void strains(const spari_station *s, const section_field *f, double e[6],
     }
 }
 
-/* The same of a member that is linear about its reference: (u' - theta x x0', theta'). */
+/* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
+static int is_linear(const spar_member *m) {
+    return (m->rung && m->rung->frame) || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+}
+
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
     int P = m->per_element;
-    const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
-    double theta[3] = {0}, omega[3] = {0}, c[3];
+    double pose[13], theta[3] = {0}, omega[3] = {0}, c[3];
+    spari_rung_pose(m, &m->after, pose);
     memset(e, 0, 6 * sizeof *e);
     memset(ed, 0, 6 * sizeof *ed);
     for (int l = 0; l < P; l++) {
-        double psi[3];
-        spari_quat_log(q + 7 * l + 3, psi);
+        int64_t node = (int64_t)s->element * P + l;
+        double x[6], rate[6];
+        spari_rung_deformation(m, pose, &m->after, node, x, rate);
+        if (!m->rung) { /* the equations of LARGE_ROTATION off take velocities for rates */
+            memcpy(rate, m->after.v + 6 * node, sizeof rate);
+        }
         for (int i = 0; i < 3; i++) {
-            e[i] += s->dphi[l] * q[7 * l + i];
-            e[3 + i] += s->dphi[l] * psi[i];
-            theta[i] += s->phi[l] * psi[i];
-            ed[i] += s->dphi[l] * v[6 * l + i];
-            ed[3 + i] += s->dphi[l] * v[6 * l + 3 + i];
-            omega[i] += s->phi[l] * v[6 * l + 3 + i];
+            theta[i] += s->phi[l] * x[3 + i];
+            omega[i] += s->phi[l] * rate[3 + i];
+        }
+        for (int i = 0; i < 6; i++) {
+            e[i] += s->dphi[l] * x[i];
+            ed[i] += s->dphi[l] * rate[i];
         }
     }
     spari_cross(theta, s->t, c);
@@ -118,10 +127,10 @@ static void section_output(const spar_member *m, const spari_station *s, double 
     section_field f;
     double e[6], ed[6], local[6], rate[6], C[36], q0[4];
     field_at(m, s, &f);
-    if (m->effects & SPAR_EFFECT_LARGE_ROTATION) {
-        strains(s, &f, e, ed);
-    } else {
+    if (is_linear(m)) {
         linear_strains(m, s, e, ed);
+    } else {
+        strains(s, &f, e, ed);
     }
     to_local(s->R, e, local);
     to_local(s->R, ed, rate);

@@ -4,6 +4,7 @@
 #include "../session/session.h"
 #include "applied.h"
 #include "edge.h"
+#include "rung.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,12 +24,26 @@ void spari_work_free(spari_work *work) {
     }
 }
 
+/* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
+ */
+static int turns_linearly(const spar_member *m) {
+    return !(m->effects & SPAR_EFFECT_LARGE_ROTATION) || (m->rung && m->rung->frame && m->root != SPAR_ROOT_DRIVEN);
+}
+
 /* Displacement and rotation vector of node i over the step */
 static void increment(const spar_member *m, int64_t i, double d[6]) {
     const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
     double conj[4], turn[4];
     for (int c = 0; c < 3; c++) {
         d[c] = to[c] - from[c];
+    }
+    if (turns_linearly(m)) {
+        spari_quat_log(from + 3, conj);
+        spari_quat_log(to + 3, turn);
+        for (int c = 0; c < 3; c++) {
+            d[3 + c] = turn[c] - conj[c];
+        }
+        return;
     }
     spari_quat_conj(from + 3, conj);
     spari_quat_mul(to + 3, conj, turn);

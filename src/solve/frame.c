@@ -3,10 +3,13 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
+#include "../member/rung.h"
 #include "../session/session.h"
 #include "solver.h"
+#include "turn.h"
 
-#include <gsl/gsl_cblas.h> /* the declarations; the linked CBLAS is the fast one */
+#include <float.h>
+#include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <stdlib.h>
@@ -77,9 +80,8 @@ static void turn_matrices(const spari_frame *f, const setup *w, const double ome
         const double *K = f->K + mm * e, *M = f->M + mm * e;
         double *S = w->S[0], *B = w->S[1];
         spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
-        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 1, NULL, B);
+        spari_body_rates(w->body, e, w->q, w->v, w->a, 0, S, B, NULL);
         for (int64_t i = 0; i < mm; i++) {
-            B[i] -= S[i];
             N[mm * e + i] = S[i] - K[i];
         }
         times_nodes(m, B, W, NULL, N + mm * e);
@@ -97,16 +99,9 @@ static void turn_matrices(const spari_frame *f, const setup *w, const double ome
 static void rest_matrices(const spari_frame *f, const setup *w) {
     int64_t mm = (int64_t)w->m * w->m;
     for (int e = 0; e < w->body->elements; e++) {
-        double *K = f->K + mm * e, *to[2] = {f->D, f->M};
+        double *K = f->K + mm * e;
         spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, 0, 0, NULL, K);
-        for (int k = 0; k < 2; k++) {
-            if (to[k]) {
-                spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, k, 1 - k, NULL, to[k] + mm * e);
-                for (int64_t i = 0; i < mm; i++) {
-                    to[k][mm * e + i] -= K[i];
-                }
-            }
-        }
+        spari_body_rates(w->body, e, w->q, NULL, NULL, 0, K, f->D ? f->D + mm * e : NULL, f->M ? f->M + mm * e : NULL);
     }
 }
 
@@ -182,7 +177,7 @@ static void factor_into(spari_frame *f, const double *K, double ck, const double
         }
         spari_linear_add(f->linear, e, S);
     }
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < f->held; i++) {
         spari_linear_fix(f->linear, i);
     }
     f->factors++;
@@ -220,71 +215,121 @@ static int turn_terms(spari_frame *f, const setup *w) {
 
 /* ---- modes ---- */
 
-static void assemble(const spari_frame *f, const double *X, gsl_matrix *A) {
+/* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
+static void assemble(const spari_frame *f, const double *X, double scale, int from, double *A) {
     int m = f->block, step = f->block - f->overlap;
+    int64_t n = f->n - from;
     for (int e = 0; e < f->elements; e++) {
+        const double *x = X + (int64_t)m * m * e;
         for (int i = 0; i < m; i++) {
             for (int j = 0; j < m; j++) {
-                int row = e * step + i - 6, col = e * step + j - 6;
+                int row = e * step + i - from, col = e * step + j - from;
                 if (row >= 0 && col >= 0) {
-                    const double *x = X + (int64_t)m * m * e;
-                    *gsl_matrix_ptr(A, (size_t)row, (size_t)col) +=
-                        0.5 * (x[(int64_t)m * i + j] + x[(int64_t)m * j + i]);
+                    A[n * row + col] += 0.5 * scale * (x[(int64_t)m * i + j] + x[(int64_t)m * j + i]);
                 }
             }
         }
     }
 }
 
-/* Columns of the basis: the six rigid motions about the root, then the lowest modes, of unit modal mass. */
-static int fill_basis(spari_frame *f, const double *arm, int64_t modes) {
-    size_t n = (size_t)(6 * f->nodes - 6), cols = (size_t)modes + 6;
-    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *x = gsl_matrix_alloc(n, n);
-    gsl_vector *lambda = gsl_vector_alloc(n);
-    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(n);
-    int status = K && M && x && lambda && w ? SPAR_OK : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK) {
-        assemble(f, f->K, K);
-        assemble(f, f->M, M);
-        gsl_matrix *M2 = gsl_matrix_alloc(n, n);
-        status = M2 ? SPAR_OK : SPAR_ERR_MEMORY;
-        if (M2) {
-            gsl_matrix_memcpy(M2, M);
-            status = gsl_eigen_gensymmv(K, M2, lambda, x, w) == GSL_SUCCESS ? SPAR_OK : SPAR_ERR_NUMERIC;
-            gsl_matrix_free(M2);
+/* The six rigid motions about the root, as columns of the basis. */
+static void rigid_columns(spari_frame *f, const double *arm, int cols) {
+    for (int i = 0; i < f->nodes; i++) {
+        double W[9], *at = f->basis + (int64_t)6 * i * cols;
+        skew(arm + 3 * i, W);
+        for (int r = 0; r < 3; r++) {
+            at[r * cols + r] = at[(3 + r) * cols + 3 + r] = 1;
+            for (int c = 0; c < 3; c++) {
+                at[r * cols + 3 + c] = -W[3 * r + c];
+            }
         }
     }
-    if (status == SPAR_OK) {
-        gsl_eigen_gensymmv_sort(lambda, x, GSL_EIGEN_SORT_VAL_ASC);
-        for (int i = 0; i < f->nodes; i++) {
-            double W[9];
-            skew(arm + 3 * i, W);
-            for (size_t r = 0; r < 3; r++) {
-                f->basis[(6 * (size_t)i + r) * cols + r] = f->basis[(6 * (size_t)i + 3 + r) * cols + 3 + r] = 1;
-                for (size_t c = 0; c < 3; c++) {
-                    f->basis[(6 * (size_t)i + r) * cols + 3 + c] = -W[3 * r + c];
-                }
+}
+
+/* image := M times column k of the basis, which goes into x */
+static void image_of(const spari_frame *f, int cols, int k, double *x, double *image) {
+    cblas_dcopy(6 * f->nodes, f->basis + k, cols, x, 1);
+    memset(image, 0, (size_t)(6 * f->nodes) * sizeof *image);
+    multiply(f, f->M, x, 1, image);
+}
+
+/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `held` on before them; a
+   second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
+static int orthonormalise(spari_frame *f, int cols, int from, int end, double *work) {
+    int n = 6 * f->nodes;
+    double *x = work, *image = work + n;
+    for (int k = from; k < end; k++) {
+        for (int pass = 0; pass < 2; pass++) {
+            image_of(f, cols, k, x, image);
+            for (int j = f->held; j < k; j++) {
+                cblas_daxpy(n, -cblas_ddot(n, f->basis + j, cols, image, 1), f->basis + j, cols, f->basis + k, cols);
             }
         }
-        for (size_t k = 0; k < (size_t)modes; k++) {
-            double mass = 0;
+        image_of(f, cols, k, x, image);
+        double square = cblas_ddot(n, x, 1, image, 1);
+        if (!(square > 0)) {
+            return 1;
+        }
+        cblas_dscal(n, 1 / sqrt(square), f->basis + k, cols);
+    }
+    return 0;
+}
+
+/* The lowest modes seen from the root, as columns from 6 on: K z = lambda (M - M R R^T M) z over the nodes beside it,
+   where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
+   deformation. Beams that nothing holds have a singular K, but not here: rigid motions are columns of their own.
+   Solved for 1 / lambda, in which the low modes keep their digits. */
+static int elastic_columns(spari_frame *f, int cols, double *work) {
+    size_t n = (size_t)(6 * f->nodes - 6);
+    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = gsl_matrix_alloc(n, n);
+    gsl_vector *mu = gsl_vector_alloc(n);
+    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(n);
+    int status = K && M && z && mu && w ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        double *x = work, *image = work + 6 * f->nodes;
+        assemble(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
+        assemble(f, f->M, 1, 6, M->data);
+        for (int k = f->held; k < 6; k++) {
+            image_of(f, cols, k, x, image);
+            gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
+            gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
+        }
+        status = gsl_eigen_gensymmv(M, K, mu, z, w) == GSL_SUCCESS ? SPAR_OK : SPAR_ERR_NUMERIC;
+    }
+    if (status == SPAR_OK) {
+        gsl_eigen_gensymmv_sort(mu, z, GSL_EIGEN_SORT_VAL_DESC);
+        for (int k = 6; k < cols; k++) {
+            int massive = gsl_vector_get(mu, (size_t)(k - 6)) > DBL_EPSILON * gsl_vector_get(mu, 0);
+            status = massive ? status : SPAR_ERR_NUMERIC;
             for (size_t i = 0; i < n; i++) {
-                for (size_t j = 0; j < n; j++) {
-                    mass += gsl_matrix_get(x, i, k) * gsl_matrix_get(M, i, j) * gsl_matrix_get(x, j, k);
-                }
-            }
-            for (size_t i = 0; i < n; i++) {
-                f->basis[(6 + i) * cols + 6 + k] = gsl_matrix_get(x, i, k) / sqrt(mass);
+                f->basis[(6 + i) * (size_t)cols + (size_t)k] = gsl_matrix_get(z, i, (size_t)(k - 6));
             }
         }
     }
     gsl_matrix_free(K);
     gsl_matrix_free(M);
-    gsl_matrix_free(x);
-    gsl_vector_free(lambda);
+    gsl_matrix_free(z);
+    gsl_vector_free(mu);
     if (w) {
         gsl_eigen_gensymmv_free(w);
     }
+    return status;
+}
+
+/* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the lowest
+   modes; those that are free are orthonormal in the norm of the mass. */
+static int fill_basis(spari_frame *f, const double *arm, int cols) {
+    double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
+    f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
+    int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        rigid_columns(f, arm, cols);
+        status = orthonormalise(f, cols, f->held, 6, work) ? SPAR_ERR_NUMERIC : elastic_columns(f, cols, work);
+    }
+    if (status == SPAR_OK && orthonormalise(f, cols, 6, cols, work)) {
+        status = SPAR_ERR_NUMERIC;
+    }
+    free(work);
     return status;
 }
 
@@ -309,8 +354,17 @@ static int project_matrix(const spari_frame *f, int cols, double **X) {
     return 0;
 }
 
-static int project(spari_frame *f, int64_t modes) {
-    int cols = (int)modes + 6, bad = 0;
+/* Rigid motions strain nothing: not by rounding either. */
+static void no_strain(const spari_frame *f, double *X) {
+    for (int i = 0; i < f->n && X; i++) {
+        for (int j = 0; j < f->n; j++) {
+            X[(int64_t)f->n * i + j] = i < 6 || j < 6 ? 0 : X[(int64_t)f->n * i + j];
+        }
+    }
+}
+
+static int project(spari_frame *f, int cols) {
+    int bad = 0;
     double **all[3 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D};
     for (int k = 0; k < SPARI_TURNS; k++) {
         all[3 + k] = &f->N[k];
@@ -337,6 +391,8 @@ static int project(spari_frame *f, int64_t modes) {
     free(part);
     f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
     f->size = (int64_t)cols * cols;
+    no_strain(f, f->K);
+    no_strain(f, f->D);
     spari_linear_free(f->linear);
     f->linear = spari_linear_create(1, cols, 6);
     return bad || !f->linear;
@@ -359,19 +415,19 @@ static int carve_states(spari_frame *f) {
 }
 
 static int allocate(spari_frame *f, const spar_member *m) {
-    int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0, ok = 1;
+    int turns = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
     double **matrices[] = {&f->K, &f->M, &f->D};
     const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL};
     for (int k = 0; k < 3; k++) {
         ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
     }
     for (int k = 0; k < SPARI_TURNS; k++) {
-        ok = ok && (!inertia || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
-                                 (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
+        ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
+                               (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
         ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
     }
     for (int k = 0; k < 3; k++) {
-        ok = ok && (!inertia || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
     }
     return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
 }
@@ -440,6 +496,8 @@ int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) 
     setup w = {.body = member->body, .m = 6 * member->per_element};
     int status = f ? SPAR_OK : SPAR_ERR_MEMORY;
     if (f) {
+        int first;
+        spari_solver_fixed(member, &first, &f->held);
         f->nodes = member->body->unique;
         f->elements = member->elements, f->block = w.m, f->overlap = 6, f->n = 6 * f->nodes;
         f->size = (int64_t)f->elements * f->block * f->block;
@@ -449,9 +507,9 @@ int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) 
         status = build(f, member, &w);
     }
     if (status == SPAR_OK && modes > 0) {
-        f->basis = spari_zalloc((int64_t)6 * f->nodes * (modes + 6), sizeof(double));
-        status = f->basis ? fill_basis(f, w.arm, modes) : SPAR_ERR_MEMORY;
-        if (status == SPAR_OK && project(f, modes)) {
+        int cols = (int)modes + f->held;
+        status = fill_basis(f, w.arm, cols);
+        if (status == SPAR_OK && project(f, cols)) {
             status = SPAR_ERR_MEMORY;
         }
     }
@@ -461,11 +519,12 @@ int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) 
     }
     if (status != SPAR_OK) {
         spari_frame_free(f);
-        return spari_fail(member->session, status, "spar_member_commit: '%s': %s", member->name,
-                          status == SPAR_ERR_MEMORY
-                              ? "no memory for the linear member"
-                              : "its mass or its stiffness is not positive definite, so it has no modes; give every "
-                                "section mass and rotary inertia, or take another fidelity");
+        return spari_fail(
+            member->session, status, "spar_member_commit: '%s': %s", member->name,
+            status == SPAR_ERR_MEMORY
+                ? "no memory for the linear member"
+                : "its stiffness is not positive definite, or it has fewer modes with mass than asked for; "
+                  "give every section mass and rotary inertia, or ask for fewer modes");
     }
     f->factors = 0; /* those of the set-up do not count */
     *frame = f;
@@ -502,35 +561,13 @@ static void matvec3(const double T[9], const double x[3], double y[3]) {
     }
 }
 
-/* Deformation and rates of nodes x, v [unique] seen from the root node, in the frame's axes, as unknowns. */
-static void from_nodes(spari_frame *f, const spar_member *m, const double *q, const double *v, double *y,
-                       double *rate) {
-    const double *root = q;
-    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, omega[3];
-    spari_rotate_back(root + 3, v + 3, omega);
-    int P = m->per_element;
-    for (int i = 0; i < f->nodes; i++) {
-        int64_t at = m->elements == 1 ? i : i == 0 ? 0 : i + (i - 1) / (P - 1);
-        double arm[3], p[4], back[4], turn[3], d[3], rot[3], T[9];
-        for (int k = 0; k < 3; k++) {
-            arm[k] = m->xr[3 * at + k] - m->xr[k];
-            d[k] = arm[k] + q[7 * i + k] - root[k];
-            xd[6 * i + k] = v[6 * i + k] - v[k];
-            rot[k] = v[6 * i + 3 + k] - v[3 + k];
-        }
-        spari_rotate_back(root + 3, d, d);
-        spari_rotate_back(root + 3, xd + 6 * i, xd + 6 * i);
-        spari_cross(omega, d, turn);
-        spari_quat_conj(root + 3, back);
-        spari_quat_mul(back, q + 7 * i + 3, p);
-        spari_quat_log(p, x + 6 * i + 3);
-        spari_rotate_back(root + 3, rot, rot);
-        spari_tangent_inverse(x + 6 * i + 3, T);
-        matvec3(T, rot, xd + 6 * i + 3);
-        for (int k = 0; k < 3; k++) {
-            x[6 * i + k] = d[k] - arm[k];
-            xd[6 * i + k] -= turn[k];
-        }
+/* Deformation and rates of the nodes' motion, seen from the frame, as unknowns. */
+static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion *nodes, double *y, double *rate) {
+    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, pose[13];
+    spari_rung_pose(m, nodes, pose);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / m->per_element;
+        spari_rung_deformation(m, pose, nodes, i, x + 6 * u, xd + 6 * u);
     }
     if (!f->basis) {
         memcpy(y, x, (size_t)f->n * sizeof *y);
@@ -549,7 +586,7 @@ static void from_nodes(spari_frame *f, const spar_member *m, const double *q, co
     for (int k = 0; k < 2; k++) {
         spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
         cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1);
-        memset(out[k], 0, 6 * sizeof *y);
+        memset(out[k], 0, (size_t)f->held * sizeof *y);
     }
 }
 
@@ -618,6 +655,36 @@ static void publish(spari_frame *f, spar_member *m, const spari_frame_state *s, 
     spari_member_from_unique(m, 7, q, to->q);
     spari_member_from_unique(m, 6, v, to->v);
     spari_member_from_unique(m, 6, a, to->a);
+}
+
+int64_t spari_frame_unknowns(const spari_frame *f) {
+    return f->n - f->held;
+}
+
+void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
+    double pose[13], omega[3];
+    spari_rung_pose(m, &m->after, pose);
+    spari_rotate_back(pose + 3, pose + 10, omega);
+    assemble(f, f->K, 1, f->held, K);
+    assemble(f, f->M, 1, f->held, M);
+    for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
+        assemble(f, f->N[k], omega[pair[k][0]] * omega[pair[k][1]], f->held, K);
+    }
+}
+
+void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
+    double pose[13];
+    spari_rung_pose(m, &m->after, pose);
+    memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
+    if (f->basis) {
+        cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n, x, 1, 0,
+                    nodes, 1);
+    } else {
+        memcpy(nodes + f->held, x, (size_t)(f->n - f->held) * sizeof *nodes);
+    }
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate(pose + 3, nodes + i, nodes + i);
+    }
 }
 
 /* ---- time ---- */
@@ -722,7 +789,7 @@ static void forcing(spari_frame *f, const spar_member *m, const spari_frame_stat
     }
 }
 
-/* r = forcing + M a + C v + K y, the root's rows out */
+/* r = forcing + M a + C v + K y, the held rows out */
 static void balance(const spari_frame *f, const spari_frame_state *s, int still, const double *fixed, double *r) {
     memcpy(r, fixed, (size_t)f->n * sizeof *r);
     multiply(f, f->sumK ? f->sumK : f->K, s->y, 1, r);
@@ -732,7 +799,7 @@ static void balance(const spari_frame *f, const spari_frame_state *s, int still,
     if (f->M && !still) {
         multiply(f, f->M, s->a, 1, r);
     }
-    memset(r, 0, 6 * sizeof *r);
+    memset(r, 0, (size_t)f->held * sizeof *r);
 }
 
 static int factor(spari_frame *f, const scheme *c) {
@@ -755,7 +822,7 @@ static double largest(const spari_frame *f, const double *x) {
 /* Starting values: the accelerations stay. */
 static void predict(const spari_frame *f, const scheme *c, const spari_frame_state *from, spari_frame_state *to) {
     double h = c->h;
-    for (int k = 6; k < f->n; k++) {
+    for (int k = f->held; k < f->n; k++) {
         double b = from->b[k], a = from->a[k];
         if (c->still) {
             to->y[k] = from->y[k];
@@ -827,7 +894,7 @@ static int substep(spari_frame *f, spar_member *m, const scheme *c, spari_frame_
             return 1;
         }
         f->solves++;
-        for (int k = 6; k < f->n; k++) {
+        for (int k = f->held; k < f->n; k++) {
             to->y[k] -= f->dx[k];
             to->v[k] -= c->still ? f->dx[k] / c->h : c->cv * f->dx[k];
             to->a[k] -= c->cm * f->dx[k];
@@ -860,7 +927,7 @@ static int start(spari_frame *f, spar_member *m, const scheme *c) {
     for (int k = 0; k < 4 && !singular; k++) {
         balance(f, b, c->still, f->increment, f->r);
         singular = spari_linear_solve(f->linear, f->r);
-        for (int i = 6; i < f->n; i++) {
+        for (int i = f->held; i < f->n; i++) {
             b->a[i] -= c->cm * f->r[i];
         }
     }
@@ -948,46 +1015,44 @@ void spari_frame_accept(spari_frame *f) {
 }
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
-    int64_t n = f->nodes;
-    double *q = spari_zalloc(13 * n, sizeof *q), *v;
-    memcpy(f->begin.root, m->now.q, 7 * sizeof(double));
-    memset(f->begin.root + 7, 0, 12 * sizeof(double));
+    memset(f->begin.root, 0, sizeof f->begin.root);
+    spari_rung_pose(m, &m->now, f->begin.root);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        memcpy(f->begin.root + 7, m->now.v, 6 * sizeof(double));
         memcpy(f->begin.root + 13, m->now.a, 6 * sizeof(double));
     }
     memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
-    if (q) {
-        v = q + 7 * n;
-        spari_member_to_unique(m, 7, m->now.q, q);
-        spari_member_to_unique(m, 6, m->now.v, v);
-        from_nodes(f, m, q, v, f->begin.y, f->begin.v);
-        free(q);
-    }
+    from_nodes(f, m, &m->now, f->begin.y, f->begin.v);
     copy_state(f, &f->begin, &f->to);
     f->started = 0;
     f->h_begin = 0;
 }
 
 int spari_frame_static(spari_frame *f, spar_member *m) {
-    const double rest[3] = {0};
-    double last = 0;
+    double last = 0, omega[3];
     int failed = 1;
+    spari_turn turn;
+    SPARI_REQUIRE(
+        m->session, f->held == 6, SPAR_ERR_STATE,
+        "spar_member_solve_static: '%s': nothing holds a linear member that its root leaves free to turn; fix "
+        "or drive its root",
+        m->name);
+    int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root + 7, f->begin.root + 13, &turn);
     spari_solver_gather(m, m->dead, f->load);
     spari_solver_gather(m, m->load_pushed, f->load1);
     for (int i = 0; i < 6 * f->nodes; i++) {
         f->load[i] += f->load1[i];
     }
-    combine(f, rest);
     scheme c = {.cm = 0, .cv = 0};
     copy_state(f, &f->begin, &f->to);
-    memset(f->to.root + 7, 0, 12 * sizeof(double));
+    memset(f->to.root + (turning ? 16 : 7), 0, (turning ? 3 : 12) * sizeof(double)); /* steady, or at rest */
+    spari_rotate_back(f->to.root + 3, f->to.root + 10, omega);
+    combine(f, omega);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
     int singular = factor(f, &c);
     f->factored = 0;
     for (int it = 0; it < MOST_ITERATIONS && failed && !singular; it++) {
-        forcing(f, m, &f->to, 1, f->increment);
-        balance(f, &f->to, 1, f->increment, f->r);
+        forcing(f, m, &f->to, !turning, f->increment);
+        balance(f, &f->to, !turning, f->increment, f->r);
         memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
         singular = spari_linear_solve(f->linear, f->dx);
         for (int k = 6; k < f->n; k++) {
@@ -1047,17 +1112,27 @@ void spari_frame_load(spari_frame *f, const double *state) {
     copy_state(f, &f->begin, &f->to);
 }
 
-double spari_frame_strain(spari_frame *f, const spar_member *m) {
-    int64_t n = f->nodes;
-    double *q = spari_zalloc(13 * n + 3 * f->n, sizeof *q), energy = 0;
-    if (q) {
-        double *v = q + 7 * n, *y = v + 6 * n, *rate = y + f->n, *force = rate + f->n;
-        spari_member_to_unique(m, 7, m->after.q, q);
-        spari_member_to_unique(m, 6, m->after.v, v);
-        from_nodes(f, m, q, v, y, rate);
-        multiply(f, f->K, y, 1, force);
-        energy = 0.5 * cblas_ddot(f->n, y, 1, force, 1);
-        free(q);
+/* x^T X x / 2 */
+static double quadratic(spari_frame *f, const double *X, const double *x) {
+    memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+    multiply(f, X, x, 0.5, f->r);
+    return cblas_ddot(f->n, x, 1, f->r, 1);
+}
+
+int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
+    double *y = spari_zalloc(2 * (int64_t)f->n, sizeof *y), *rate = y + f->n;
+    if (!y) {
+        return SPAR_ERR_MEMORY;
     }
-    return energy;
+    from_nodes(f, m, &m->after, y, rate);
+    energy[1] = quadratic(f, f->K, y);
+    if (m->root != SPAR_ROOT_DRIVEN) { /* the frame stands: these are what the equations keep */
+        energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? quadratic(f, f->M, rate) : 0;
+        energy[2] = 0;
+        for (int k = 0; k < 3 && f->M; k++) {
+            energy[2] -= m->body->gravity[k] * cblas_ddot(f->n, f->rigid[k], 1, y, 1);
+        }
+    }
+    free(y);
+    return SPAR_OK;
 }

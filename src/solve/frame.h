@@ -1,5 +1,7 @@
 /* A beam that is linear in the frame that moves with its root (fixed or driven): the motion of the root is taken
-   exactly, the deformation beyond it to first order. In the axes of the frame, with x = (w, theta) of the nodes,
+   exactly, the deformation beyond it to first order. The frame of a root that is free or pinned stands where the
+   reference is, and the motion of the whole is taken to first order. In the axes of the frame, with x = (w, theta) of
+   the nodes,
 
      M x'' + (D + G(omega)) x' + (K + N(omega, omega)) x = loads - M (rigid acceleration - weight) - f(omega, omega)
 
@@ -9,8 +11,9 @@
    for small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads
    and of the root's acceleration.
 
-   The same equations in n modes of M, K are the modal member: one block of the root's six (held at zero) and n
-   unknowns. */
+   The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
+   the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
+   root, with fewer those of the beam that is free, or pinned, there. */
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
@@ -26,6 +29,7 @@ typedef struct spari_frame_state {
 
 typedef struct spari_frame {
     int nodes;                                      /* unique nodes */
+    int held;                                       /* of the root's six unknowns, the first that stay zero */
     int elements, block, overlap;                   /* of the matrices */
     int n;                                          /* unknowns, the root's six first */
     int64_t size;                                   /* doubles of one matrix: elements * block * block */
@@ -56,12 +60,18 @@ void spari_frame_restart(spari_frame *frame, const spar_member *member);
 int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
 void spari_frame_accept(spari_frame *frame);
 int spari_frame_static(spari_frame *frame, spar_member *member);
+/* K + N of the turn that the root of member->after has, and M, over the `size` unknowns that are free, dense, symmetric
+   parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
+int64_t spari_frame_unknowns(const spari_frame *frame);
+void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
+void spari_frame_shape(const spari_frame *frame, const spar_member *member, const double *x, double *nodes);
 /* As spari_solver_state_size and its fellows, between steps. */
 int64_t spari_frame_state_size(const spari_frame *frame);
 void spari_frame_save(const spari_frame *frame, double *state);
 int spari_frame_is_state(const spari_frame *frame, const double *state, int64_t count);
 void spari_frame_load(spari_frame *frame, const double *state);
-/* Strain energy of the latest iterate in member->after: x^T K x / 2. */
-double spari_frame_strain(spari_frame *frame, const spar_member *member);
+/* Energies of the latest iterate in member->after: strain x^T K x / 2; of a frame that stands also the kinetic one and
+   the potential of the linear equations, else those two are left as they are. 0, or SPAR_ERR_MEMORY. */
+int spari_frame_energy(spari_frame *frame, const spar_member *member, double energy[4]);
 
 #endif

@@ -6,7 +6,9 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/edge.h"
+#include "../member/rung.h"
 #include "../session/session.h"
+#include "frame.h"
 #include "solver.h"
 #include "turn.h"
 
@@ -68,6 +70,7 @@ static void add_element(int at, int n, const double *S, gsl_matrix *A) {
     }
 }
 
+/* From the tangents of m, which may be the body that carries a rigid member. */
 static void assemble(const spar_member *m, modal *p) {
     int P = m->per_element;
     spari_turn turn;
@@ -81,6 +84,9 @@ static void assemble(const spar_member *m, modal *p) {
         spari_turn_tangent(m, turning ? &turn : NULL, e, p->q, p->v, p->a, 1, p->S, p->Me);
         if (m->applied) {
             spari_applied_tangent(m, e, p->q, 1, p->S);
+        }
+        if (m->arms) {
+            spari_arms_tangent(m->arms, p->q + 3, p->S);
         }
         add_element(at, 6 * P, p->S, p->K);
         add_element(at, 6 * P, p->Me, p->M);
@@ -133,17 +139,49 @@ static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
     double norm;
     gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work);
     gsl_blas_ddot(&x.vector, p->work, &norm);
-    memset(p->shape, 0, (size_t)(6 * m->body->unique) * sizeof *p->shape);
-    for (size_t i = 0; i < p->size; i++) {
-        p->shape[(size_t)p->end + i] = gsl_vector_get(&x.vector, i) / (norm > 0 ? sqrt(norm) : 1);
+    gsl_vector_memcpy(p->work, &x.vector);
+    gsl_vector_scale(p->work, 1 / (norm > 0 ? sqrt(norm) : 1));
+    if (m->rung && m->rung->frame) {
+        spari_frame_shape(m->rung->frame, m, p->work->data, p->shape);
+    } else {
+        memset(p->shape, 0, (size_t)(6 * m->body->unique) * sizeof *p->shape);
+        memcpy(p->shape + p->end, p->work->data, p->size * sizeof *p->shape);
     }
-    spari_member_from_unique(m, 6, p->shape, shape);
+    if (m->rung && m->rung->core) {
+        spari_rung_carry(m, p->shape, shape);
+    } else {
+        spari_member_from_unique(m, 6, p->shape, shape);
+    }
+}
+
+/* K and M of the member, of any fidelity. */
+static int form_problem(const spar_member *m, modal *p) {
+    if (m->rung && m->rung->frame) {
+        spari_frame_modal(m->rung->frame, m, p->K->data, p->M->data); /* fresh matrices have no gaps */
+    } else if (m->rung && m->rung->core) {
+        spar_member *core;
+        SPARI_TRY(spari_rung_core(m, &core));
+        assemble(core, p);
+    } else {
+        assemble(m, p);
+    }
+    return SPAR_OK;
+}
+
+/* Unknowns that the root leaves free, `end` of the node of the root are not. */
+static int64_t unknowns(const spar_member *m, int *end) {
+    int first;
+    spari_solver_fixed(m, &first, end);
+    if (m->rung && m->rung->frame) {
+        return spari_frame_unknowns(m->rung->frame);
+    }
+    return 6 * (m->rung && m->rung->core ? 1 : (int64_t)m->body->unique) - *end;
 }
 
 static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
     const char *call = "spar_member_get_modes";
     SPARI_REQUIRE(m->session, modal_alloc(m, p), SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
-    assemble(m, p);
+    SPARI_REQUIRE(m->session, form_problem(m, p) == SPAR_OK, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
     double sigma = find_shift(p);
     SPARI_REQUIRE(m->session, sigma >= 0, SPAR_ERR_NUMERIC,
                   "%s: '%s': no shift makes its stiffness positive definite in the present state: it can move where it "
@@ -168,9 +206,8 @@ int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, 
     spar_session *s = member->session;
     SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", call, member->name);
-    int first, end;
-    spari_solver_fixed(member, &first, &end);
-    int64_t free_unknowns = 6 * (int64_t)member->body->unique - end;
+    int end;
+    int64_t free_unknowns = unknowns(member, &end);
     SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", call,
                   member->name, (long long)n, (long long)free_unknowns);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", call, member->name);

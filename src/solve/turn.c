@@ -55,10 +55,7 @@ void spari_turn_tangent(const spar_member *m, const spari_turn *turn, int e, con
     spari_body body = *m->body;
     body.D = NULL;
     spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
-    spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 1, 0, NULL, M);
-    for (int i = 0; i < n * n; i++) {
-        M[i] -= S[i];
-    }
+    spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);
     if (!turn || body.linear[0]) {
         return;
     }
