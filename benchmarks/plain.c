@@ -70,3 +70,30 @@ void PLAIN(loads)(const plain_map *m, const double *force, double *load) {
     }
     memcpy(load, sum, sizeof *load * 6 * (size_t)m->p);
 }
+
+/* A rigid transfer: x = x_r + R c, v = v_r + omega x R c, c the arm in the reference; nothing but the arms is kept. */
+void PLAIN(rigid_motion)(const plain_rigid *m, double *x, double *v) {
+    const double *R = m->R, *w = m->omega;
+    for (int64_t j = 0; j < m->n; j++) {
+        const double *c = m->con + 3 * j;
+        double r0 = R[0] * c[0] + R[1] * c[1] + R[2] * c[2], r1 = R[3] * c[0] + R[4] * c[1] + R[5] * c[2],
+               r2 = R[6] * c[0] + R[7] * c[1] + R[8] * c[2];
+        x[3 * j] = m->x[0] + r0, x[3 * j + 1] = m->x[1] + r1, x[3 * j + 2] = m->x[2] + r2;
+        v[3 * j] = m->v[0] + w[1] * r2 - w[2] * r1;
+        v[3 * j + 1] = m->v[1] + w[2] * r0 - w[0] * r2;
+        v[3 * j + 2] = m->v[2] + w[0] * r1 - w[1] * r0;
+    }
+}
+
+void PLAIN(rigid_loads)(const plain_rigid *m, const double *force, double load[6]) {
+    const double *R = m->R;
+    double s0 = 0, s1 = 0, s2 = 0, m0 = 0, m1 = 0, m2 = 0;
+    for (int64_t j = 0; j < m->n; j++) {
+        const double *c = m->con + 3 * j, *f = force + 3 * j;
+        double r0 = R[0] * c[0] + R[1] * c[1] + R[2] * c[2], r1 = R[3] * c[0] + R[4] * c[1] + R[5] * c[2],
+               r2 = R[6] * c[0] + R[7] * c[1] + R[8] * c[2];
+        s0 += f[0], s1 += f[1], s2 += f[2];
+        m0 += r1 * f[2] - r2 * f[1], m1 += r2 * f[0] - r0 * f[2], m2 += r0 * f[1] - r1 * f[0];
+    }
+    load[0] = s0, load[1] = s1, load[2] = s2, load[3] = m0, load[4] = m1, load[5] = m2;
+}

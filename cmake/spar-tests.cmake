@@ -1,4 +1,4 @@
-# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package.
+# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count.
 find_package(PkgConfig QUIET)
 find_path(SPAR_CMOCKA_INCLUDE cmocka.h)
 find_library(SPAR_CMOCKA_LIBRARY cmocka)
@@ -119,3 +119,4 @@ endif()
 
 include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
+include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)

@@ -67,9 +67,11 @@ SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
     NAME(put)(out + 2, __builtin_shufflevector(z, x, 0, 3));
     NAME(put)(out + 4, __builtin_shufflevector(y, z, 1, 3));
 #elif W == 4
-    NAME(put)(out, __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 1, 1), z, 0, 1, 4, 2));
-    NAME(put)(out + 4, __builtin_shufflevector(__builtin_shufflevector(y, z, 1, 5, 2, 2), x, 0, 1, 6, 2));
-    NAME(put)(out + 8, __builtin_shufflevector(__builtin_shufflevector(z, x, 2, 7, 3, 3), y, 0, 1, 7, 2));
+    L xy = __builtin_shufflevector(x, y, 0, 4, 2, 6), yz = __builtin_shufflevector(y, z, 1, 5, 3, 7),
+      zx = __builtin_shufflevector(z, x, 0, 5, 2, 7);
+    NAME(put)(out, __builtin_shufflevector(xy, zx, 0, 1, 4, 5));
+    NAME(put)(out + 4, __builtin_shufflevector(yz, xy, 0, 1, 6, 7));
+    NAME(put)(out + 8, __builtin_shufflevector(zx, yz, 2, 3, 6, 7));
 #elif W == 8
     L a = __builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 1, 2, 10),
       b = __builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
@@ -91,9 +93,11 @@ SPARI_INLINE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
     *z = __builtin_shufflevector(b, c, 0, 3);
 #elif W == 4
     L a = NAME(get)(in), b = NAME(get)(in + 4), c = NAME(get)(in + 8);
-    *x = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 6), c, 0, 1, 2, 5);
-    *y = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 7), c, 0, 1, 2, 6);
-    *z = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 5, 5), c, 0, 1, 4, 7);
+    L xy = __builtin_shufflevector(a, b, 0, 1, 6, 7), zx = __builtin_shufflevector(a, c, 2, 3, 4, 5),
+      yz = __builtin_shufflevector(b, c, 0, 1, 6, 7);
+    *x = __builtin_shufflevector(xy, zx, 0, 5, 2, 7);
+    *y = __builtin_shufflevector(xy, yz, 1, 4, 3, 6);
+    *z = __builtin_shufflevector(zx, yz, 0, 5, 2, 7);
 #elif W == 8
     L a = NAME(get)(in), b = NAME(get)(in + 8), c = NAME(get)(in + 16);
     *x = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, 0, 0), c, 0, 1, 2, 3, 4, 5, 10, 13);
@@ -285,17 +289,20 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
 }
 
 /* PAIR values of n rows; what lies beyond the end of a run repeats the last node, so that every lane is a real one. */
-SPARI_INLINE void NAME(fetch)(const double *const *from, int n, int64_t p, int count, L (*to)[2]) {
-    for (int f = 0; f < n; f++) {
-        const double *row = from[f] + p;
-        double t[PAIR];
-        if (count < PAIR) {
-            for (int i = 0; i < PAIR; i++) {
-                t[i] = row[i < count ? i : count - 1];
-            }
-            row = t;
+SPARI_INLINE void NAME(fetch)(const double *const *from, const int n, int64_t p, int count, L (*to)[2]) {
+    if (count >= PAIR) {
+        SPARI_UNROLL
+        for (int f = 0; f < n; f++) {
+            to[f][0] = NAME(get)(from[f] + p), to[f][1] = NAME(get)(from[f] + p + W);
         }
-        to[f][0] = NAME(get)(row), to[f][1] = NAME(get)(row + W);
+        return;
+    }
+    for (int f = 0; f < n; f++) {
+        double t[PAIR];
+        for (int i = 0; i < PAIR; i++) {
+            t[i] = from[f][p + (i < count ? i : count - 1)];
+        }
+        to[f][0] = NAME(get)(t), to[f][1] = NAME(get)(t + W);
     }
 }
 
@@ -317,9 +324,11 @@ SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, co
     const double *const *from = (const double *const *)s->con;
     const int upto = what & SPARI_UPTO;
     L turn[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
+    SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
         turn[i] = SPLAT(m->turn + i);
     }
+    SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
         accel[i] = SPLAT(m->accel + i), alpha[i] = SPLAT(m->alpha + i);
@@ -329,6 +338,7 @@ SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, co
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
             L r[3], wr[3], ar[3], wwr[3];
+            SPARI_UNROLL
             for (int i = 0; i < 3; i++) {
                 r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
                 NAME(put)(buf[SPARI_R_PLACE + i] + at + W * u, place[i] + r[i]);
@@ -337,6 +347,7 @@ SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, co
                 continue;
             }
             NAME(cross)(w, r, wr);
+            SPARI_UNROLL
             for (int i = 0; i < 3; i++) {
                 NAME(put)(buf[SPARI_R_RATE + i] + at + W * u, rate[i] + wr[i]);
             }
@@ -345,6 +356,7 @@ SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, co
             }
             NAME(cross)(w, wr, wwr);
             NAME(cross)(alpha, r, ar);
+            SPARI_UNROLL
             for (int i = 0; i < 3; i++) {
                 NAME(put)(buf[SPARI_R_ACCEL + i] + at + W * u, accel[i] + ar[i] + wwr[i]);
             }
@@ -352,6 +364,7 @@ SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, co
     }
     if (what & SPARI_POSES) {
         for (int at = 0; at < count; at += W) {
+            SPARI_UNROLL
             for (int i = 0; i < 4; i++) {
                 NAME(put)(buf[SPARI_R_QUAT + i] + at, SPLAT(m->q + i));
             }
@@ -521,6 +534,7 @@ SPARI_INLINE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int 
         for (int j = 0; j < PAIR; j++) {
             keep[j] = j < count;
         }
+        SPARI_UNROLL
         for (int j = 0; j < rows; j++) {
             to[j][0] *= NAME(get)(keep), to[j][1] *= NAME(get)(keep + W);
         }
@@ -548,9 +562,11 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
     const L none = SPLAT(&zero);
     L c[3][2], in[6][2], Z[9], total[6], add[9], top[3], turn[9], place[3], rate[3], w[3];
     double z[9], load[6];
+    SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
         Z[i] = add[i] = none, turn[i] = SPLAT(m->turn + i);
     }
+    SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         total[i] = total[3 + i] = top[i] = none;
         place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
@@ -560,14 +576,17 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
         NAME(fetch_loads)(f, rows, at, count - at, in);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
+            SPARI_UNROLL
             for (int i = 0; i < rows; i++) {
                 total[i] += in[i][u];
             }
+            SPARI_UNROLL
             for (int i = 0; i < 9; i++) {
                 Z[i] = MADD(c[i / 3][u], in[i % 3][u], Z[i]);
             }
             if (audited) {
                 L r[3], force[3] = {in[0][u], in[1][u], in[2][u]}, moment[3] = {none, none, none};
+                SPARI_UNROLL
                 for (int i = 0; i < 3; i++) {
                     r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
                     moment[i] = has_moment ? in[3 + i][u] : none;
@@ -576,9 +595,11 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
             }
         }
     }
+    SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
         z[i] = NAME(total)(Z[i]);
     }
+    SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         const double *a = m->turn + 3 * ((i + 1) % 3), *b = m->turn + 3 * ((i + 2) % 3);
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -586,6 +607,7 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
         load[3 + i] = a[0] * z[k] + a[1] * z[3 + k] + a[2] * z[6 + k] - b[0] * z[j] - b[1] * z[3 + j] - b[2] * z[6 + j];
         load[3 + i] += has_moment ? NAME(total)(total[3 + i]) : 0;
     }
+    SPARI_UNROLL
     for (int i = 0; i < 6; i++) {
         spari_add(modal + (ptrdiff_t)2 * i, load[i]);
     }

@@ -127,11 +127,12 @@ static int what_of(const wanted *w) {
     return poses | (is_wanted(w->v) || is_wanted(w->omega) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE);
 }
 
-/* The tiles of the one or two states that make up a time. */
+/* The tiles of the one or two states that make up a time, and of the reference for those who ask for poses. */
 typedef struct states {
     int n;
     double share[2];
     double (*buf[2])[SPARI_ROW];
+    double (*reference)[SPARI_ROW];
 } states;
 
 /* Three rows of the tile to the host's triples; rows of two states become those of the time between them, in the
@@ -162,16 +163,19 @@ static void put(sink out, int64_t node, int width, const double *x) {
     }
 }
 
+static void unit_quat(double (*buf)[SPARI_ROW], int i, double q[4]) {
+    for (int c = 0; c < 4; c++) {
+        q[c] = buf[SPARI_R_QUAT + c][i];
+    }
+    spari_quat_normalise(q);
+}
+
 /* Orientation of a section now, scalar part >= 0: the states' rotations, averaged where there are two, times the
  * reference's. */
-static void orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t p, int i, const states *t,
-                        double now[4]) {
-    double q[2][4] = {{0}}, x[3], reference[4];
+static void orientation(const states *t, int i, double now[4]) {
+    double q[2][4], reference[4];
     for (int k = 0; k < t->n; k++) {
-        for (int c = 0; c < 4; c++) {
-            q[k][c] = t->buf[k][SPARI_R_QUAT + c][i];
-        }
-        spari_quat_normalise(q[k]);
+        unit_quat(t->buf[k], i, q[k]);
     }
     if (t->n == 2) {
         double sign = spari_quat_dot(q[0], q[1]) < 0 ? -1 : 1;
@@ -179,7 +183,7 @@ static void orientation(const spar_fluid *fluid, const spari_nodes *s, int64_t p
             q[0][c] = t->share[0] * q[0][c] + sign * t->share[1] * q[1][c];
         }
     }
-    spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, reference);
+    unit_quat(t->reference, i, reference);
     spari_quat_mul(q[0], reference, now);
     spari_quat_normalise(now);
     double sign = now[0] < 0 ? -1 : 1;
@@ -201,12 +205,16 @@ static void matrix_of(const double q[4], int convention, double m[9]) {
 
 static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int64_t first, const states *t,
                               const wanted *w) {
-    int count = is_wanted(w->q) || is_wanted(w->matrix) ? spari_tile_count(s, first) : 0;
+    if (!is_wanted(w->q) && !is_wanted(w->matrix)) {
+        return;
+    }
+    int count = spari_tile_count(s, first);
     double q[4], m[9];
+    (void)spari_tile_motion(s, first, fluid->reference, 0, SPARI_UPTO_PLACE | SPARI_POSES, t->reference);
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(s, first + i);
         if (i == 0 || s->per_element > 1) { /* else all turn with the one node */
-            orientation(fluid, s, first + i, i, t, q);
+            orientation(t, i, q);
             if (is_wanted(w->matrix)) {
                 matrix_of(q, w->convention, m);
             }
@@ -218,8 +226,8 @@ static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int
 
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
-    double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], least = HUGE_VAL;
-    states t = {.buf = {a, b}};
+    double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
+    states t = {.buf = {a, b}, .reference = c};
     const spari_nodes *s;
     int what = what_of(w);
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));

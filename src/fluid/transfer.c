@@ -8,7 +8,7 @@
 
 #if defined(__GNUC__)
 #define SPARI_ALWAYS_INLINE __attribute__((always_inline))
-#define SPARI_UNROLL _Pragma("GCC unroll 8")
+#define SPARI_UNROLL _Pragma("GCC unroll 9")
 #else
 #define SPARI_ALWAYS_INLINE
 #define SPARI_UNROLL
