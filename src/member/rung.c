@@ -437,9 +437,15 @@ int spari_rung_reaction(const spar_member *m, double load[6]) {
            *sum = r + 6 * n;
     memset(load, 0, 6 * sizeof *load);
     SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    int standing = m->rung->frame && m->root != SPAR_ROOT_DRIVEN;
     if (m->body) {
-        spari_member_to_unique(m, 7, m->after.q, q);
-        spari_member_to_unique(m, 6, m->after.v, v);
+        for (int64_t i = 0; i < n; i++) {
+            q[7 * i + 3] = 1;
+        }
+        if (!standing) {
+            spari_member_to_unique(m, 7, m->after.q, q);
+            spari_member_to_unique(m, 6, m->after.v, v);
+        }
         spari_member_to_unique(m, 6, m->after.a, a);
         spari_body_residual(m->body, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
         spari_member_from_unique(m, 6, r, sum);
@@ -465,7 +471,7 @@ int spari_rung_reaction(const spar_member *m, double load[6]) {
             f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k];
         }
         for (int k = 0; k < 3; k++) {
-            r_i[k] = m->xr[3 * i + k] + m->after.q[7 * i + k] - m->xr[k] - m->after.q[k];
+            r_i[k] = m->xr[3 * i + k] - m->xr[k] + (standing ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
         }
         spari_cross(r_i, f, moment);
         for (int k = 0; k < 3; k++) {

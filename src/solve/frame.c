@@ -17,6 +17,11 @@
 
 static const int pair[SPARI_TURNS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
+/* Where two products of turns stand among their SPARI_TURN_PAIRS. */
+static int pair_of(int k, int l) {
+    return k >= l ? k * (k + 1) / 2 + l : pair_of(l, k);
+}
+
 /* ---- matrices from the exact member's tangents at the reference ---- */
 
 static void skew(const double a[3], double s[9]) {
@@ -105,27 +110,23 @@ static void rest_matrices(const spari_frame *f, const setup *w) {
     }
 }
 
-/* The geometric stiffness of the static answer to the loads -f: the derivative of the tangent along it, by central
-   differences over a step in which the largest strain-like measure is `small` (error small^2). The tangent's virtual
-   rotations are those at the deformed state: T(theta) takes the rotation vector's changes there. */
-static int stretch_matrices(spari_frame *f, const setup *w, const double *load, double *N) {
+/* The geometric stiffness of a deformation u [nodes][6]: the derivative of the tangent along it, by central differences
+   over a step in which the largest strain-like measure is `small` (error small^2). The tangent's virtual rotations are
+   those at the deformed state: T(theta) takes the rotation vector's changes there. */
+static void stretch_matrices(const spari_frame *f, const setup *w, const double *u, double *N) {
     const double small = 1e-4;
     int m = w->m, P = m / 6;
     int64_t mm = (int64_t)m * m;
-    double *u = w->field, largest = 0, *q = w->v; /* 7 per node fit into v and a together */
-    memcpy(u, load, (size_t)(6 * f->nodes) * sizeof *u);
-    memset(u, 0, 6 * sizeof *u);
-    if (spari_linear_solve(f->linear, u)) {
-        return 1;
-    }
+    double largest = 0, *q = w->v; /* 7 per node fit into v and a together */
+    memset(N, 0, (size_t)f->size * sizeof *N);
     for (int i = 0; i < f->nodes; i++) {
         largest = fmax(largest, fmax(spari_norm(u + 6 * i) / w->body->length, spari_norm(u + 6 * i + 3)));
     }
     if (largest == 0) {
-        return 0;
+        return;
     }
     for (int side = -1; side <= 1; side += 2) {
-        double step = -side * small / largest;
+        double step = side * small / largest;
         for (int i = 0; i < f->nodes; i++) {
             double psi[3];
             for (int k = 0; k < 3; k++) {
@@ -154,7 +155,6 @@ static int stretch_matrices(spari_frame *f, const setup *w, const double *load, 
             }
         }
     }
-    return 0;
 }
 
 /* y [n] += factor * X x for a matrix of the frame */
@@ -184,8 +184,44 @@ static void factor_into(spari_frame *f, const double *K, double ck, const double
     *singular = spari_linear_factor(f->linear);
 }
 
+/* What of N and f belongs to omega_i omega_j alone. */
+static void polarise(spari_frame *f) {
+    for (int k = 3; k < SPARI_TURNS; k++) {
+        for (int side = 0; side < 2; side++) {
+            int d = pair[k][side];
+            cblas_daxpy((int)f->size, -1, f->N[d], 1, f->N[k], 1);
+            cblas_daxpy(6 * f->nodes, -1, f->f[d], 1, f->f[k], 1);
+        }
+    }
+}
+
+/* The stretch s_k = -K^-1 f_k of every product of turns, its stiffness S_k into N, and S_k s_l / 2 into what is counted
+   twice. */
+static int stretch_terms(spari_frame *f, const setup *w) {
+    int singular = 0, n6 = 6 * f->nodes;
+    double *S = spari_zalloc(f->size + SPARI_TURNS * (int64_t)n6, sizeof *S), *s = S + f->size;
+    if (!S) {
+        return SPAR_ERR_MEMORY;
+    }
+    factor_into(f, f->K, 1, NULL, 0, 0, w->S[0], &singular);
+    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
+        double *x = s + (int64_t)k * n6;
+        cblas_daxpy(n6, -1, f->f[k], 1, x, 1);
+        memset(x, 0, 6 * sizeof *x);
+        singular = spari_linear_solve(f->linear, x);
+    }
+    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
+        stretch_matrices(f, w, s + (int64_t)k * n6, S);
+        cblas_daxpy((int)f->size, 1, S, 1, f->N[k], 1);
+        for (int l = 0; l < SPARI_TURNS; l++) { /* those of two kinds come from both */
+            multiply(f, S, s + (int64_t)l * n6, 0.5, f->twice[pair_of(k, l)]);
+        }
+    }
+    free(S);
+    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+
 static int turn_terms(spari_frame *f, const setup *w) {
-    int singular = 0;
     double *none = NULL;
     for (int k = 0; k < SPARI_TURNS; k++) {
         int i = pair[k][0], j = pair[k][1];
@@ -195,22 +231,8 @@ static int turn_terms(spari_frame *f, const setup *w) {
         rigid_motion(f, w->arm, omega, w->v, w->a);
         spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
     }
-    for (int k = 3; k < SPARI_TURNS; k++) { /* polarisation: what belongs to omega_i omega_j alone */
-        for (int side = 0; side < 2; side++) {
-            int d = pair[k][side];
-            for (int64_t i = 0; i < f->size; i++) {
-                f->N[k][i] -= f->N[d][i];
-            }
-            for (int i = 0; i < 6 * f->nodes; i++) {
-                f->f[k][i] -= f->f[d][i];
-            }
-        }
-    }
-    factor_into(f, f->K, 1, NULL, 0, 0, w->S[0], &singular);
-    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
-        singular = stretch_matrices(f, w, f->f[k], f->N[k]);
-    }
-    return singular;
+    polarise(f);
+    return stretch_terms(f, w);
 }
 
 /* ---- modes ---- */
@@ -376,15 +398,13 @@ static int project(spari_frame *f, int cols) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
     }
     double *part = spari_zalloc(cols, sizeof *part);
-    double **vectors[SPARI_TURNS + 6];
-    for (int k = 0; k < SPARI_TURNS; k++) {
-        vectors[k] = &f->f[k];
-        vectors[SPARI_TURNS + k] = &f->rigid[k];
-    }
-    for (int k = 0; k < SPARI_TURNS + 6 && part; k++) {
-        if (*vectors[k]) {
-            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, *vectors[k], 1, 0, part, 1);
-            memcpy(*vectors[k], part, (size_t)cols * sizeof *part);
+    double *const *const vectors[] = {f->f, f->rigid, f->twice};
+    const int counts[] = {SPARI_TURNS, 6, SPARI_TURN_PAIRS};
+    for (int v = 0; v < 3 && part; v++) {
+        for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
+            double *x = vectors[v][k];
+            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1);
+            memcpy(x, part, (size_t)cols * sizeof *part);
         }
     }
     bad = bad || !part;
@@ -429,6 +449,9 @@ static int allocate(spari_frame *f, const spar_member *m) {
     for (int k = 0; k < 3; k++) {
         ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
     }
+    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
+        ok = ok && (!turns || (f->twice[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
+    }
     return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
 }
 
@@ -453,7 +476,6 @@ static int allocate_work(spari_frame *f) {
 
 /* The reference as a state, and arms from the root; then the matrices. */
 static int build(spari_frame *f, const spar_member *m, setup *w) {
-    int singular = 0;
     int64_t mm = (int64_t)w->m * w->m, n = f->nodes;
     double *block = spari_zalloc(7 * n + 3 * n + 13 * n + 4 * mm + 6 * n, sizeof *block);
     if (!block) {
@@ -485,10 +507,7 @@ static int build(spari_frame *f, const spar_member *m, setup *w) {
         }
         multiply(f, f->M, w->field, 1, f->rigid[k]);
     }
-    if (f->N[0]) {
-        singular = turn_terms(f, w);
-    }
-    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+    return f->N[0] ? turn_terms(f, w) : SPAR_OK;
 }
 
 int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) {
@@ -548,6 +567,9 @@ void spari_frame_free(spari_frame *f) {
     }
     for (int k = 0; k < 3; k++) {
         free(f->G[k]);
+    }
+    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
+        free(f->twice[k]);
     }
     spari_linear_free(f->linear);
     free(f);
@@ -725,11 +747,17 @@ static void combine(spari_frame *f, const double omega[3]) {
     }
     memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
     memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
+    double c[SPARI_TURNS];
     for (int k = 0; k < SPARI_TURNS; k++) {
-        double c = omega[pair[k][0]] * omega[pair[k][1]];
-        if (c != 0) {
-            cblas_daxpy((int)f->size, c, f->N[k], 1, f->sumK, 1);
-            cblas_daxpy(f->n, c, f->f[k], 1, f->sumf, 1);
+        c[k] = omega[pair[k][0]] * omega[pair[k][1]];
+        if (c[k] != 0) {
+            cblas_daxpy((int)f->size, c[k], f->N[k], 1, f->sumK, 1);
+            cblas_daxpy(f->n, c[k], f->f[k], 1, f->sumf, 1);
+        }
+        for (int l = 0; l <= k; l++) {
+            if (c[k] * c[l] != 0) {
+                cblas_daxpy(f->n, -c[k] * c[l], f->twice[pair_of(k, l)], 1, f->sumf, 1);
+            }
         }
     }
     for (int k = 0; k < 3; k++) {

@@ -6,10 +6,11 @@
      M x'' + (D + G(omega)) x' + (K + N(omega, omega)) x = loads - M (rigid acceleration - weight) - f(omega, omega)
 
    where G holds the Coriolis and gyroscopic terms, N what turning with omega adds to the stiffness: centrifugal
-   softening, the turned inertia of the sections, and the geometric stiffness of the stretch that the centrifugal forces
-   give. All matrices are taken from the exact member's own tangents at the reference, so that the answer is its limit
-   for small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads
-   and of the root's acceleration.
+   softening, the turned inertia of the sections, and the geometric stiffness S of the stretch s that the centrifugal
+   forces give. On s itself that counts twice, since internal forces of second order are S s / 2: f has the other half.
+   All matrices are taken from the exact member's own tangents at the reference, so that the answer is its limit for
+   small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads and
+   of the root's acceleration.
 
    The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
    the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
@@ -20,7 +21,7 @@
 #include "../member/member.h"
 #include "linear.h"
 
-enum { SPARI_TURNS = 6 }; /* products omega_i omega_j */
+enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */
 
 /* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root's q, v, a. */
 typedef struct spari_frame_state {
@@ -35,7 +36,8 @@ typedef struct spari_frame {
     int64_t size;                                   /* doubles of one matrix: elements * block * block */
     double *basis;                                  /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
-    double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL without inertia */
+    double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
+    double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
     double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
     double omega[3];                                /* what the three sums below were formed for */
     int combined;
