@@ -471,6 +471,20 @@ static void test_wing(void **state) {
         assert_true(fabs(moment[i][0] - share[i] * m) < 1e-12 * f);
     }
     assert_int_equal(spar_aero_get_rotor(aero, NULL, NULL, NULL), SPAR_ERR_STATE);
+    /* What reaches the member: the moment of the forces about the root, about y, and 4 m of pitching moment about x;
+       with the effect off the first alone. */
+    double audit[8], bending = (2.0 + 4.0 * 1.5) * f;
+    OK(spar_fluid_get_audit(fluid, audit));
+    assert_true(fabs(audit[1] - hypot(bending, 4.0 * m)) < 1e-11 * f);
+    OK(spar_aero_set_effects(aero, SPAR_AERO_DRAG));
+    OK(spar_aero_solve(aero, 1.2, wind[0], 1.0));
+    OK(spar_aero_get_loads(aero, NULL, force[0], moment[0]));
+    OK(spar_fluid_get_audit(fluid, audit));
+    assert_true(fabs(audit[1] - bending) < 1e-11 * f);
+    for (int i = 0; i < 3; i++) {
+        assert_true(fabs(force[i][2] + share[i] * f) < 1e-12 * f);
+        assert_true(moment[i][0] == 0.0 && moment[i][1] == 0.0 && moment[i][2] == 0.0);
+    }
     /* A polar of 0.1 rad on the middle section, flow from below at 0.2 rad: its end value, and a flag. */
     int flags[3];
     double lift[3];

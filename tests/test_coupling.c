@@ -295,6 +295,39 @@ static void predictor_is_exact(void **state) {
     }
 }
 
+/* The load predicted for t + dt, less what it then is: a ramp lags by one step's increment with order 0 and by nothing
+   with order 1, which is behind a parabola by its second difference; order 2 by nothing. */
+static void predictor_lags(void **state) {
+    (void)state;
+    static const struct {
+        int order, degree;
+        double lag; /* of b_degree dt^degree */
+    } cases[] = {{0, 1, 1}, {1, 1, 0}, {1, 2, 2}, {2, 2, 0}};
+    static const double dt = 0.1, r = 0;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        pistons p;
+        double predicted[6];
+        pistons_create(&p, 1, &r);
+        OK(p.session, spar_session_set_predictor(p.session, cases[k].order));
+        p.b[0] = 2, p.b[cases[k].degree] = 3;
+        polynomial(p.session, 0, 0, 0, &p);
+        for (int i = 0; i < 6; i++) {
+            double t = (i + 1) * dt, f = p.b[0] + p.b[1] * t + p.b[2] * t * t;
+            int done;
+            OK(p.session, spar_step_begin(p.session, dt));
+            OK(p.session, spar_member_get_loads(p.body[0], predicted));
+            if (i >= 2) {
+                NEAR(f - predicted[0], cases[k].lag * 3 * pow(dt, cases[k].degree), 1e-13);
+            }
+            OK(p.session, spar_step_solve(p.session));
+            polynomial(p.session, i * dt, dt, 0, &p);
+            OK(p.session, spar_step_check(p.session, &done));
+            OK(p.session, spar_step_accept(p.session));
+        }
+        pistons_destroy(&p);
+    }
+}
+
 /* ---- several fluid steps in one ---- */
 
 /* Pushes over parts of the step are averaged by their lengths: 1/4 of 8, 1/4 of 4, 1/2 of 2 is 4; each pass anew. */
@@ -328,6 +361,39 @@ static void pushes_are_averaged(void **state) {
     assert_int_equal(spar_fluid_push_forces_at(p.fluid[0], 1, NULL, NULL), SPAR_ERR_ARGUMENT);
     OK(p.session, spar_step_accept(p.session));
     pistons_destroy(&p);
+}
+
+/* A moment given in one part only is a mean like any other in the next steps; without the effect there is none. */
+static void mean_moments_come_and_go(void **state) {
+    (void)state;
+    static const double r = 0, f[3] = {1, 0, 0}, moment[3] = {0, 0, 1}, x[3] = {0, 5, 0};
+    pistons p;
+    spar_member *point;
+    spar_fluid *fluid;
+    double got[6];
+    int done;
+    for (int effect = 0; effect < 2; effect++) {
+        pistons_create(&p, 1, &r);
+        OK(p.session, spar_point_create(p.session, "point", x, NULL, &point));
+        OK(p.session, spar_member_set_effects(point, effect ? SPAR_EFFECT_FLUID_MOMENT : 0));
+        OK(p.session, spar_member_commit(point));
+        OK(p.session, spar_fluid_create(point, "f", &fluid));
+        OK(p.session, spar_fluid_set_force_nodes(fluid, 1, x));
+        OK(p.session, spar_fluid_map(fluid));
+        for (int step = 0; step < 3; step++) {
+            OK(p.session, spar_step_begin(p.session, 0.1));
+            OK(p.session, spar_step_solve(p.session));
+            for (int k = 1; k <= 4; k++) {
+                OK(p.session, spar_fluid_push_forces_at(fluid, 0.25 * k, f, step == 1 && k > 2 ? moment : NULL));
+            }
+            OK(p.session, spar_step_check(p.session, &done));
+            OK(p.session, spar_member_get_loads(point, got));
+            NEAR(got[0], 1, 1e-15);
+            NEAR(got[5], effect && step == 1 ? 0.5 : 0, 1e-15);
+            OK(p.session, spar_step_accept(p.session));
+        }
+        pistons_destroy(&p);
+    }
 }
 
 /* ---- settings ---- */
@@ -364,7 +430,9 @@ int main(void) {
         cmocka_unit_test(nan_in_the_third_iteration),
         cmocka_unit_test(instability_warning),
         cmocka_unit_test(predictor_is_exact),
+        cmocka_unit_test(predictor_lags),
         cmocka_unit_test(pushes_are_averaged),
+        cmocka_unit_test(mean_moments_come_and_go),
         cmocka_unit_test(settings_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

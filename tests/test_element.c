@@ -85,6 +85,24 @@ static void test_wind_triangle(void **state) {
     assert_true(e.cd == 0.0 && e.load[5] == 0.0 && fabs(e.load[0] - q * cl * cos(phi)) < 1e-12 * q);
 }
 
+/* Drag without induction is rho/2 c |W| cd W, along the wind W = (9, 30, 0) that the section meets: of the power per
+   length it takes rho/2 c |W| cd 30^2. Nothing else changes. */
+static void test_drag(void **state) {
+    (void)state;
+    scene s = scene_of(SPAR_AERO_DRAG);
+    spari_element with = solve(&s);
+    s.rotor.effects = 0;
+    spari_element without = solve(&s);
+    double wind[3] = {9.0, 30.0, 0.0}, scale = 0.5 * 1.225 * 3.5 * hypot(9.0, 30.0) * with.cd, power = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double d = with.load[i] - without.load[i];
+        assert_true(fabs(d - scale * wind[i]) < 1e-12 * scale * 30.0);
+        power += d * s.v[i];
+    }
+    assert_true(fabs(power + scale * 900.0) < 1e-11 * scale * 900.0);
+    assert_true(with.cd > 0.01 && without.cd == 0.0 && with.cl == without.cl && with.alpha == without.alpha);
+}
+
 /* A twist by tau is the section's frame turned by minus tau about its x: more twist, less angle of attack. */
 static void test_twist_is_a_turn(void **state) {
     (void)state;
@@ -198,8 +216,9 @@ static void test_corners(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_wind_triangle), cmocka_unit_test(test_twist_is_a_turn),
-                                       cmocka_unit_test(test_turned),        cmocka_unit_test(test_left_handed),
-                                       cmocka_unit_test(test_ends),          cmocka_unit_test(test_corners)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_wind_triangle),   cmocka_unit_test(test_drag),
+                                       cmocka_unit_test(test_twist_is_a_turn), cmocka_unit_test(test_turned),
+                                       cmocka_unit_test(test_left_handed),     cmocka_unit_test(test_ends),
+                                       cmocka_unit_test(test_corners)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -429,6 +429,98 @@ static void group_interpolation_keeps_the_radius(void **state) {
     spar_session_destroy(&s);
 }
 
+/* The spec's average of the two times cuts the corner of a turn by phi: R cos(phi/2), that is R (1 - phi^2/8) but for
+   R phi^4/384. On the group the radius stays. */
+static void half_step_cuts_the_corner(void **state) {
+    (void)state;
+    const double none[4] = {1, 0, 0, 0}, node[3] = {2, 0, 0}, phi = 0.2;
+    for (int group = 0; group < 2; group++) {
+        double x[3], q[7] = {0, 0, 0, cos(phi / 2), 0, 0, sin(phi / 2)};
+        spar_session *s;
+        spar_member *m;
+        spar_fluid *f;
+        OK(spar_session_create(&s));
+        OK(spar_session_set_option(s, "fluid.theta", group ? "group" : "average"));
+        OK(spar_point_create(s, "hub", NULL, none, &m));
+        OK(spar_member_commit(m));
+        OK(spar_fluid_create(m, "arm", &f));
+        OK(spar_fluid_set_motion_nodes(f, 1, node));
+        OK(spar_fluid_map(f));
+        OK(spar_step_begin(s, 1));
+        OK(spar_member_set_motion(m, q, NULL, NULL));
+        OK(spar_step_solve(s));
+        OK(spar_fluid_pull_motion(f, 0.5, x, NULL));
+        double radius = hypot(x[0], x[1]);
+        CLOSE(atan2(x[1], x[0]), phi / 2, 1e-15);
+        CLOSE(radius, group ? 2 : 2 * cos(phi / 2), 1e-15);
+        CLOSE(radius, group ? 2 : 2 * (1 - phi * phi / 8), 2 * pow(phi, 4) / 384);
+        spar_session_destroy(&s);
+    }
+}
+
+/* What is not asked for is not needed for the rest: any part of a pull alone gives the bits of the whole, of a beam and
+   of a point; velocities are v + omega x r there. */
+static void pulls_give_what_is_asked_for(void **state) {
+    (void)state;
+    enum { N = 300 }; /* more than a tile */
+    static double node[N][3], x[N][3], v[N][3], q[N][4], w[N][3], a[N][3], alpha[N][3], y[4][N][4];
+    for (int kind = 0; kind < 3; kind++) {
+        rig r;
+        unsigned long long seed = 9;
+        spar_fluid *f;
+        spar_member *point;
+        double turn[4], qp[7] = {0.1, -0.2, 0.3}, vp[6] = {1, 2, 3, 0.4, 0.5, -0.6}, ap[6] = {3, 2, 1, -1, 0.5, 2};
+        const double psi[3] = {0.3, 0.5, -0.2};
+        rig_start(&r, 0);
+        bend(&r, 0.4);
+        scatter(node, N, &seed);
+        spari_quat_exp(psi, turn);
+        memcpy(qp + 3, turn, sizeof turn);
+        OK(spar_point_create(r.session, "point", NULL, NULL, &point));
+        OK(spar_member_commit(point));
+        OK(spar_member_set_motion(point, qp, vp, ap));
+        OK(spar_fluid_create(kind == 2 ? point : r.member, "surface", &f));
+        OK(spar_fluid_set_interpolation(f, kind ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL));
+        OK(spar_fluid_set_motion_nodes(f, N, node[0]));
+        OK(spar_fluid_map(f));
+        OK(spar_fluid_pull_poses(f, 1, x[0], q[0], v[0], w[0], a[0], alpha[0]));
+        OK(spar_fluid_pull_motion(f, 1, y[0][0], NULL));
+        assert_memory_equal(y[0], x, sizeof x);
+        OK(spar_fluid_pull_motion(f, 1, NULL, y[0][0]));
+        assert_memory_equal(y[0], v, sizeof v);
+        OK(spar_fluid_pull_motion(f, 1, y[0][0], y[1][0]));
+        assert_memory_equal(y[0], x, sizeof x);
+        assert_memory_equal(y[1], v, sizeof v);
+        OK(spar_fluid_pull_sections(f, 1, y[0][0], NULL, NULL));
+        assert_memory_equal(y[0], q, sizeof q);
+        OK(spar_fluid_pull_sections(f, 1, NULL, y[0][0], NULL));
+        assert_memory_equal(y[0], w, sizeof w);
+        OK(spar_fluid_pull_sections(f, 1, NULL, NULL, y[0][0]));
+        assert_memory_equal(y[0], a, sizeof a);
+        OK(spar_fluid_pull_poses(f, 1, y[0][0], y[1][0], y[2][0], y[3][0], NULL, NULL));
+        assert_memory_equal(y[0], x, sizeof x);
+        assert_memory_equal(y[1], q, sizeof q);
+        assert_memory_equal(y[2], v, sizeof v);
+        assert_memory_equal(y[3], w, sizeof w);
+        for (int j = 0; j < N && kind == 2; j++) {
+            double arm[3], wr[3], wwr[3], ar[3];
+            spari_rotate(turn, node[j], arm);
+            spari_cross(vp + 3, arm, wr);
+            spari_cross(vp + 3, wr, wwr);
+            spari_cross(ap + 3, arm, ar);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(x[j][i], qp[i] + arm[i], 1e-14);
+                CLOSE(v[j][i], vp[i] + wr[i], 1e-13);
+                CLOSE(a[j][i], ap[i] + ar[i] + wwr[i], 1e-13);
+                CLOSE(w[j][i], vp[3 + i], 0);
+                CLOSE(alpha[j][i], ap[3 + i], 0);
+            }
+            CLOSE(fabs(spari_quat_dot(q[j], turn)), 1, 1e-15);
+        }
+        rig_end(&r);
+    }
+}
+
 /* Node forces at theta between f^n and f^{n+1}; predicted at the begin of a step as the spec says, with the ratio of
    the steps; a rejected step leaves no trace. f(t) = 2 + 3 t: linear prediction is exact from the third step on. */
 static void node_forces_are_kept_and_predicted(void **state) {
@@ -495,6 +587,30 @@ static void late_history_is_refused(void **state) {
     assert_int_equal(spar_fluid_pull_forces(f, 1, got), SPAR_ERR_STATE);
     assert_true(says(&r, "SPAR_EFFECT_FLUID_HISTORY"));
     rig_end(&r);
+}
+
+/* Sections imply a history; effects without it take it away, and what was pushed is then gone for good; effects with it
+   give it to any nodes. */
+static void history_is_an_effect(void **state) {
+    (void)state;
+    const double xi[2] = {-0.5, 0.5}, force[2][3] = {{1, 2, 3}, {4, 5, 6}};
+    static const int effects[3] = {0, SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_HISTORY};
+    for (int k = 0; k < 6; k++) {
+        rig r;
+        double node[2][3] = {{2, 0, 0}, {7, 0, 0}}, got[2][3];
+        int sections = k < 3, kept = effects[k % 3] == SPAR_EFFECT_FLUID_HISTORY || (sections && k % 3 == 0);
+        spar_fluid *f;
+        rig_start(&r, effects[k % 3]);
+        OK(spar_fluid_create(r.member, "line", &f));
+        OK(sections ? spar_fluid_set_sections(f, 2, xi, NULL) : spar_fluid_set_force_nodes(f, 2, node[0]));
+        OK(spar_fluid_map(f));
+        OK(spar_fluid_push_forces(f, force[0], NULL));
+        assert_int_equal(spar_fluid_pull_forces(f, 1, got[0]), kept ? SPAR_OK : SPAR_ERR_STATE);
+        if (kept) {
+            assert_memory_equal(got, force, sizeof got);
+        }
+        rig_end(&r);
+    }
 }
 
 /* ---- loads ---- */
@@ -682,8 +798,11 @@ int main(void) {
         cmocka_unit_test(single_precision_at_the_edge),
         cmocka_unit_test(theta_lies_between_the_times),
         cmocka_unit_test(group_interpolation_keeps_the_radius),
+        cmocka_unit_test(half_step_cuts_the_corner),
+        cmocka_unit_test(pulls_give_what_is_asked_for),
         cmocka_unit_test(node_forces_are_kept_and_predicted),
         cmocka_unit_test(late_history_is_refused),
+        cmocka_unit_test(history_is_an_effect),
         cmocka_unit_test(loads_of_fluids_add),
         cmocka_unit_test(far_nodes_are_flagged_or_refused),
         cmocka_unit_test(bad_calls_are_refused),
