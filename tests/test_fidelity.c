@@ -48,7 +48,7 @@ static void run(spar_session *s, spar_member *b, int root, int n) {
 }
 
 /* The tip's deformation beyond `other`, after n steps */
-static double distance(const double a[7], const double b[7]) {
+static double distance(const double *a, const double *b) {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
@@ -233,33 +233,43 @@ static void test_rigid_modes(void **state) {
 }
 
 /* Rigid against exact with the stiffness scaled up: the pendulum of a pinned beam under gravity and a tip load. The
-   difference is the elastic deformation, which falls as 1 / stiffness. */
+   difference is the elastic deformation, which falls as 1 / stiffness, in the motion as in reaction, energy and work.
+ */
 static void test_rigid_is_the_stiff_limit(void **state) {
     (void)state;
     const double g[3] = {0, 0, -9.81};
-    double q[2][7], d[2];
+    double q[2][7], d[2], r[2][6], e[2][4], work[2][3], other[2];
     for (int k = 0; k < 2; k++) {
         double stiff[36];
-        for (int i = 0; i < 36; i++) {
-            stiff[i] = (k ? 1e2 : 1e1) * K[i];
+        for (int c = 0; c < 36; c++) {
+            stiff[c] = (k ? 1e2 : 1e1) * K[c];
         }
-        for (int e = 0; e < 2; e++) {
+        for (int i = 0; i < 2; i++) {
             spar_session *s = scene_session();
             spar_member *b = scene_beam(s, "b", 1, 6, 10, stiff, M);
             double load[6] = {0, 0.5, 0.2, 0, 0, 0};
             OK(s, spar_session_set_gravity(s, g));
             OK(s, spar_session_set_integrator(s, 0.0, 1));
             OK(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
-            OK(s, spar_member_set_fidelity(b, e ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
+            OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_add_load(b, 5, load));
+            OK(s, spar_member_get_work(b, work[i]));
             scene_run(s, 1e-3, 500);
-            scene_tip(b, q[e]);
+            scene_tip(b, q[i]);
+            OK(s, spar_member_get_reaction(b, r[i]));
+            OK(s, spar_member_get_energy(b, e[i]));
+            OK(s, spar_member_get_work(b, work[i]));
             spar_session_destroy(&s);
         }
         assert_true(fabs(q[0][2]) > 0.5); /* it has swung */
         d[k] = distance(q[0], q[1]);
+        assert_true(e[0][1] == 0 && r[0][3] == 0);
+        other[k] = fmax(distance(r[0], r[1]) / fabs(r[1][2]), fabs(work[0][0] - work[1][0]) / fabs(work[1][0]));
+        other[k] = fmax(other[k], fmax(fabs(e[0][0] / e[1][0] - 1), fabs(e[0][2] / e[1][2] - 1)));
     }
+    assert_true(other[0] < 0.1); /* the reaction rings */
+    assert_true(other[1] < 0.2 * other[0]);
     assert_true(d[0] < 1e-2);
     assert_true(d[1] < 0.2 * d[0]);
 }

@@ -3,6 +3,7 @@
 #include "scene.h"
 
 #include <gsl/gsl_integration.h>
+
 static double K[36], M[36];
 enum { NODES = 8, UNKNOWNS = 42, OFF = -1 }; /* two elements of 4; OFF: exact with LARGE_ROTATION off */
 

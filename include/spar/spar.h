@@ -358,7 +358,8 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    are exact to rounding. In static equilibrium under loads at element ends, with Gauss quadrature of P - 1 points in a
    straight element, the forces (turned to global axes) at those points balance the loads to rounding too. Of a linear
    or modal member, or one with LARGE_ROTATION off, strains are those of linear theory, as in its strain energy: of the
-   displacement and rotation vector seen from the root where that is fixed or driven, else from the reference. Local.
+   displacement and rotation vector seen from the root where that is fixed or driven, else from the reference; of a
+   rigid or prescribed one 0. Local.
    SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
