@@ -1,6 +1,13 @@
-/* What accuracy costs: one knob of a scene is turned at a time, the error against a converged reference and the CPU
-   time of the steps (the least of several runs) against the scene's default are written as CSV. accuracy [--full]
-   [--out folder] Short form: under two minutes. Progress on stderr. */
+/* What accuracy costs: every knob of five scenes is turned on its own, and a few together.
+
+     accuracy [--full] [--scene name] [--out file.csv]
+         plays every setting and writes its error against a converged reference and the processor time of its steps
+         (the least of several runs) over that of the scene's default
+     valgrind --tool=callgrind accuracy --count [--full] [--scene name]
+         plays them once and dumps the instructions of the steps of each, labelled with its number; without --full only
+         those of knobs default, rung and together (at the default's dt)
+
+   Settings are numbered from 0 through all scenes. benchmarks/run joins the two. Progress on stderr. */
 #include "scenes.h"
 
 #include <spar/spar_aero.h>
@@ -11,55 +18,116 @@
 #include <string.h>
 #include <time.h>
 
-/* ---- turning knobs ---- */
+#ifdef __has_include
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#define COUNTS 1
+#endif
+#endif
 
-static FILE *csv;
-static int full, done;
-static scene_reference reference;
-static double standard_seconds;
+enum { SETTINGS_MAX = 1000 };
 
-/* The least time of a few runs. */
-static int play(const scene *s, const knobs *k, int repeats, scene_result *result) {
-    double least = INFINITY;
-    int status = SPAR_OK;
-    for (int i = 0; i < repeats && status == SPAR_OK; i++) {
-        scene_run *run;
-        status = scene_build(s, k, &run);
-        status = status == SPAR_OK ? scene_march(run, result) : status;
-        if (status != SPAR_OK && getenv("SPAR_ACCURACY_VERBOSE")) {
-            fprintf(stderr, "\n%s\n", spar_session_message(run ? run->session : NULL));
-        }
-        scene_destroy(&run);
-        least = fmin(least, result->seconds);
+typedef struct setting {
+    const scene *scene;
+    const char *knob;
+    char value[40];
+    knobs knobs;
+} setting;
+
+static setting list[SETTINGS_MAX];
+static int count;
+
+/* ---- which settings there are ---- */
+
+static void add(const scene *s, const char *knob, const char *value, knobs k) {
+    if (count < SETTINGS_MAX) {
+        setting *to = &list[count++];
+        *to = (setting){.scene = s, .knob = knob, .knobs = k};
+        snprintf(to->value, sizeof to->value, "%s", value);
     }
-    result->seconds = least;
-    return status;
 }
 
-static void measure(const scene *s, const char *knob, const char *value, knobs k) {
-    scene_result r;
-    int status = play(s, &k, full ? 5 : 3, &r);
-    fprintf(stderr, "\r%4d %-7s %-12s %-16s", ++done, s->name, knob, value);
-    if (status != SPAR_OK) {
-        fprintf(csv, "%s,%s,%s,,,,fails\n", s->name, knob, value);
-        return;
-    }
-    fprintf(csv, "%s,%s,%s,%.4e,%.4f,%.3f,\n", s->name, knob, value, scene_error(&reference, &r),
-            r.seconds / standard_seconds, (double)r.iterations / (double)r.steps);
-    fflush(csv);
-}
-
+/* Adds a setting for every value of one field. */
 #define TURN(knob, field, format, ...)                                                                                 \
     do {                                                                                                               \
         const double list_[] = {__VA_ARGS__};                                                                          \
         for (size_t i_ = 0; i_ < sizeof list_ / sizeof *list_; i_++) {                                                 \
             knobs k_ = s->standard;                                                                                    \
-            char text_[32];                                                                                            \
+            char text_[40];                                                                                            \
             k_.field = (__typeof__(k_.field))list_[i_];                                                                \
             snprintf(text_, sizeof text_, format, list_[i_]);                                                          \
-            measure(s, knob, text_, k_);                                                                               \
+            add(s, knob, text_, k_);                                                                                   \
         }                                                                                                              \
     } while (0)
+
+/* Adds a setting for one value of one field, by name. */
+#define TAKE(knob, field, value, name)                                                                                 \
+    do {                                                                                                               \
+        knobs k_ = s->standard;                                                                                        \
+        k_.field = (value);                                                                                            \
+        add(s, knob, name, k_);                                                                                        \
+    } while (0)
+
+static void meshes(const scene *s) {
+    static const int of[][2] = {{2, 8}, {4, 4}, {3, 6}, {8, 4}};
+    TURN("nodes", nodes, "%g", 3, 4, 5, 6, 10, 12);
+    if (s->spins) {
+        TURN("nodes", nodes, "%g", 16, 24);
+    }
+    for (size_t i = 0; i < (s->spins ? sizeof of / sizeof *of : 2); i++) { /* sections that vary ask for pieces */
+        knobs k = s->standard;
+        char text[40];
+        k.elements = of[i][0], k.nodes = of[i][1];
+        snprintf(text, sizeof text, "%d x %d nodes", k.elements, k.nodes);
+        add(s, "elements", text, k);
+    }
+}
+
+static void quadratures(const scene *s) {
+    for (int i = 1; i <= 4; i++) {
+        knobs k = s->standard;
+        char text[40];
+        k.rule = s->spins ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;
+        k.points = s->spins ? i : 4 + 3 * i;
+        snprintf(text, sizeof text, s->spins ? "%d a section" : "%d gauss", k.points);
+        add(s, "quadrature", text, k);
+    }
+}
+
+static void couplings(const scene *s) {
+    static const char *const names[] = {"explicit", "fixed", "aitken", "iqn"};
+    const double tolerances[] = {1e-2, 1e-4, 1e-6};
+    for (int scheme = 0; scheme < 4; scheme++) {
+        for (int t = 0; t < (scheme ? 3 : 1); t++) {
+            knobs k = s->standard;
+            char text[40];
+            k.scheme = scheme, k.tolerance = tolerances[t];
+            snprintf(text, sizeof text, scheme ? "%s %.0e" : "%s", names[scheme], tolerances[t]);
+            add(s, "coupling", text, k);
+        }
+    }
+    for (int i = 2; i <= 4; i *= 2) { /* is it the coupling that a long step fails by? */
+        knobs k = s->standard;
+        char text[40];
+        k.scheme = SPAR_COUPLING_IQN_ILS, k.tolerance = 1e-4, k.dt *= i;
+        snprintf(text, sizeof text, "iqn 1e-04 dt %g", k.dt);
+        add(s, "coupling", text, k);
+    }
+}
+
+/* Single precision at the edge; where the coupling is iterated, how tight that can be. */
+static void singles(const scene *s) {
+    TAKE("f32", single, 1, "f32");
+    for (int i = 2; i <= 7 && s->standard.scheme != SPAR_COUPLING_EXPLICIT; i++) {
+        for (int acceleration = 0; acceleration < 2; acceleration++) {
+            knobs k = s->standard;
+            char text[40];
+            k.single = 1, k.tolerance = pow(10, -i), k.acceleration = acceleration;
+            snprintf(text, sizeof text, "f32 %siqn %.0e", acceleration ? "" : "differences ", k.tolerance);
+            add(s, "f32", text, k);
+        }
+    }
+}
 
 static void effects(const scene *s) {
     static const struct {
@@ -69,6 +137,7 @@ static void effects(const scene *s) {
                {"no gyroscopic", SPAR_EFFECT_GYROSCOPIC},
                {"no gravity", SPAR_EFFECT_GRAVITY},
                {"no damping", SPAR_EFFECT_DAMPING},
+               {"no large rotation", SPAR_EFFECT_LARGE_ROTATION},
                {"no moment", SPAR_EFFECT_FLUID_MOMENT}},
       aero[] = {{"no induction", SPAR_AERO_INDUCTION}, {"no tip loss", SPAR_AERO_TIP_LOSS},
                 {"no hub loss", SPAR_AERO_HUB_LOSS},   {"no swirl", SPAR_AERO_SWIRL},
@@ -76,12 +145,15 @@ static void effects(const scene *s) {
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         knobs k = s->standard;
         k.effects = 63 & ~all[i].bit;
-        measure(s, "effects", all[i].name, k);
+        add(s, "effects", all[i].name, k);
+    }
+    if (s->floats) {
+        TAKE("effects", effects, SPAR_EFFECT_INERTIA, "inertia alone");
     }
     for (size_t i = 0; i < sizeof aero / sizeof *aero && s->spins; i++) {
         knobs k = s->standard;
         k.aero = 63 & ~aero[i].bit;
-        measure(s, "effects", aero[i].name, k);
+        add(s, "effects", aero[i].name, k);
     }
 }
 
@@ -90,137 +162,220 @@ static void rungs(const scene *s) {
     for (int rung = s->floats; rung < 3; rung++) {
         knobs k = s->standard;
         k.rung = rung;
-        measure(s, "rung", names[rung], k);
+        add(s, "rung", names[rung], k);
     }
     for (int64_t modes = 2; modes <= 16 && !s->floats; modes *= 2) {
         knobs k = s->standard;
-        char text[32];
+        char text[40];
         k.rung = SPAR_FIDELITY_MODAL, k.modes = modes;
         snprintf(text, sizeof text, "%d modes", (int)modes);
-        measure(s, "rung", text, k);
-    }
-}
-
-static void coupling(const scene *s) {
-    static const char *const names[] = {"explicit", "fixed", "aitken", "iqn"};
-    const double tolerances[] = {1e-2, 1e-4, 1e-6, 1e-9};
-    for (int scheme = 0; scheme < 4; scheme++) {
-        for (int t = 0; t < (scheme ? 4 : 1); t++) {
-            knobs k = s->standard;
-            char text[32];
-            k.scheme = scheme, k.tolerance = tolerances[t];
-            snprintf(text, sizeof text, scheme ? "%s %.0e" : "%s", names[scheme], tolerances[t]);
-            measure(s, "coupling", text, k);
-        }
-    }
-    for (int i = 2; i <= 4; i *= 2) { /* is it the coupling that a long step fails by? */
-        knobs k = s->standard;
-        char text[32];
-        k.scheme = SPAR_COUPLING_IQN_ILS, k.tolerance = 1e-4, k.dt *= i;
-        snprintf(text, sizeof text, "iqn 1e-04 dt %g", k.dt);
-        measure(s, "coupling", text, k);
+        add(s, "rung", text, k);
     }
 }
 
 /* Several knobs at once, over dt: what the single ones suggest. */
 static void together(const scene *s) {
     static const double factor[] = {0.25, 0.5, 1, 2};
-    static const char *const names[] = {"newton 1e-6", "lean", "lean/modal", "rigid"};
-    for (int kind = 0; kind < 4; kind++) {
-        if ((kind == 2) == s->floats && kind > 1) {
+    enum { NEWTON, PREDICTOR, LEAN, LEAN_ELEMENTS, LEAN_MODAL, RIGID };
+    static const char *const names[] = {"newton 1e-6", "predictor 2", "lean", "lean 3 x 6", "lean/modal", "rigid"};
+    for (int kind = NEWTON; kind <= RIGID; kind++) {
+        if ((kind == LEAN_ELEMENTS && !s->spins) || (kind == (s->floats ? LEAN_MODAL : RIGID))) {
             continue;
         }
         for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
             knobs k = s->standard;
-            char text[48];
+            char text[40];
             k.dt *= factor[i];
             k.newton = 1e-6;
-            if (kind > 0) { /* fewer nodes and points, the coupling no tighter than the step */
-                k.nodes = 6;
+            k.predictor = kind == PREDICTOR ? 2 : k.predictor;
+            if (kind > PREDICTOR) { /* fewer nodes and points, the coupling no tighter than the step */
+                k.nodes = 6, k.elements = kind == LEAN_ELEMENTS ? 3 : 1;
                 k.rule = s->spins ? SPAR_QUADRATURE_SECTIONS : -1, k.points = 1;
                 k.tolerance = 1e-2;
             }
-            if (kind == 2) {
+            if (kind == LEAN_MODAL) {
                 k.rung = SPAR_FIDELITY_MODAL, k.modes = 8;
             }
-            if (kind == 3) {
+            if (kind == RIGID || (kind == PREDICTOR && s->floats)) {
                 k.rung = SPAR_FIDELITY_RIGID;
             }
-            snprintf(text, sizeof text, "%s dt %g", names[kind], k.dt);
-            measure(s, "together", text, k);
+            snprintf(text, sizeof text, "%s%s dt %g", k.rung == SPAR_FIDELITY_RIGID && kind != RIGID ? "rigid " : "",
+                     names[kind], k.dt);
+            add(s, "together", text, k);
         }
     }
 }
 
-static int benchmark(const scene *s) {
-    scene_result r;
-    fprintf(stderr, "\r%4d %-7s reference            ", done, s->name);
-    int status = scene_converge(s, full ? 40 : 16, 14, &reference);
+static void settings_of(const scene *s) {
+    const double d = s->standard.dt;
+    add(s, "default", "default", s->standard); /* the first of its scene: benchmarks/run takes it so */
+    TURN("dt", dt, "%g", d / 4, d / 2, d * 2, d * 4);
+    meshes(s);
+    quadratures(s);
+    TURN("rho", rho, "%g", 0, 0.5, 1);
+    TURN("substeps", substeps, "%g", 2, 4);
+    TURN("newton", newton, "%.0e", 1e-3, 1e-5, 1e-6, 1e-8, 1e-10);
+    TURN("predictor", predictor, "%g", 0, 2);
+    TURN("theta", theta, "%g", 0, 0.5);
+    TAKE("start", start, 0, "no loads at t = 0");
+    TAKE("consistent", consistent, SPAR_INTERPOLATE_CONSISTENT, "consistent");
+    if (s->nodes) {
+        TAKE("projection", projection, SPAR_PROJECT_RPOLY, "rpoly");
+    }
+    if (s->standard.scheme != SPAR_COUPLING_EXPLICIT) {
+        TAKE("acceleration", acceleration, 0, "differences of velocities");
+    }
+    singles(s);
+    couplings(s);
+    effects(s);
+    rungs(s);
+    together(s);
+}
+
+/* ---- errors and times ---- */
+
+static int play(int i, scene_result *result) {
+    scene_run *run;
+    int status = scene_build(list[i].scene, &list[i].knobs, &run);
+    status = status == SPAR_OK ? scene_march(run, result) : status;
+    if (status != SPAR_OK && getenv("SPAR_ACCURACY_VERBOSE")) {
+        fprintf(stderr, "\n%s\n", spar_session_message(run ? run->session : NULL));
+    }
+    scene_destroy(&run);
+    return status;
+}
+
+/* The least time of a few runs. */
+static int repeat(int i, int times, scene_result *result) {
+    double least = INFINITY;
+    int status = SPAR_OK;
+    for (int n = 0; n < times && status == SPAR_OK; n++) {
+        status = play(i, result);
+        least = fmin(least, result->seconds);
+    }
+    result->seconds = least;
+    return status;
+}
+
+/* The reference, and how far a coarser one on other nodes is from it: an upper estimate of its own error. */
+static int converge(const scene *s, int full, scene_reference *reference, double *own) {
+    scene_reference coarse;
+    const double refine = full ? 64 : 32;
+    fprintf(stderr, "\r     %-7s reference%30s", s->name, "");
+    int status = scene_converge(s, refine, s->spins ? 8 : 1, s->spins ? 8 : 18, reference);
+    status = status == SPAR_OK ? scene_converge(s, refine / 2, 1, 24, &coarse) : status;
     if (status != SPAR_OK) {
         fprintf(stderr, "\n%s: the reference fails: %s\n", s->name, spar_status_text(status));
         return 1;
     }
-    if (play(s, &s->standard, 5, &r) != SPAR_OK) {
-        fprintf(stderr, "\n%s: the default fails\n", s->name);
-        return 1;
-    }
-    standard_seconds = r.seconds;
-    measure(s, "default", "default", s->standard);
-    double d = s->standard.dt;
-    TURN("dt", dt, "%g", d / 4, d / 2, d * 2, d * 4);
-    TURN("nodes", nodes, "%g", 3, 4, 5, 6, 8, 10, 12);
-    TURN("elements", elements, "%g", 1, 2, 3);
-    for (int points = 1; points <= 4 && s->spins; points++) {
-        knobs k = s->standard;
-        char text[32];
-        k.rule = SPAR_QUADRATURE_SECTIONS, k.points = points;
-        snprintf(text, sizeof text, "%d a section", points);
-        measure(s, "quadrature", text, k);
-    }
-    for (int points = 7; points <= 16 && !s->spins; points += 3) {
-        knobs k = s->standard;
-        char text[32];
-        k.rule = SPAR_QUADRATURE_GAUSS, k.points = points;
-        snprintf(text, sizeof text, "%d gauss", points);
-        measure(s, "quadrature", text, k);
-    }
-    TURN("rho", rho, "%g", 0, 0.5, 1);
-    TURN("substeps", substeps, "%g", 2, 4);
-    TURN("newton", newton, "%g", 1e-3, 1e-6, 1e-9);
-    TURN("predictor", predictor, "%g", 0, 1, 2);
-    TURN("theta", theta, "%g", 0, 0.5);
-    TURN("consistent", consistent, "%g", 1);
-    if (s->nodes) {
-        TURN("projection", projection, "%g", 1);
-        TURN("f32", single, "%g", 1);
-    }
-    coupling(s);
-    effects(s);
-    rungs(s);
-    together(s);
+    *own = scene_distance(reference->history, coarse.history) / reference->scale;
     return 0;
+}
+
+static int measure(const char *only, int full, FILE *csv) {
+    scene_reference reference;
+    scene_result r;
+    double own = 0, standard = 1;
+    const scene *s = NULL;
+    fprintf(csv, "index,scene,knob,value,error,time ratio,iterations per step,steps,note\n");
+    for (int i = 0; i < count; i++) {
+        const setting *at = &list[i];
+        if (only && strcmp(only, at->scene->name) != 0) {
+            continue;
+        }
+        if (at->scene != s) {
+            s = at->scene;
+            if (converge(s, full, &reference, &own) || repeat(i, 5, &r) != SPAR_OK) {
+                return 1;
+            }
+            standard = r.seconds;
+            fprintf(csv, ",%s,reference,own error,%.2e,,,,\n", s->name, own);
+        }
+        fprintf(stderr, "\r%4d of %d %-7s %-12s %-24s", i + 1, count, s->name, at->knob, at->value);
+        fprintf(csv, "%d,%s,%s,%s,", i, s->name, at->knob, at->value);
+        if (repeat(i, full ? 5 : 3, &r) == SPAR_OK) {
+            double error = scene_error(&reference, &r);
+            fprintf(csv, "%.4e,%.4f,%.3f,%lld,%s\n", error, r.seconds / standard,
+                    (double)r.iterations / (double)r.steps, (long long)r.steps,
+                    error < own ? "below the reference's error" : "");
+        } else {
+            fprintf(csv, ",,,,fails\n");
+        }
+        fflush(csv);
+    }
+    return 0;
+}
+
+/* ---- instructions ---- */
+
+#ifdef COUNTS
+/* The building of a scene is counted too, and thrown away. */
+static void count_steps(int i) {
+    char label[16];
+    scene_run *run;
+    scene_result result;
+    int status = scene_build(list[i].scene, &list[i].knobs, &run);
+    snprintf(label, sizeof label, "%d", i);
+    CALLGRIND_ZERO_STATS;
+    status = status == SPAR_OK ? scene_march(run, &result) : status;
+    if (status == SPAR_OK) {
+        CALLGRIND_DUMP_STATS_AT(label);
+    }
+    scene_destroy(&run);
+}
+
+static int counted(const setting *at, int full) {
+    static const char *const some[] = {"default", "rung", "together"};
+    int among = 0;
+    for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
+        among |= strcmp(at->knob, some[i]) == 0;
+    }
+    return full || (among && at->knobs.dt == at->scene->standard.dt);
+}
+#endif
+
+static int count_all(const char *only, int full) {
+#ifdef COUNTS
+    for (int i = 0; i < count && RUNNING_ON_VALGRIND; i++) {
+        if ((!only || strcmp(only, list[i].scene->name) == 0) && counted(&list[i], full)) {
+            count_steps(i);
+        }
+    }
+    if (RUNNING_ON_VALGRIND) {
+        return 0;
+    }
+#endif
+    (void)only, (void)full;
+    fprintf(stderr, "accuracy: --count needs valgrind --tool=callgrind, and its header when this was built\n");
+    return 1;
 }
 
 int main(int argc, char **argv) {
     const char *out = "accuracy.csv", *only = NULL;
+    int full = 0, counting = 0;
     for (int i = 1; i < argc; i++) {
         full |= strcmp(argv[i], "--full") == 0;
         out = strcmp(argv[i], "--out") == 0 && i + 1 < argc ? argv[++i] : out;
         only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
+        counting |= strcmp(argv[i], "--count") == 0;
     }
-    csv = fopen(out, "w");
+    for (int i = 0; i < SCENE_COUNT; i++) {
+        settings_of(&scenes[i]);
+    }
+    if (counting) {
+        int failed = count_all(only, full);
+        scenes_free();
+        return failed;
+    }
+    FILE *csv = fopen(out, "w");
     if (!csv) {
         perror(out);
         return 1;
     }
-    fprintf(csv, "scene,knob,value,error,cost,iterations,note\n");
-    int failed = 0;
     clock_t since = clock();
-    for (int i = 0; i < SCENE_COUNT; i++) {
-        failed |= !only || strcmp(only, scenes[i].name) == 0 ? benchmark(&scenes[i]) : 0;
-    }
-    fclose(csv);
+    int failed = measure(only, full, csv);
+    failed |= fclose(csv) != 0;
     scenes_free();
-    fprintf(stderr, "\n%d settings in %.0f s; %s\n", done, (double)(clock() - since) / CLOCKS_PER_SEC, out);
+    fprintf(stderr, "\r%.0f s of processor time; %s%40s\n", (double)(clock() - since) / CLOCKS_PER_SEC, out, "");
     return failed;
 }

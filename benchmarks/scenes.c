@@ -205,16 +205,19 @@ typedef struct strip {
     double x[6 * STRIPS], rest[6 * STRIPS], v[6 * STRIPS], a[6 * STRIPS], old[6 * STRIPS], force[6 * STRIPS];
 } strip;
 
-/* Places and velocities at theta. */
+/* Places, velocities, accelerations at theta. */
 static int pull(strip *f) {
     const knobs *k = &f->run->knobs;
-    float x32[6 * STRIPS], v32[6 * STRIPS];
+    spar_fluid *fluid = f->run->fluid;
+    float x32[6 * STRIPS], v32[6 * STRIPS], a32[6 * STRIPS];
     if (!k->single) {
-        return spar_fluid_pull_motion(f->run->fluid, k->theta, f->x, f->v);
+        TRY(spar_fluid_pull_motion(fluid, k->theta, f->x, f->v));
+        return k->acceleration ? spar_fluid_pull_sections(fluid, k->theta, NULL, NULL, f->a) : SPAR_OK;
     }
-    TRY(spar_fluid_pull_motion_f32(f->run->fluid, k->theta, x32, v32));
+    TRY(spar_fluid_pull_motion_f32(fluid, k->theta, x32, v32));
+    TRY(spar_fluid_pull_sections_f32(fluid, k->theta, NULL, NULL, a32));
     for (int i = 0; i < 6 * STRIPS; i++) {
-        f->x[i] = (double)x32[i], f->v[i] = (double)v32[i];
+        f->x[i] = (double)x32[i], f->v[i] = (double)v32[i], f->a[i] = (double)a32[i];
     }
     return SPAR_OK;
 }
@@ -224,11 +227,9 @@ static int press(spar_session *s, double t, double dt, int iteration, void *cont
     const knobs *k = &f->run->knobs;
     (void)s, (void)iteration;
     TRY(pull(f));
-    if (k->acceleration) {
-        TRY(spar_fluid_pull_sections(f->run->fluid, k->theta, NULL, NULL, f->a));
-    }
     for (int i = 2; i < 6 * STRIPS; i += 3) {
-        double gain = k->acceleration ? f->a[i] : (f->v[i] - f->old[i]) / (k->theta > 0 ? k->theta * dt : dt);
+        double over = k->theta > 0 ? k->theta * dt : dt;
+        double gain = k->acceleration ? f->a[i] : over > 0 ? (f->v[i] - f->old[i]) / over : 0;
         f->force[i] = f->load * sin(f->rate * (t + dt)) - f->added * gain - f->damper * f->v[i] -
                       f->spring * (f->x[i] - f->rest[i]);
     }
@@ -285,7 +286,8 @@ static int build_body(scene_run *r) {
 #define STANDARD(dt_, scheme_)                                                                                         \
     {                                                                                                                  \
         .elements = 1, .nodes = 8, .rule = -1, .dt = (dt_), .rho = 0.9, .substeps = 1, .predictor = 1,                 \
-        .scheme = (scheme_), .tolerance = 1e-6, .theta = 1, .effects = -1, .aero = -1, .rung = SPAR_FIDELITY_EXACT     \
+        .scheme = (scheme_), .tolerance = 1e-6, .theta = 1, .acceleration = 1, .start = 1, .effects = -1, .aero = -1,  \
+        .rung = SPAR_FIDELITY_EXACT                                                                                    \
     }
 
 const scene scenes[SCENE_COUNT] = {
@@ -303,7 +305,8 @@ int scene_build(const scene *s, const knobs *k, scene_run **run) {
     r->scene = s, r->knobs = *k;
     TRY(spar_session_create(&r->session));
     TRY(settings(r->session, k));
-    return s->build(r);
+    TRY(s->build(r));
+    return k->start ? r->solve(r->session, 0, 0, 0, r->context) : SPAR_OK;
 }
 
 void scene_destroy(scene_run **run) {
@@ -339,10 +342,10 @@ int scene_step(scene_run *run, double *seconds, int64_t *iterations) {
     double t, dt = run->knobs.dt;
     int count = 0;
     TRY(spar_session_get_time(run->session, &t, NULL, NULL));
+    double since = cpu();
     if (run->before) {
         TRY(run->before(run->session, t, dt, run->context));
     }
-    double since = cpu();
     int status = spar_step(run->session, dt, run->solve, run->context, &count);
     *seconds += cpu() - since;
     *iterations += count;
@@ -396,10 +399,10 @@ static int play(const scene *s, const knobs *k, scene_result *result) {
     return status;
 }
 
-int scene_converge(const scene *s, double refine, int nodes, scene_reference *reference) {
+int scene_converge(const scene *s, double refine, int elements, int nodes, scene_reference *reference) {
     knobs fine = s->standard, still;
     scene_result result;
-    fine.dt = scene_dt(s, s->standard.dt / refine), fine.nodes = nodes;
+    fine.dt = scene_dt(s, s->standard.dt / refine), fine.elements = elements, fine.nodes = nodes;
     fine.scheme = SPAR_COUPLING_IQN_ILS, fine.tolerance = 1e-9;
     TRY(play(s, &fine, &result));
     memcpy(reference->history, result.history, sizeof result.history);

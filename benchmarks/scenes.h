@@ -12,7 +12,7 @@
        scene_run *run;
        scene_reference reference;
        knobs k = scene->standard;
-       scene_converge(scene, 16, 14, &reference);
+       scene_converge(scene, 16, 1, 24, &reference);
        k.dt = 0.01;
        if (scene_build(scene, &k, &run) == SPAR_OK && scene_march(run, &result) == SPAR_OK) {
            error = scene_error(&reference, &result);
@@ -41,7 +41,8 @@ typedef struct knobs {
     int projection;   /* SPAR_PROJECT_*; scenes with nodes only */
     int consistent;   /* SPAR_INTERPOLATE_* */
     int single;       /* f32 at the edge: loads, and where the scene pulls the motion itself (nodes), that too */
-    int acceleration; /* plate: the added mass takes the nodes' acceleration, not a difference of velocities */
+    int acceleration; /* plate: the added mass takes the nodes' acceleration; else a difference of velocities */
+    int start;        /* loads at t = 0 are given before the first step, by scene_build; else they count as zero */
     int effects;      /* SPAR_EFFECT_* or-ed; -1: default */
     int aero;         /* SPAR_AERO_* or-ed; -1: default */
     int rung;         /* SPAR_FIDELITY_* */
@@ -80,7 +81,7 @@ struct scene_run {
 /* What scene_march keeps. */
 typedef struct scene_result {
     double history[3 * SCENE_SAMPLES]; /* displacement of the tip at even times, the last T; m */
-    double seconds;                    /* processor time of the steps, fluid included */
+    double seconds;                    /* processor time of the steps, fluid and driving included */
     int64_t steps, iterations;
 } scene_result;
 
@@ -98,7 +99,7 @@ int scene_build(const scene *s, const knobs *k, scene_run **run);
 void scene_destroy(scene_run **run);
 /* The largest dt, at most the one given, that has every sample at the end of a step. */
 double scene_dt(const scene *s, double dt);
-/* One step of knobs.dt from the session's time: before, then spar_step. seconds: processor time of spar_step, added;
+/* One step of knobs.dt from the session's time: before, then spar_step. seconds: processor time of both, added;
    iterations: added. */
 int scene_step(scene_run *run, double *seconds, int64_t *iterations);
 /* From the session's time, which is 0 or later, to T in steps of knobs.dt (see scene_dt). Samples that lie before the
@@ -106,8 +107,9 @@ int scene_step(scene_run *run, double *seconds, int64_t *iterations);
 int scene_march(scene_run *run, scene_result *result);
 /* Root mean square distance of two histories, m; b NULL: from rest. */
 double scene_distance(const double a[3 * SCENE_SAMPLES], const double b[3 * SCENE_SAMPLES]);
-/* The scene with the coupling converged to 1e-9, dt of the standard knobs over `refine`, `nodes` nodes. */
-int scene_converge(const scene *s, double refine, int nodes, scene_reference *reference);
+/* The scene with the coupling converged to 1e-9, dt that of the standard knobs over `refine`, on elements * nodes
+   nodes. How far it is from the limit, two of them tell: scene_distance of their histories over the scale. */
+int scene_converge(const scene *s, double refine, int elements, int nodes, scene_reference *reference);
 /* Distance from the reference over its scale: 1 is a result without any deformation. */
 double scene_error(const scene_reference *reference, const scene_result *result);
 /* Frees the rotor's tables; they are read again when a scene needs them. */
