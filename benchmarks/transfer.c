@@ -1,9 +1,13 @@
 /* What it costs to map fluid nodes, to move them and to gather their loads.
 
-   transfer [largest n]       nodes per second over n = 10^3 .. largest (10^7) and P = 4, 6, 10, 16, beside the plain
-   loop over stored weights (library flags; -O3 -march=native) and the time that the bytes alone would take transfer
-   projection        microseconds and errors of the nearest point: bounds, RPOLY, GSL's companion matrix Times are the
-   least of several runs: the machine may be shared. One core. */
+     transfer [largest n]   nodes per second over n = 10^3 .. largest (10^7) and P = 4, 6, 10, 16, beside the plain loop
+                            over stored weights (library flags; -O3 -march=native) and the time that the bytes alone
+                            would take
+     transfer point [n]     n (10^6) nodes on a point, a rigid body, and a prescribed and a rigid beam of ten nodes,
+                            beside the plain loop of a rigid transfer
+     transfer projection    microseconds and errors of the nearest point: bounds, RPOLY, GSL's companion matrix
+
+   Times are the least of several runs: the machine may be shared. One core. */
 #include "fluid/projection.h"
 #include "math/basis.h"
 #include "plain.h"
@@ -227,6 +231,112 @@ static void table(int64_t largest) {
     }
 }
 
+/* ---- rigid transfers ---- */
+
+typedef struct rigid_scene {
+    spar_session *session;
+    spar_fluid *fluid;
+    plain_rigid plain;
+    double *node, *x, *v, *force;
+    double load[6];
+} rigid_scene;
+
+static const char *const carriers[] = {"point", "rigid body", "prescribed beam, P = 10", "rigid beam, P = 10"};
+enum { CARRIERS = 4 };
+
+static spar_member *make_carrier(spar_session *s, int kind) {
+    static const double q[4] = {1, 0, 0, 0}, eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 10, 0, 0};
+    spar_member *m;
+    double mass[36] = {0}, stiffness[36] = {0};
+    for (int i = 0; i < 6; i++) {
+        mass[7 * i] = 1, stiffness[7 * i] = 1e6;
+    }
+    if (kind == 0) {
+        MUST(s, spar_point_create(s, "carrier", NULL, q, &m));
+    } else if (kind == 1) {
+        MUST(s, spar_rigid_create(s, "carrier", NULL, q, mass, &m));
+    } else {
+        MUST(s, spar_beam_create(s, "carrier", 1, 10, &m));
+        MUST(s, spar_beam_set_axis(m, 2, eta, xyz, NULL));
+        MUST(s, spar_beam_set_sections(m, 1, eta, stiffness, mass));
+        MUST(s, spar_member_set_fidelity(m, kind == 2 ? SPAR_FIDELITY_PRESCRIBED : SPAR_FIDELITY_RIGID, 0));
+    }
+    MUST(s, spar_member_commit(m));
+    return m;
+}
+
+static void make_rigid(rigid_scene *s, int kind, int64_t n) {
+    memset(s, 0, sizeof *s);
+    s->node = room(3 * n), s->x = room(3 * n), s->v = room(3 * n), s->force = room(3 * n);
+    for (int64_t j = 0; j < n; j++) {
+        double turn = 0.0628 * (double)j;
+        s->node[3 * j] = 10 * (double)j / (double)n, s->node[3 * j + 1] = cos(turn), s->node[3 * j + 2] = sin(turn);
+        s->force[3 * j] = 1, s->force[3 * j + 1] = cos(turn), s->force[3 * j + 2] = 0.1;
+    }
+    MUST(s->session, spar_session_create(&s->session));
+    MUST(s->session, spar_session_set_option(s->session, "fluid.audit", "off"));
+    MUST(s->session, spar_fluid_create(make_carrier(s->session, kind), "around", &s->fluid));
+    MUST(s->session, spar_fluid_set_motion_nodes(s->fluid, n, s->node));
+    MUST(s->session, spar_fluid_set_force_nodes(s->fluid, n, s->node));
+    MUST(s->session, spar_fluid_map(s->fluid));
+    s->plain = (plain_rigid){.n = n, .con = s->node, .R = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .omega = {0.1, 0.2, 0.3}};
+}
+
+static void rigid_work(rigid_scene *s, int push_in, int by) {
+    if (by == 0 && push_in) {
+        MUST(s->session, spar_fluid_push_forces(s->fluid, s->force, NULL));
+    } else if (by == 0) {
+        MUST(s->session, spar_fluid_pull_motion(s->fluid, 1, s->x, s->v));
+    } else if (push_in) {
+        (by == 1 ? plain_rigid_loads_portable : plain_rigid_loads_native)(&s->plain, s->force, s->load);
+    } else {
+        (by == 1 ? plain_rigid_motion_portable : plain_rigid_motion_native)(&s->plain, s->x, s->v);
+    }
+}
+
+/* Seconds of a pull or push by the library, the loop with the library's flags and the loop for this machine, in turns.
+ */
+static void rigid_seconds(rigid_scene *s, int push_in, double best[3]) {
+    best[0] = best[1] = best[2] = HUGE_VAL;
+    for (int run = 0; run < 25; run++) {
+        for (int by = 0; by < 3; by++) {
+            double t = now();
+            rigid_work(s, push_in, by);
+            best[by] = fmin(best[by], now() - t);
+        }
+    }
+}
+
+static void point(int64_t n) {
+    printf(
+        "Nanoseconds a node on one core, %lld nodes, and their ratio to the plain loop's with the library's flags and "
+        "for this\n"
+        "machine. State: 25 bytes a node on one node (its arm and its flags), 33 on a beam.\n\n"
+        "| nodes on a | pull | loop | native loop | ratio | ratio | push | loop | native loop | ratio | ratio |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        (long long)n);
+    for (int kind = 0; kind < CARRIERS; kind++) {
+        rigid_scene s;
+        make_rigid(&s, kind, n);
+        printf("| %s |", carriers[kind]);
+        for (int push_in = 0; push_in < 2; push_in++) {
+            double t[3];
+            rigid_seconds(&s, push_in, t);
+            for (int by = 0; by < 3; by++) {
+                t[by] *= 1e9 / (double)n;
+            }
+            printf(" %.2f | %.2f | %.2f | %.2f | %.2f |", t[0], t[1], t[2], t[0] / t[1], t[0] / t[2]);
+        }
+        printf("\n");
+        fflush(stdout);
+        free(s.node);
+        free(s.x);
+        free(s.v);
+        free(s.force);
+        spar_session_destroy(&s.session);
+    }
+}
+
 /* ---- nearest points ---- */
 
 enum { POINTS = 20000, MOST = 20 };
@@ -387,6 +497,8 @@ static void projection(void) {
 int main(int argc, char **argv) {
     if (argc > 1 && strcmp(argv[1], "projection") == 0) {
         projection();
+    } else if (argc > 1 && strcmp(argv[1], "point") == 0) {
+        point(argc > 2 ? (int64_t)strtod(argv[2], NULL) : 1000000);
     } else {
         table(argc > 1 ? (int64_t)strtod(argv[1], NULL) : 10000000);
     }

@@ -318,29 +318,92 @@ SPARI_INLINE double NAME(run)(const spari_nodes *s, int64_t first, int count, co
     return NAME(least)(least);
 }
 
-/* The same of a point or rigid body, whose one node carries all: nothing of its motion is found node by node. */
+/* ---- one node for all: a point, a rigid body; nothing of its motion is found node by node ---- */
+
+SPARI_INLINE void NAME(splat)(const int n, const double *from, L *to) {
+    SPARI_UNROLL
+    for (int i = 0; i < n; i++) {
+        to[i] = SPLAT(from + i);
+    }
+}
+
+/* r = R c */
+SPARI_INLINE void NAME(rotate)(const L *turn, const L *c, L *r) {
+    SPARI_UNROLL
+    for (int i = 0; i < 3; i++) {
+        r[i] = MADD(turn[3 * i + 2], c[2], MADD(turn[3 * i + 1], c[1], turn[3 * i] * c[0]));
+    }
+}
+
+/* Triples a + b of W nodes to the host's, of which `count` are there. */
+SPARI_INLINE void NAME(give)(const L *a, const L *b, int count, double *out) {
+    double part[3 * W];
+    NAME(weave)(a[0] + b[0], a[1] + b[1], a[2] + b[2], count < W ? part : out);
+    if (count < W) {
+        memcpy(out, part, 3 * (size_t)count * sizeof *out);
+    }
+}
+
+/* Places and velocities of all nodes to the host's triples, without a tile between them. */
+SPARI_INLINE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int places, const int rates, double *x,
+                                  double *v) {
+    L turn[9], place[3], rate[3], w[3];
+    NAME(splat)(9, m->turn, turn);
+    NAME(splat)(3, m->place, place);
+    NAME(splat)(3, m->rate, rate);
+    NAME(splat)(3, m->omega, w);
+    for (int64_t p = 0; p < s->n; p += W) {
+        int count = s->n - p < W ? (int)(s->n - p) : W;
+        L c[3], r[3], wr[3];
+        SPARI_UNROLL
+        for (int i = 0; i < 3; i++) {
+            double part[W] = {0};
+            if (count < W) {
+                memcpy(part, s->con[i] + p, (size_t)count * sizeof *part);
+            }
+            c[i] = NAME(get)(count < W ? part : s->con[i] + p);
+        }
+        NAME(rotate)(turn, c, r);
+        if (places) {
+            NAME(give)(place, r, count, x + 3 * p);
+        }
+        if (rates) {
+            NAME(cross)(w, r, wr);
+            NAME(give)(rate, wr, count, v + 3 * p);
+        }
+    }
+}
+
+TARGET static void NAME(carry_to)(const spari_nodes *s, const carrier *m, double *x, double *v) {
+    if (x && v) {
+        NAME(carry_all)(s, m, 1, 1, x, v);
+    } else if (x) {
+        NAME(carry_all)(s, m, 1, 0, x, v);
+    } else if (v) {
+        NAME(carry_all)(s, m, 0, 1, x, v);
+    }
+}
+
+/* The rows of a tile. */
 SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
                               double (*buf)[SPARI_ROW]) {
     const double *const *from = (const double *const *)s->con;
     const int upto = what & SPARI_UPTO;
     L turn[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
-    SPARI_UNROLL
-    for (int i = 0; i < 9; i++) {
-        turn[i] = SPLAT(m->turn + i);
-    }
-    SPARI_UNROLL
-    for (int i = 0; i < 3; i++) {
-        place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
-        accel[i] = SPLAT(m->accel + i), alpha[i] = SPLAT(m->alpha + i);
-    }
+    NAME(splat)(9, m->turn, turn);
+    NAME(splat)(3, m->place, place);
+    NAME(splat)(3, m->rate, rate);
+    NAME(splat)(3, m->omega, w);
+    NAME(splat)(3, m->accel, accel);
+    NAME(splat)(3, m->alpha, alpha);
     for (int at = 0; at < count; at += PAIR) {
         NAME(fetch)(from, 3, first + at, count - at, c);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
-            L r[3], wr[3], ar[3], wwr[3];
+            L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], wr[3], ar[3], wwr[3];
+            NAME(rotate)(turn, arm, r);
             SPARI_UNROLL
             for (int i = 0; i < 3; i++) {
-                r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
                 NAME(put)(buf[SPARI_R_PLACE + i] + at + W * u, place[i] + r[i]);
             }
             if (upto < SPARI_UPTO_RATE) {
@@ -564,13 +627,16 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
     double z[9], load[6];
     SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
-        Z[i] = add[i] = none, turn[i] = SPLAT(m->turn + i);
+        Z[i] = add[i] = none;
     }
     SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         total[i] = total[3 + i] = top[i] = none;
-        place[i] = SPLAT(m->place + i), rate[i] = SPLAT(m->rate + i), w[i] = SPLAT(m->omega + i);
     }
+    NAME(splat)(9, m->turn, turn);
+    NAME(splat)(3, m->place, place);
+    NAME(splat)(3, m->rate, rate);
+    NAME(splat)(3, m->omega, w);
     for (int at = 0; at < count; at += PAIR) {
         NAME(fetch)(from, 3, first + at, count - at, c);
         NAME(fetch_loads)(f, rows, at, count - at, in);
@@ -585,10 +651,9 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
                 Z[i] = MADD(c[i / 3][u], in[i % 3][u], Z[i]);
             }
             if (audited) {
-                L r[3], force[3] = {in[0][u], in[1][u], in[2][u]}, moment[3] = {none, none, none};
-                SPARI_UNROLL
+                L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], force[3] = {in[0][u], in[1][u], in[2][u]}, moment[3];
+                NAME(rotate)(turn, arm, r);
                 for (int i = 0; i < 3; i++) {
-                    r[i] = MADD(turn[3 * i + 2], c[2][u], MADD(turn[3 * i + 1], c[1][u], turn[3 * i] * c[0][u]));
                     moment[i] = has_moment ? in[3 + i][u] : none;
                 }
                 NAME(audit)(has_moment, place, r, rate, w, force, moment, add, top);

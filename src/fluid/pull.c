@@ -236,6 +236,9 @@ static int pull(const spar_fluid *fluid, int which, double theta, const wanted *
         return SPAR_OK;
     }
     t.n = fill_states(fluid, theta, what & SPARI_UPTO, t.share);
+    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f) {
+        return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
+    }
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
         for (int i = 0; i < t.n; i++) {
             least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, what, t.buf[i]));

@@ -104,6 +104,7 @@ typedef struct kernels {
                      double (*buf)[SPARI_ROW], int at);
     double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
                     double (*f)[SPARI_ROW], int at, int audited, double *modal, double *sums, double *tops);
+    void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
     void (*store)(double (*row)[SPARI_ROW], int count, double *out);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
 } kernels;
@@ -113,13 +114,13 @@ static kernels choose_kernels(const spari_nodes *s) {
 #ifdef SPARI_X86
     int most = s->lanes ? s->lanes : SPARI_LANES_MAX;
     if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-        return (kernels){motion_avx512, loads_avx512, store_triples_avx512, load_triples_avx512};
+        return (kernels){motion_avx512, loads_avx512, carry_to_avx512, store_triples_avx512, load_triples_avx512};
     }
     if (most >= 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        return (kernels){motion_avx2, loads_avx2, store_triples_avx2, load_triples_avx2};
+        return (kernels){motion_avx2, loads_avx2, carry_to_avx2, store_triples_avx2, load_triples_avx2};
     }
 #endif
-    return (kernels){motion_plain, loads_plain, store_triples_plain, load_triples_plain};
+    return (kernels){motion_plain, loads_plain, carry_to_plain, store_triples_plain, load_triples_plain};
 }
 
 /* ---- node sets ---- */
@@ -320,6 +321,12 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
         at += run;
     }
     return least;
+}
+
+double spari_carry(const spari_nodes *s, const double *c, double *x, double *v) {
+    const carrier m = carrier_of(c);
+    choose_kernels(s).carry(s, &m, x, v);
+    return m.square;
 }
 
 /* Triples of the host's [n][3] as rows in storage order, and back. */

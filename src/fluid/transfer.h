@@ -102,6 +102,10 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
 double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *c, int consistent, int what,
                          double (*buf)[SPARI_ROW]);
 
+/* Places and velocities of all nodes of a point or rigid body to the host's triples, either NULL: not wanted. Returns
+   |q|^2. */
+double spari_carry(const spari_nodes *nodes, const double *c, double *x, double *v);
+
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
 void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
 void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], float *x);
