@@ -179,7 +179,9 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the spec's average of the two
                             states, or the node motion interpolated on the group (does not cut corners)
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
-     fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit */
+     fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
+     advise.dt, advise.nodes, advise.fidelity, advise.coupling
+                            vary (default) | keep: what spar_session_advise may propose to change */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The coupling of the step under way, or else of the last one; the same on all ranks. iterations: out. residual, size:
    out, by iteration, room for max_iterations of spar_session_set_coupling (1 if explicit): the change of the loads and
@@ -540,6 +542,104 @@ SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve
    read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it was. Collective. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
+
+/* ---- what if ----------------------------------------------------------------------------------------------------- */
+
+/* Trial runs: the session runs some steps from where it stands and goes back, to the last bit: what an effect is worth,
+   or what settings do, is found by trying. They are the host's own steps, with its own fluid: `solve` as in spar_step,
+   and `before`, called ahead of each step for what the host does there (drive roots, set loads, keep what its fluid had
+   at t^n). Both must be repeatable: the same motion and time give the same loads, whatever ran before, and nothing else
+   of the host's is changed for good. They may use members and fluids in all ways, but not create, destroy or map them;
+   where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
+   accelerations from the balance of forces. All calls here are collective, between steps; SPAR_ERR_STATE within a
+   trial. steps: in, a multiple of 8, as runs are compared at 8 times, evenly spread. What a run costs is the processor
+   time of its steps, the fluid's included, on all ranks. */
+
+/* t, dt: the step goes from t to t + dt. Answer 0 for success; anything else ends the trial with SPAR_ERR_USER. */
+typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
+
+/* What a trial says. Errors are roots of the mean square over members, places along them and the 8 times. */
+enum {
+    SPAR_TRY_MOTION = 0,    /* change of the motion, relative to the motion beyond that of a fixed or driven root (else
+                               since the beginning of the run) */
+    SPAR_TRY_REACTION = 1,  /* change of what the roots give the members, moments by their lengths, relative to that */
+    SPAR_TRY_LOAD = 2,      /* change of the fluid's loads after the first step, relative to these */
+    SPAR_TRY_SECONDS = 3,   /* processor time of the steps, s */
+    SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
+    SPAR_TRY_COUNT = 5
+};
+/* One trial with the session as it is, for hosts that compare settings of their own. before, solve: in, NULL: none
+   (without solve the loads stay as they are); context: in, handed to both. compare: in, 0: what later trials are
+   compared with (errors come out 0); 1: compared with that run, over the same time, with any dt. report: out,
+   [SPAR_TRY_COUNT]. Failures as of spar_step; SPAR_ERR_STATE: nothing to compare with. */
+SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before,
+                              spar_fluid_solver solve, void *context, int compare, double report[SPAR_TRY_COUNT]);
+
+/* Rows of the report of effects. */
+enum {
+    SPAR_ROW_INERTIA = 0, /* size: its nodal forces relative to the largest of all terms; the next three likewise */
+    SPAR_ROW_GYROSCOPIC = 1,
+    SPAR_ROW_GRAVITY = 2,
+    SPAR_ROW_DAMPING = 3,
+    SPAR_ROW_LARGE_ROTATION = 4, /* size: largest turn of a node against its root (free: against the reference), rad */
+    SPAR_ROW_FLUID_MOMENT = 5,   /* size, as of the next three: change of the fluid's loads in the first step */
+    SPAR_ROW_FLUID_VELOCITY = 6, /* velocities pulled; without: a fluid that sees them as zero */
+    SPAR_ROW_FLUID_POSES = 7,    /* orientations, angular velocities, accelerations pulled; without: the reference's */
+    SPAR_ROW_FLUID_HISTORY = 8,  /* node forces pulled back; without: zeros */
+    SPAR_ROW_PREDICTOR = 9,      /* size: |predicted - final| / |final| loads of the last step; without: order 0 */
+    SPAR_ROW_ITERATION = 10,     /* size: added mass over mass, as the coupling sees it; without: explicit */
+    SPAR_ROW_HALF_STEP = 11,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
+    SPAR_ROW_COUNT = 12
+};
+/* Columns of the same. */
+enum {
+    SPAR_COLUMN_IN_FORCE = 0, /* 1; 0: the scene has it not, and the rest of the row is 0 */
+    SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, from the present state */
+    SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it */
+    SPAR_COLUMN_REACTION = 3, /* the same of the roots' reactions */
+    SPAR_COLUMN_SHARE = 4,    /* of the time, that leaving it out saves; below 0: it then costs more */
+    SPAR_COLUMN_COUNT = 5
+};
+/* Name of a row, "gravity"; static storage; "" for what is no row. */
+SPAR_API const char *spar_effect_name(int row);
+/* What each effect is worth in the scene as it stands: sizes from the present state; errors and savings from trials of
+   `steps` steps of dt, with the effect and without it, all members at once. before, solve, context: in, as of
+   spar_session_try; solve NULL: under the present loads, rows of the fluid not in force. table: out,
+   [SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], Fortran (SPAR_COLUMN_COUNT, SPAR_ROW_COUNT). */
+SPAR_API int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
+                                         spar_fluid_solver solve, void *context,
+                                         double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]);
+
+/* Advice for a session. */
+enum {
+    SPAR_ADVICE_DT = 0, /* s */
+    SPAR_ADVICE_SUBSTEPS = 1,
+    SPAR_ADVICE_SCHEME = 2,        /* SPAR_COUPLING_* */
+    SPAR_ADVICE_COUPLING_RTOL = 3, /* of an iterated scheme; its atol is the session's */
+    SPAR_ADVICE_PREDICTOR = 4,
+    SPAR_ADVICE_NEWTON_RTOL = 5,   /* atol 1e-15 */
+    SPAR_ADVICE_ERROR = 6,         /* estimated, as SPAR_TRY_MOTION */
+    SPAR_ADVICE_COST = 7,          /* of a second of the run, relative to the session as it is with the dt given */
+    SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
+    SPAR_ADVICE_TRIALS = 9,        /* runs made */
+    SPAR_ADVICE_COUNT = 10
+};
+/* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
+   coupling; nothing is changed. tolerance: in, as SPAR_TRY_MOTION, in (0, 1). dt, steps: in, the host's dt, and how
+   many of it the trials last: what happens later is not seen. before, solve, context: in, as of spar_session_try,
+   called with other dt too. advice: out, [SPAR_ADVICE_COUNT]; what it says of beams: spar_member_get_advice. Members of
+   one description (elements, nodes, fidelity, sections) get one advice. What is kept as it is: the options advise.dt,
+   advise.nodes, advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO.
+   SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what
+   error was reached. */
+SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
+                                 spar_before_step before, spar_fluid_solver solve, void *context,
+                                 double advice[SPAR_ADVICE_COUNT]);
+/* What the last advice says of a beam: SPAR_FIDELITY_*, modes of a modal one (else 0), nodes per element, points for
+   spar_beam_set_quadrature with the rule in force (0: as described). Each NULL: not wanted. Local. SPAR_ERR_STATE: no
+   advice yet. */
+SPAR_API int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,
+                                    int *points);
 
 #ifdef __cplusplus
 }

@@ -27,6 +27,9 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
     spar_session *session = member->session;
     SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_create: member '%s': the place for the handle is NULL",
                   member->name);
+    SPARI_REQUIRE(session, !session->trial, SPAR_ERR_STATE,
+                  "spar_fluid_create: member '%s': a trial run is under way; create fluids before or after it",
+                  member->name);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
                   "spar_fluid_create: member '%s': the fluid needs a name; messages use it", member->name);
     spar_fluid *made = spari_zalloc(1, sizeof *made);
@@ -104,7 +107,7 @@ void spari_fluid_free(spar_fluid *fluid) {
 }
 
 void spar_fluid_destroy(spar_fluid **fluid) {
-    if (!fluid || !*fluid) {
+    if (!fluid || !*fluid || (*fluid)->member->session->trial) { /* what it was is needed after the trial */
         return;
     }
     spar_fluid **at = &(*fluid)->member->session->fluids;
@@ -141,6 +144,10 @@ static int check_idle(const spar_fluid *fluid, const char *caller) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
             "a step is under way; change nodes and maps after spar_step_accept or spar_step_reject");
+    }
+    if (fluid->member->session->trial) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
+                                  "a trial run is under way; its fluids are not to be changed");
     }
     return SPAR_OK;
 }

@@ -20,6 +20,24 @@ spar_member *spari_fluid_member(const spar_fluid *fluid);
 spar_session *spari_fluid_session(const spar_fluid *fluid); /* for the messages of what is built on a fluid */
 const char *spari_fluid_name(const spar_fluid *fluid);
 
+/* What of a fluid a trial run can leave out: velocities and section poses are then those of a fluid at rest in the
+   reference configuration, the nodes stand where they are at t^{n+1}, node forces between steps are zero. */
+enum {
+    SPARI_MUTE_VELOCITY = 1,
+    SPARI_MUTE_POSES = 2,
+    SPARI_MUTE_HALF_STEP = 4,
+    SPARI_MUTE_HISTORY = 8,
+    SPARI_ASKED_MOMENT = 16 /* moments are left out by SPAR_EFFECT_FLUID_MOMENT; this only tells that there are any */
+};
+void spari_fluid_mute(spar_fluid *fluid, int mute);
+/* Which of these the host has pulled or pushed since the fluid was made, or made anew. */
+int spari_fluid_asked(const spar_fluid *fluid);
+
+/* For a trial run on a member made anew (member/remake.h); `before` is what the member was. *old: what the fluid was;
+   give it to spari_fluid_restore, also after a failure unless it is NULL. Local. */
+int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old);
+void spari_fluid_restore(spar_fluid *fluid, spar_fluid *old);
+
 /* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
    set; any NULL. */
 int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q);

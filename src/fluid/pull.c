@@ -118,6 +118,10 @@ static int is_wanted(sink s) {
     return s.d || s.f;
 }
 
+static int wants_pose(const wanted *w) {
+    return is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->accel) || is_wanted(w->alpha);
+}
+
 /* As the kernels are asked. */
 static int what_of(const wanted *w) {
     int poses = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) ? SPARI_POSES : 0;
@@ -224,6 +228,40 @@ static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int
     }
 }
 
+static int parts_of(const wanted *w, double theta) {
+    return (is_wanted(w->v) ? SPARI_MUTE_VELOCITY : 0) | (wants_pose(w) ? SPARI_MUTE_POSES : 0) |
+           (theta > 0 && theta < 1 ? SPARI_MUTE_HALF_STEP : 0);
+}
+
+static void zero(sink *out, int64_t n) {
+    const double none[3] = {0, 0, 0};
+    for (int64_t j = 0; j < n && is_wanted(*out); j++) {
+        put(*out, j, 3, none);
+    }
+    *out = (sink){0};
+}
+
+/* Answers what a trial run leaves out, and takes it off the list. */
+static void leave_out(const spar_fluid *fluid, const spari_nodes *s, wanted *w) {
+    if (fluid->mute & SPARI_MUTE_VELOCITY) {
+        zero(&w->v, s->n);
+    }
+    if (!(fluid->mute & SPARI_MUTE_POSES)) {
+        return;
+    }
+    for (int64_t p = 0; p < s->n && (is_wanted(w->q) || is_wanted(w->matrix)); p++) {
+        double x[3], q[4], m[9];
+        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
+        put(w->q, spari_nodes_node(s, p), 4, q);
+        matrix_of(q, w->convention, m);
+        put(w->matrix, spari_nodes_node(s, p), 9, m);
+    }
+    w->q = w->matrix = (sink){0};
+    zero(&w->omega, s->n);
+    zero(&w->accel, s->n);
+    zero(&w->alpha, s->n);
+}
+
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
@@ -255,8 +293,20 @@ static int pull(const spar_fluid *fluid, int which, double theta, const wanted *
 
 /* The host's pulls are of the motion nodes. */
 static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
+    const spari_nodes *s;
+    wanted left = *w;
+    fluid->asked |= parts_of(w, theta);
+    if (fluid->mute & SPARI_MUTE_HALF_STEP && theta > 0) {
+        theta = 1;
+    }
     SPARI_TRY(need_states(fluid, theta, caller));
-    return pull(fluid, SPAR_NODES_MOTION, theta, w, caller);
+    if (fluid->mute) {
+        SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, caller, &s));
+        if (s) {
+            leave_out(fluid, s, &left);
+        }
+    }
+    return pull(fluid, SPAR_NODES_MOTION, theta, &left, caller);
 }
 
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {

@@ -32,7 +32,12 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the place for the forces is NULL");
     }
     SPARI_TRY(start_history(fluid, n, caller));
+    fluid->asked |= SPARI_MUTE_HISTORY;
     const spari_history *h = fluid->history;
+    if (fluid->mute & SPARI_MUTE_HISTORY) {
+        memset(d ? (void *)d : (void *)f, 0, (size_t)(3 * n) * (d ? sizeof *d : sizeof *f));
+        return SPAR_OK;
+    }
     for (int64_t i = 0; i < 3 * n; i++) {
         double x = (1 - theta) * h->past[0][i] + theta * h->after[i];
         if (d) {
@@ -133,6 +138,7 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "the force array is NULL though there are %lld force nodes", (long long)s->n);
     }
+    fluid->asked |= moment.d || moment.f ? SPARI_ASKED_MOMENT : 0;
     if (!(fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT)) {
         moment = (spari_source){0};
     }

@@ -32,6 +32,8 @@ struct spar_fluid {
     int method, consistent;
     double max_distance;
     int shared; /* sections: the motion set serves both */
+    int asked;  /* SPARI_MUTE_*: what has been pulled so far */
+    int mute;   /* trial runs: SPARI_MUTE_* that are left out */
     spari_node_set set[2];
     int64_t pushes;
     int refused; /* status of the last push of this step */

@@ -5,6 +5,7 @@
 #include "beam.h"
 #include "body.h"
 #include "edge.h"
+#include "remake.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -370,6 +371,52 @@ void spari_applied_load(spar_member *m, spari_image *image) {
     spari_applied_free(m->applied);
     m->applied = m->applied_next;
     m->applied_next = NULL;
+}
+
+/* ---- other nodes ---- */
+
+/* The points stay where they are; xi = sum phi_l xi_l tells where, as the basis has all linear functions. */
+static int remake_line(const spar_member *from, const line_load *line, const spar_member *m, line_load *out) {
+    int P = from->per_element, n = m->per_element, E = m->elements, points = line->first[E];
+    double x[SPARI_MAX_NODES];
+    spari_gll(P, x, NULL, NULL);
+    out->first = spari_zalloc(E + 1, sizeof *out->first);
+    out->phi = spari_zalloc((int64_t)points * n, sizeof *out->phi);
+    out->load = spari_zalloc((int64_t)points * 6, sizeof *out->load);
+    if (!out->first || !out->phi || !out->load) {
+        return SPAR_ERR_MEMORY;
+    }
+    memcpy(out->first, line->first, (size_t)(E + 1) * sizeof *out->first);
+    memcpy(out->load, line->load, (size_t)points * 6 * sizeof *out->load);
+    for (int k = 0; k < points; k++) {
+        double xi = 0;
+        for (int l = 0; l < P; l++) {
+            xi += line->phi[(int64_t)k * P + l] * x[l];
+        }
+        spari_remake_basis(n, xi, out->phi + (int64_t)k * n);
+    }
+    return SPAR_OK;
+}
+
+int spari_applied_remake(const spar_member *from, spar_member *m) {
+    const spari_applied *a = from->applied;
+    if (!a) {
+        return SPAR_OK;
+    }
+    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
+    int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK && a->follower) {
+        b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
+        status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
+        if (status == SPAR_OK) {
+            spari_remake_loads(from, m, a->follower, b->follower);
+        }
+    }
+    for (int k = 0; k < 2 && status == SPAR_OK; k++) {
+        status = a->line[k].first ? remake_line(from, &a->line[k], m, &b->line[k]) : SPAR_OK;
+    }
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
+    return SPAR_OK;
 }
 
 /* ---- what the host says ---- */

@@ -23,5 +23,7 @@ void spari_applied_save(const spar_member *member, spari_image *image);
 void spari_applied_check(spar_member *member, spari_image *image);
 void spari_applied_load(spar_member *member, spari_image *image);
 void spari_applied_free(spari_applied *applied);
+/* Gives m, the same member with other nodes, the loads of `from`. */
+int spari_applied_remake(const spar_member *from, spar_member *m);
 
 #endif

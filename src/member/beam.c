@@ -386,15 +386,19 @@ static void turn_section(const double R[9], const double *C, double *out) {
     }
 }
 
+int spari_beam_rule(const spari_beam *beam) {
+    if (beam->rule >= 0) {
+        return beam->rule;
+    }
+    return beam->section_count > 2 ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;
+}
+
 /* Points of element e: xi and weights, at most `room`; returns how many (also with xi NULL). By section intervals: a
    piece of the element of relative length d gets `points` Gauss points, or, unasked, as many as integrate its share of
    the element's polynomials. */
 static int element_points(const spari_beam *beam, int elements, int e, int P, double *xi, double *w) {
     double gx[512], gw[512];
-    int rule = beam->rule;
-    if (rule < 0) {
-        rule = beam->section_count > 2 ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;
-    }
+    int rule = spari_beam_rule(beam);
     if (rule != SPAR_QUADRATURE_SECTIONS) {
         int n = beam->points > 0 ? beam->points : P;
         if (!xi) {

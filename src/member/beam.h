@@ -21,6 +21,8 @@ int spari_beam_place_nodes(spar_member *member);
 /* Builds the body; the description has been checked. */
 int spari_beam_build(spar_member *member, spari_body **body);
 void spari_beam_free(spari_beam *beam);
+/* The quadrature rule in force. */
+int spari_beam_rule(const spari_beam *beam);
 
 /* 0 if the stiffness is symmetric (1e-6 of the diagonal) and positive definite, else a text that says what is wrong. */
 const char *spari_stiffness_fault(const double C[36]);

@@ -23,7 +23,7 @@ static int member_create(spar_session *session, const char *call, const char *na
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: no place for the new member (NULL)", call);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT, "%s: a member needs a name", call);
-    SPARI_REQUIRE(session, !session->started, SPAR_ERR_STATE,
+    SPARI_REQUIRE(session, !session->started && !session->trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create members before the first step", call, name);
     spar_member **end = &session->members;
     for (; *end; end = &(*end)->next) {

@@ -40,7 +40,7 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
 }
 
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
-static void restart(spar_member *m) {
+void spari_member_restart(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < 2; k++) {
         memcpy(m->drive[k], m->now.q, 7 * sizeof(double));
@@ -71,7 +71,7 @@ void spari_member_solved(spar_member *m, const double *fluid) {
 void spari_member_settle(spar_member *m) {
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
-    restart(m);
+    spari_member_restart(m);
 }
 
 void spari_member_accept(spar_member *m) {
@@ -120,12 +120,24 @@ int spar_member_set_velocity(spar_member *member, const double x0[3], const doub
     member->velocity_given = 1;
     if (member->committed) {
         rigid_field(member);
-        restart(member);
+        spari_member_restart(member);
     }
     return SPAR_OK;
 }
 
 /* ---- commit ---- */
+
+double spari_member_length(const spar_member *m) {
+    double length = m->body ? m->body->length : 0;
+    for (int64_t i = 1; i < m->nodes && !m->body; i++) {
+        double d[3];
+        for (int k = 0; k < 3; k++) {
+            d[k] = m->xr[3 * i + k] - m->xr[3 * (i - 1) + k];
+        }
+        length += spari_norm(d);
+    }
+    return length > 0 ? length : 1;
+}
 
 int spari_member_is_solved(const spar_member *member) {
     return !member->external && member->kind != SPARI_POINT && !spari_rung_prescribed(member);
@@ -145,7 +157,7 @@ static int check_description(spar_member *m) {
 }
 
 /* What is in force: what was asked for (or everything), as far as the description gives it something to do. */
-static int effects_in_force(const spar_member *m) {
+int spari_member_effects(const spar_member *m) {
     int e = m->effects_given ? m->effects : ~0;
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = spari_member_is_solved(m);
     int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
@@ -211,6 +223,17 @@ void spari_member_release(spar_member *m) {
     m->body = NULL;
 }
 
+void spari_member_disown(spar_member *m) {
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        *node_array(m, k) = NULL;
+    }
+    m->work = NULL;
+    m->applied = m->applied_next = NULL;
+    m->rung = NULL;
+    m->solver = NULL;
+    m->body = NULL;
+}
+
 int spari_member_build(spar_member *m) {
     spar_session *session = m->session;
     SPARI_TRY(allocate(m));
@@ -243,7 +266,7 @@ int spari_member_build(spar_member *m) {
     } else if (spari_rung_prescribed(m)) {
         SPARI_TRY(spari_rung_create(m));
     }
-    restart(m);
+    spari_member_restart(m);
     return SPAR_OK;
 }
 
@@ -265,7 +288,7 @@ int spar_member_commit(spar_member *member) {
     } else {
         status = check_description(member);
         if (status == SPAR_OK) {
-            member->effects = effects_in_force(member);
+            member->effects = spari_member_effects(member);
             status = spari_member_build(member);
             if (status != SPAR_OK) {
                 spari_member_release(member);
@@ -302,6 +325,7 @@ void spari_member_free(spar_member *member) {
     }
     spari_member_release(member);
     spari_beam_free(member->beam);
+    free(member->advice);
     free(member->name);
     free(member);
 }
@@ -372,7 +396,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
         memcpy(to->a, a, (size_t)n * 6 * sizeof *a);
     }
     if (s->phase == SPARI_IDLE) {
-        restart(member);
+        spari_member_restart(member);
     } else {
         member->motion_given = 1;
     }

@@ -19,6 +19,7 @@ typedef struct spari_work spari_work;       /* src/member/work.h: the work done 
 typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
 typedef struct spari_rung spari_rung;       /* src/member/rung.h: a member of lower fidelity */
 typedef struct spari_arms spari_arms;       /* src/member/rung.h: loads on the arms of a rigid body */
+typedef struct spari_remake spari_remake;   /* src/member/remake.h: a member made anew for a trial */
 typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
 
 struct spar_member {
@@ -59,6 +60,7 @@ struct spar_member {
     spari_rung *rung;                   /* of members below the exact ones; NULL: none */
     spari_arms *arms;                   /* of the body that carries a rigid member; NULL: none */
     spari_work *work;                   /* NULL: not asked for */
+    spari_remake *advice;               /* of spar_session_advise; NULL: none */
     spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 
@@ -68,6 +70,12 @@ void spari_member_free(spar_member *member);
 int spari_member_build(spar_member *m);
 /* Frees it; the description stays. */
 void spari_member_release(spar_member *m);
+/* The same without freeing: a copy of the struct has it. */
+void spari_member_disown(spar_member *m);
+/* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */
+int spari_member_effects(const spar_member *m);
+/* The motion now has been set anew: the latest iterate, the root and the solver start from it. */
+void spari_member_restart(spar_member *m);
 /* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
 void spari_member_solved(spar_member *member, const double *fluid);
 /* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.
@@ -86,6 +94,8 @@ uint64_t spari_member_hash(const spar_member *member);
  */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);
 void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes);
+/* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
+double spari_member_length(const spar_member *member);
 /* Whether spar advances the member (not a point, not external). */
 int spari_member_is_solved(const spar_member *member);
 /* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */

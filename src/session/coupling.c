@@ -25,19 +25,6 @@ void spari_coupling_free(spari_coupling **coupling) {
     *coupling = NULL;
 }
 
-/* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
-static double length_of(const spar_member *m) {
-    double length = m->body ? m->body->length : 0;
-    for (int64_t i = 1; i < m->nodes && !m->body; i++) {
-        double d[3];
-        for (int k = 0; k < 3; k++) {
-            d[k] = m->xr[3 * i + k] - m->xr[3 * (i - 1) + k];
-        }
-        length += spari_norm(d);
-    }
-    return length > 0 ? length : 1;
-}
-
 static int wants_motion(const spar_session *s) {
     return s->motion_atol > 0 || s->motion_rtol > 0;
 }
@@ -78,7 +65,7 @@ int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         int exponent;
-        c->length[k] = length_of(m);
+        c->length[k] = spari_member_length(m);
         (void)frexp(1 / c->length[k], &exponent);
         c->unit[k] = ldexp(1, exponent);
     }

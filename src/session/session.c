@@ -3,6 +3,7 @@
 #include "../member/body.h"
 #include "../member/rung.h"
 #include "../solve/solver.h"
+#include "trial.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,6 +76,7 @@ void spar_session_destroy(spar_session **session) {
     }
     spari_comm_destroy(&s->comm);
     spari_coupling_free(&s->coupling);
+    spari_trial_forget(s);
     free(s->pack);
     free(s->first);
     free(s->motion);
@@ -196,6 +198,14 @@ static const option options[] = {
     {"fluid.theta", "group", offsetof(spar_session, theta_on_group), 1},
     {"fluid.far", "take", offsetof(spar_session, far_refuse), 0},
     {"fluid.far", "refuse", offsetof(spar_session, far_refuse), 1},
+    {"advise.dt", "vary", offsetof(spar_session, keep_dt), 0},
+    {"advise.dt", "keep", offsetof(spar_session, keep_dt), 1},
+    {"advise.nodes", "vary", offsetof(spar_session, keep_nodes), 0},
+    {"advise.nodes", "keep", offsetof(spar_session, keep_nodes), 1},
+    {"advise.fidelity", "vary", offsetof(spar_session, keep_fidelity), 0},
+    {"advise.fidelity", "keep", offsetof(spar_session, keep_fidelity), 1},
+    {"advise.coupling", "vary", offsetof(spar_session, keep_coupling), 0},
+    {"advise.coupling", "keep", offsetof(spar_session, keep_coupling), 1},
     {"fluid.audit", "on", offsetof(spar_session, audit_off), 0},
     {"fluid.audit", "off", offsetof(spar_session, audit_off), 1},
 };

@@ -7,6 +7,8 @@
 #include "../member/member.h"
 #include "coupling.h"
 
+typedef struct spari_record spari_record; /* trial.h */
+
 /* Where a step stands. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
 
@@ -36,17 +38,20 @@ struct spar_session {
     double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
     int theta_on_group;              /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
-    int audit_off;  /* option fluid.audit = on (default) | off */
+    int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
+    int audit_off;                                         /* option fluid.audit = on (default) | off */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
     int64_t step;
     int iteration;
     spari_phase phase;
-    int order;     /* of the predictor in the step under way */
-    int iterating; /* the last check asked for another iteration */
-    int started;   /* the clock has run */
-    int refused;   /* status of a push refused since the last check */
-    double *pack;  /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
+    int order;          /* of the predictor in the step under way */
+    int iterating;      /* the last check asked for another iteration */
+    int started;        /* the clock has run */
+    int refused;        /* status of a push refused since the last check */
+    int trial;          /* a trial run is under way (trial.h) */
+    spari_record *kept; /* of a trial that others are compared with; NULL: none */
+    double *pack;       /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
     int64_t pack_count;
     int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
     spari_coupling *coupling; /* from the first step on */

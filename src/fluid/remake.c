@@ -1,0 +1,150 @@
+/* A fluid for a trial run: its member may have been made anew with other nodes. What the run changes is its own, what
+   it only reads (the map, where the line's nodes are the same) stays shared. */
+#include "../member/remake.h"
+#include "../math/rotation.h"
+#include "state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int no_memory(const spar_fluid *fluid) {
+    return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, "trial", "no memory for a trial run");
+}
+
+/* The host's description of a mapped set again: places, or coordinates and offsets in the section frame. */
+static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
+    const spari_node_set *from = &old->set[which];
+    const spari_nodes *s = from->nodes;
+    if (!s) {
+        return SPAR_OK;
+    }
+    *set = (spari_node_set){.pending = 1, .sections = from->sections, .n = s->n};
+    if (!from->sections) {
+        set->x = spari_fluid_places(old, s);
+        return set->x ? SPAR_OK : no_memory(old);
+    }
+    set->x = spari_zalloc(3 * s->n, sizeof *set->x);
+    set->xi = spari_zalloc(s->n, sizeof *set->xi);
+    if (!set->x || !set->xi) {
+        return no_memory(old);
+    }
+    for (int64_t p = 0; p < s->n; p++) {
+        int64_t j = spari_nodes_node(s, p);
+        double foot[3], q[4], con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
+        spari_fluid_reference(old, spari_nodes_element(s, p), spari_nodes_xi(s, p), foot, q);
+        spari_rotate_back(q, con, set->x + 3 * j);
+        set->xi[j] = fmin(fmax(spari_member_xi(old->member, spari_nodes_element(s, p), spari_nodes_xi(s, p)), -1), 1);
+    }
+    return SPAR_OK;
+}
+
+static int copy_history(const spari_history *from, spari_history **to) {
+    *to = NULL;
+    if (!from) {
+        return SPAR_OK;
+    }
+    spari_history *h = *to = spari_history_create(from->n);
+    if (!h) {
+        return SPAR_ERR_MEMORY;
+    }
+    h->pushed = from->pushed;
+    size_t size = 3 * (size_t)h->n * sizeof *h->after;
+    if (size > 0) {
+        memcpy(h->after, from->after, size);
+        for (int k = 0; k < 3; k++) {
+            memcpy(h->past[k], from->past[k], size);
+        }
+    }
+    return SPAR_OK;
+}
+
+/* The fluid without anything of its own, as it would be had the host just described it. */
+static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
+    for (int k = 0; k < 2; k++) {
+        f->mean[k] = f->mean_next[k] = NULL;
+        f->mean_count[k] = 0;
+    }
+    f->load = f->load_new = f->load_accepted = NULL;
+    f->history = f->history_next = NULL;
+    if (same_nodes) {
+        int64_t n = 6 * f->member->nodes;
+        f->load = spari_zalloc(n, sizeof(double));
+        f->load_new = spari_zalloc(n, sizeof(double));
+        f->load_accepted = spari_zalloc(n, sizeof(double));
+        if (!f->load || !f->load_new || !f->load_accepted) {
+            return no_memory(f);
+        }
+    } else {
+        f->modal = f->reference = f->work = f->field[0] = f->field[1] = NULL;
+        for (int which = 0; which < 2; which++) {
+            f->set[which] = (spari_node_set){0};
+            SPARI_TRY(unmap(old, which, &f->set[which]));
+        }
+        SPARI_TRY(spar_fluid_map(f));
+        spari_history_free(f->history); /* the map has begun it with zeros */
+    }
+    return copy_history(old->history, &f->history) == SPAR_OK ? SPAR_OK : no_memory(f);
+}
+
+int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {
+    spar_fluid *copy = spari_zalloc(1, sizeof *copy), was;
+    *old = NULL;
+    if (!copy) {
+        return no_memory(fluid);
+    }
+    *old = copy;
+    *copy = *fluid;
+    fluid->asked = 0;
+    if (!fluid->modal) { /* never mapped: nothing there but what the host has said */
+        return SPAR_OK;
+    }
+    was = *fluid;
+    spar_member as_it_was = *before;
+    was.member = &as_it_was; /* its line is the one the map was made on */
+    SPARI_TRY(begin(fluid, &was, before->per_element == fluid->member->per_element));
+    spari_remake_loads(before, fluid->member, was.load, fluid->load);
+    spari_remake_loads(before, fluid->member, was.load_accepted, fluid->load_accepted);
+    return SPAR_OK;
+}
+
+void spari_fluid_mute(spar_fluid *fluid, int mute) {
+    fluid->mute = mute;
+}
+
+int spari_fluid_asked(const spar_fluid *fluid) {
+    return fluid->asked;
+}
+
+static void drop(double *made, const double *was) {
+    if (made != was) {
+        free(made);
+    }
+}
+
+void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
+    if (f->set[0].nodes != old->set[0].nodes || f->set[1].nodes != old->set[1].nodes) {
+        for (int which = 0; which < 2; which++) {
+            free(f->set[which].x);
+            free(f->set[which].xi);
+            spari_nodes_free(f->set[which].nodes);
+        }
+    }
+    drop(f->modal, old->modal);
+    drop(f->reference, old->reference);
+    drop(f->work, old->work);
+    for (int k = 0; k < 2; k++) {
+        drop(f->field[k], old->field[k]);
+    }
+    drop(f->load, old->load);
+    drop(f->load_new, old->load_new);
+    drop(f->load_accepted, old->load_accepted);
+    for (int k = 0; k < 2; k++) {
+        drop(f->mean[k], old->mean[k]);
+        drop(f->mean_next[k], old->mean_next[k]);
+    }
+    if (f->history != old->history) {
+        spari_history_free(f->history);
+    }
+    *f = *old;
+    free(old);
+}

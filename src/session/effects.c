@@ -1,0 +1,320 @@
+/* What an effect is worth: its size in the present state, and trials with it and without. */
+#include "trial.h"
+
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "../member/body.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- one trial for the host ---- */
+
+int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
+                     void *context, int compare, double report[SPAR_TRY_COUNT]) {
+    const char *call = "spar_session_try";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    spar_session *s = session;
+    spari_run run = {dt, steps, before, solve, context};
+    spari_record record = {0};
+    spari_wish wish = {0};
+    int status = spari_trial_check(s, call, &run);
+    if (status == SPAR_OK && !report) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", call);
+    } else if (status == SPAR_OK && compare && !s->kept) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: there is no run to compare with; try with compare = 0 first", call);
+    }
+    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    status = spari_comm_enter(s->comm, call, status, s->message, sizeof s->message);
+    status = status == SPAR_OK ? spari_trial_run(s, &run, &wish, &record) : status;
+    spari_wish_free(&wish);
+    if (status == SPAR_OK) {
+        report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->kept) : 0;
+        report[SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->kept) : 0;
+        report[SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->kept) : 0;
+        report[SPAR_TRY_SECONDS] = record.seconds;
+        report[SPAR_TRY_SOLUTIONS] = (double)record.solutions;
+        if (!compare) {
+            status = spari_trial_keep(s, &record);
+        }
+    }
+    spari_record_free(&record);
+    return status;
+}
+
+/* ---- sizes ---- */
+
+/* Terms of the balance of forces */
+enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, LOADS, TERMS };
+
+/* Sum of the squares of nodal forces r [n][6], moments by the length. */
+static double squares(const double *r, int64_t n, double length) {
+    double sum = 0;
+    for (int64_t i = 0; i < 6 * n; i++) {
+        double x = i % 6 < 3 ? r[i] : r[i] / length;
+        sum += x * x;
+    }
+    return sum;
+}
+
+static void minus(double *r, const double *from, int64_t n) {
+    for (int64_t i = 0; i < 6 * n; i++) {
+        r[i] -= from[i];
+    }
+}
+
+/* Adds the squares of a member's terms at t^n. */
+static int member_terms(spar_member *m, double sum[TERMS]) {
+    spari_body *b = m->body;
+    int64_t n = b->unique;
+    double *q = spari_zalloc(31 * n + 6 * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *rest = a + 6 * n,
+           *r = rest + 6 * n, *loads = r + 6 * n, length = spari_member_length(m);
+    SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "no memory for the effects of '%s'", m->name);
+    spari_member_to_unique(m, 7, m->now.q, q);
+    spari_member_to_unique(m, 6, m->now.v, v);
+    spari_member_to_unique(m, 6, m->now.a, a);
+    spari_body_residual(b, q, NULL, NULL, 0, rest, NULL);
+    sum[INTERNAL] += squares(rest, n, length);
+    spari_body_residual(b, q, NULL, NULL, 1, r, NULL);
+    minus(r, rest, n);
+    sum[GRAVITY] += squares(r, n, length);
+    if (b->D) {
+        spari_body_residual(b, q, v, NULL, 0, r, NULL);
+        minus(r, rest, n);
+        sum[DAMPING] += squares(r, n, length);
+    }
+    if (m->effects & SPAR_EFFECT_INERTIA) {
+        int gyroscopic = b->gyroscopic;
+        spari_body_residual(b, q, v, a, 0, r, NULL);
+        b->gyroscopic = 0;
+        spari_body_residual(b, q, v, a, 0, rest, NULL);
+        minus(r, rest, n);
+        sum[GYROSCOPIC] += gyroscopic ? squares(r, n, length) : 0;
+        spari_body_residual(b, q, b->D ? v : NULL, NULL, 0, r, NULL);
+        minus(rest, r, n);
+        sum[INERTIA] += squares(rest, n, length);
+        b->gyroscopic = gyroscopic;
+    }
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        loads[i] = m->dead[i] + m->load_pushed[i];
+    }
+    if (m->applied) {
+        spari_applied_nodal(m, m->now.q, loads);
+    }
+    sum[LOADS] += squares(loads, m->nodes, length);
+    free(q);
+    return SPAR_OK;
+}
+
+/* Largest turn of a node against its root, or against the reference where nothing holds it. */
+static double largest_turn(const spar_member *m) {
+    const double unit[4] = {1, 0, 0, 0};
+    int held = m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN;
+    const double *base = held ? m->now.q + 3 : unit;
+    double largest = 0;
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double back[4], turn[4], psi[3];
+        spari_quat_conj(base, back);
+        spari_quat_mul(back, m->now.q + 7 * i + 3, turn);
+        spari_quat_log(turn, psi);
+        largest = fmax(largest, spari_norm(psi));
+    }
+    return largest;
+}
+
+static double fastest_turn(const spar_session *s) {
+    double most = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++) {
+            most = fmax(most, spari_norm(m->now.v + 6 * i + 3));
+        }
+    }
+    return most;
+}
+
+static int find_sizes(spar_session *s, double dt, double size[SPAR_ROW_COUNT]) {
+    double sum[TERMS] = {0}, leading = 0;
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (m->body) {
+            SPARI_TRY(member_terms(m, sum));
+            size[SPAR_ROW_LARGE_ROTATION] = fmax(size[SPAR_ROW_LARGE_ROTATION], largest_turn(m));
+        }
+    }
+    for (int k = 0; k < TERMS; k++) {
+        leading = fmax(leading, sum[k]);
+    }
+    static const int row[] = {[INERTIA] = SPAR_ROW_INERTIA,
+                              [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC,
+                              [GRAVITY] = SPAR_ROW_GRAVITY,
+                              [DAMPING] = SPAR_ROW_DAMPING};
+    for (int k = INERTIA; k <= DAMPING; k++) {
+        size[row[k]] = leading > 0 ? sqrt(sum[k] / leading) : 0;
+    }
+    double angle = fastest_turn(s) * dt;
+    size[SPAR_ROW_HALF_STEP] = angle * angle / 8;
+    return SPAR_OK;
+}
+
+/* ---- rows ---- */
+
+typedef struct row {
+    const char *name;
+    int effect; /* SPAR_EFFECT_* of members */
+    int part;   /* SPARI_MUTE_* of fluids */
+} row;
+
+static const row rows[SPAR_ROW_COUNT] = {
+    {"inertia", SPAR_EFFECT_INERTIA, 0},
+    {"gyroscopic terms", SPAR_EFFECT_GYROSCOPIC, 0},
+    {"gravity", SPAR_EFFECT_GRAVITY, 0},
+    {"damping", SPAR_EFFECT_DAMPING, 0},
+    {"large rotation", SPAR_EFFECT_LARGE_ROTATION, 0},
+    {"fluid moments", SPAR_EFFECT_FLUID_MOMENT, SPARI_ASKED_MOMENT},
+    {"fluid velocities", 0, SPARI_MUTE_VELOCITY},
+    {"section poses", 0, SPARI_MUTE_POSES},
+    {"node force history", 0, SPARI_MUTE_HISTORY},
+    {"predictor", 0, 0},
+    {"iteration", 0, 0},
+    {"half step", 0, SPARI_MUTE_HALF_STEP},
+};
+
+const char *spar_effect_name(int r) {
+    return r >= 0 && r < SPAR_ROW_COUNT ? rows[r].name : "";
+}
+
+/* asked: what the fluids of all ranks have pulled and pushed */
+static int in_force(const spar_session *s, int r, int asked) {
+    if (r == SPAR_ROW_PREDICTOR) {
+        return s->predictor > 0;
+    }
+    if (r == SPAR_ROW_ITERATION) {
+        return s->scheme != SPAR_COUPLING_EXPLICIT;
+    }
+    int any = rows[r].effect == 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        int here = (m->effects & rows[r].effect) != 0;
+        if (r == SPAR_ROW_GRAVITY) {
+            here = here && spari_norm(s->gravity) > 0;
+        } else if (r == SPAR_ROW_LARGE_ROTATION) {
+            here = here && m->body && m->fidelity == SPAR_FIDELITY_EXACT;
+        }
+        any |= here;
+    }
+    return any && (asked & rows[r].part) == rows[r].part;
+}
+
+static void leave_out(const spar_session *s, int r, spari_wish *wish) {
+    if (r == SPAR_ROW_PREDICTOR) {
+        wish->predictor = 0;
+    } else if (r == SPAR_ROW_ITERATION) {
+        wish->scheme = SPAR_COUPLING_EXPLICIT;
+    } else if (rows[r].effect == 0) {
+        wish->mute = rows[r].part;
+    }
+    for (int k = 0; k < s->member_count; k++) {
+        wish->member[k].left_out = rows[r].effect;
+    }
+}
+
+/* Statuses after which the other rows can still be tried. */
+static int is_of_the_run(int status) {
+    return status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
+           status == SPAR_ERR_UNSUPPORTED;
+}
+
+static int try_row(spar_session *s, const spari_run *run, int r, const spari_record *base, double *out) {
+    enum { REPEATS = 3 }; /* times are the least of so many, with and without in turn */
+    double with = base->seconds, without = INFINITY;
+    spari_wish wish;
+    SPARI_TRY(spari_wish_create(s, &wish));
+    int status = SPAR_OK;
+    for (int k = 0; k < REPEATS && status == SPAR_OK; k++) {
+        spari_record record;
+        leave_out(s, r, &wish);
+        status = spari_trial_run(s, run, &wish, &record);
+        if (status == SPAR_OK && k == 0) {
+            out[SPAR_COLUMN_MOTION] = spari_record_motion(&record, base);
+            out[SPAR_COLUMN_REACTION] = spari_record_reaction(&record, base);
+            if (r >= SPAR_ROW_FLUID_MOMENT && r <= SPAR_ROW_FLUID_HISTORY) {
+                out[SPAR_COLUMN_SIZE] = spari_record_load(&record, base);
+            }
+        }
+        without = fmin(without, record.seconds);
+        spari_record_free(&record);
+        spari_wish_free(&wish);
+        status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+        if (status == SPAR_OK) {
+            status = spari_trial_run(s, run, &wish, &record);
+            with = fmin(with, record.seconds);
+            spari_record_free(&record);
+        }
+    }
+    spari_wish_free(&wish);
+    if (is_of_the_run(status)) {
+        out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
+        out[SPAR_COLUMN_SHARE] = 0;
+        return SPAR_OK;
+    }
+    out[SPAR_COLUMN_SHARE] = with > 0 ? 1 - without / with : 0;
+    return status;
+}
+
+/* What any rank's fluids have asked for. */
+static int asked_anywhere(spar_session *s, int *asked) {
+    enum { BITS = 5 };
+    double bit[BITS + 1];
+    for (int k = 0; k < BITS; k++) {
+        bit[k] = *asked >> k & 1;
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, bit, BITS, SPAR_OK, s->message, sizeof s->message));
+    *asked = 0;
+    for (int k = 0; k < BITS; k++) {
+        *asked |= bit[k] > 0 ? 1 << k : 0;
+    }
+    return SPAR_OK;
+}
+
+static int fill_table(spar_session *s, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
+    double size[SPAR_ROW_COUNT] = {0};
+    spari_wish wish;
+    spari_record base;
+    SPARI_TRY(spari_comm_agree(s->comm, find_sizes(s, run->dt, size), s->message, sizeof s->message));
+    SPARI_TRY(spari_wish_create(s, &wish));
+    int status = spari_trial_run(s, run, &wish, &base), asked = base.asked;
+    spari_wish_free(&wish);
+    size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];
+    size[SPAR_ROW_ITERATION] = base.report[SPAR_REPORT_ADDED_MASS];
+    status = status == SPAR_OK ? asked_anywhere(s, &asked) : status;
+    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
+        double *out = table[r];
+        if (in_force(s, r, asked)) {
+            out[SPAR_COLUMN_IN_FORCE] = 1;
+            out[SPAR_COLUMN_SIZE] = size[r];
+            status = try_row(s, run, r, &base, out);
+        }
+    }
+    spari_record_free(&base);
+    return status;
+}
+
+int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
+                                spar_fluid_solver solve, void *context,
+                                double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+    const char *call = "spar_session_report_effects";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    spar_session *s = session;
+    spari_run run = {dt, steps, before, solve, context};
+    double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
+    int status = spari_trial_check(s, call, &run);
+    if (status == SPAR_OK && !table) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: table is NULL", call);
+    }
+    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    char message[SPARI_MESSAGE_SIZE];
+    memcpy(message, s->message, sizeof message);
+    SPARI_TRY(fill_table(s, &run, made));
+    memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
+    memcpy(table, made, sizeof made);
+    return SPAR_OK;
+}

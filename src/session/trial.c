@@ -1,0 +1,360 @@
+#include "trial.h"
+
+#include "../math/basis.h"
+#include "../math/rotation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Places looked at along a beam; a member of one node has its place and three arms. */
+enum { STATIONS = 8, ARMS = 4 };
+
+/* ---- wishes ---- */
+
+int spari_wish_create(spar_session *s, spari_wish *wish) {
+    *wish =
+        (spari_wish){s->substeps,    s->predictor,   s->scheme, s->coupling_rtol,
+                     s->newton_atol, s->newton_rtol, 0,         spari_zalloc(s->member_count, sizeof *wish->member)};
+    SPARI_REQUIRE(s, wish->member, SPAR_ERR_MEMORY, "no memory for a trial run");
+    spari_remake *r = wish->member;
+    for (const spar_member *m = s->members; m; m = m->next, r++) {
+        *r = spari_remake_of(m);
+    }
+    return SPAR_OK;
+}
+
+void spari_wish_free(spari_wish *wish) {
+    free(wish->member);
+    wish->member = NULL;
+}
+
+/* ---- there and back ---- */
+
+typedef struct stash {
+    spar_session session;
+    spar_member *members; /* [member_count] what they were; */
+    int made;             /* so many have been made anew */
+    spar_fluid **fluids;  /* what they were, in their order */
+    int fluid_count, fluids_made;
+} stash;
+
+static int stash_create(spar_session *s, stash *t) {
+    *t = (stash){.session = *s};
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        t->fluid_count++;
+    }
+    t->members = spari_zalloc(s->member_count, sizeof *t->members);
+    t->fluids = spari_zalloc(t->fluid_count, sizeof *t->fluids);
+    SPARI_REQUIRE(s, t->members && t->fluids, SPAR_ERR_MEMORY, "no memory for a trial run");
+    s->coupling = NULL;
+    s->coupling_stale = 1;
+    s->pack = s->motion = NULL;
+    s->first = NULL;
+    s->log = NULL;
+    return SPAR_OK;
+}
+
+static const spar_member *member_before(const spar_session *s, const stash *t, const spar_member *member) {
+    int k = 0;
+    for (const spar_member *m = s->members; m != member; m = m->next) {
+        k++;
+    }
+    return t->members + k;
+}
+
+static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
+    s->substeps = wish->substeps;
+    s->predictor = wish->predictor;
+    s->scheme = wish->scheme;
+    s->coupling_rtol = wish->coupling_rtol;
+    s->newton_atol = wish->newton_atol;
+    s->newton_rtol = wish->newton_rtol;
+    for (spar_member *m = s->members; m; m = m->next, t->made++) {
+        int status = spari_member_remake(m, wish->member + t->made, t->members + t->made);
+        if (status != SPAR_OK) {
+            t->made++;
+            return status;
+        }
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), t->fluids_made++) {
+        int status = spari_fluid_remake(f, member_before(s, t, spari_fluid_member(f)), t->fluids + t->fluids_made);
+        if (status != SPAR_OK) {
+            t->fluids_made += t->fluids[t->fluids_made] != NULL;
+            return status;
+        }
+        spari_fluid_mute(f, wish->mute);
+    }
+    s->trial = 1;
+    return SPAR_OK;
+}
+
+/* The message of a failure stays. */
+static void go_back(spar_session *s, stash *t) {
+    spar_fluid *f = s->fluids;
+    for (int k = 0; k < t->fluids_made; k++, f = spari_fluid_next(f)) {
+        spari_fluid_restore(f, t->fluids[k]);
+    }
+    spar_member *m = s->members;
+    for (int k = 0; k < t->made; k++, m = m->next) {
+        spari_member_restore(m, t->members + k);
+    }
+    spari_coupling_free(&s->coupling);
+    free(s->pack);
+    free(s->first);
+    free(s->motion);
+    memcpy(t->session.message, s->message, sizeof s->message);
+    *s = t->session;
+    free(t->members);
+    free(t->fluids);
+}
+
+/* ---- what is looked at ---- */
+
+/* Members that follow what the host says have no error. */
+static int stations_of(const spar_member *m) {
+    return m->kind == SPARI_POINT ? 0 : m->nodes == 1 ? ARMS : STATIONS;
+}
+
+/* A place of a beam in the reference configuration, and its displacement. */
+static void beam_station(const spar_member *m, int k, double X[3], double u[3]) {
+    double eta = (k + 1.0) / STATIONS * m->elements, phi[SPARI_MAX_NODES];
+    int e = (int)ceil(eta) - 1;
+    spari_remake_basis(m->per_element, 2 * (eta - e) - 1, phi);
+    for (int c = 0; c < 3; c++) {
+        X[c] = u[c] = 0;
+        for (int l = 0; l < m->per_element; l++) {
+            int64_t i = (int64_t)e * m->per_element + l;
+            X[c] += phi[l] * m->xr[3 * i + c];
+            u[c] += phi[l] * m->after.q[7 * i + c];
+        }
+    }
+}
+
+/* The end of an arm, k = 0: the node itself. */
+static void body_station(const spar_member *m, int k, double X[3], double u[3]) {
+    double arm[3] = {0, 0, 0}, turned[3];
+    if (k > 0) {
+        arm[k - 1] = spari_member_length(m);
+    }
+    spari_rotate(m->after.q + 3, arm, turned);
+    for (int c = 0; c < 3; c++) {
+        X[c] = m->xr[c] + arm[c];
+        u[c] = m->after.q[c] + turned[c] - arm[c];
+    }
+}
+
+/* What of the displacement u at X is not that of the root. */
+static void beyond_root(const spar_member *m, const double X[3], const double u[3], double out[3]) {
+    double arm[3] = {X[0] - m->xr[0], X[1] - m->xr[1], X[2] - m->xr[2]}, turned[3];
+    spari_rotate(m->after.q + 3, arm, turned);
+    for (int c = 0; c < 3; c++) {
+        out[c] = u[c] - m->after.q[c] - (turned[c] - arm[c]);
+    }
+}
+
+/* start: displacements at the beginning */
+static void look(const spar_session *s, const double *start, double *motion, double *beyond) {
+    int64_t at = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        int held = m->kind == SPARI_BEAM && (m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN);
+        for (int k = 0; k < stations_of(m); k++, at += 3) {
+            double X[3], *u = motion + at;
+            if (m->nodes == 1) {
+                body_station(m, k, X, u);
+            } else {
+                beam_station(m, k, X, u);
+            }
+            if (!beyond) {
+                continue;
+            }
+            if (held) {
+                beyond_root(m, X, u, beyond + at);
+            }
+            for (int c = 0; c < 3 && !held; c++) {
+                beyond[at + c] = u[c] - start[at + c];
+            }
+        }
+    }
+}
+
+static int look_at_reactions(const spar_session *s, double *reaction) {
+    for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
+        SPARI_TRY(spari_member_reaction(m, reaction));
+        for (int c = 3; c < 6; c++) {
+            reaction[c] /= spari_member_length(m);
+        }
+    }
+    return SPAR_OK;
+}
+
+static void look_at_loads(const spar_session *s, double *load) {
+    for (const spar_member *m = s->members; m; m = m->next, load += 6) {
+        memset(load, 0, 6 * sizeof *load);
+        for (int64_t i = 0; i < m->nodes; i++) {
+            const double *f = m->load_pushed + 6 * i, *x = m->xr + 3 * i;
+            double arm[3] = {x[0] - m->xr[0], x[1] - m->xr[1], x[2] - m->xr[2]}, t[3];
+            spari_cross(arm, f, t);
+            for (int c = 0; c < 3; c++) {
+                load[c] += f[c];
+                load[3 + c] += (t[c] + f[3 + c]) / spari_member_length(m);
+            }
+        }
+    }
+}
+
+/* ---- the run ---- */
+
+static int record_create(spar_session *s, spari_record *r, double **start) {
+    *r = (spari_record){.members = s->member_count};
+    for (const spar_member *m = s->members; m; m = m->next) {
+        r->stations += stations_of(m);
+    }
+    r->motion = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->motion);
+    r->beyond = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->beyond);
+    r->reaction = spari_zalloc(6 * SPARI_SAMPLES * (int64_t)r->members, sizeof *r->reaction);
+    r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
+    *start = spari_zalloc(3 * r->stations, sizeof **start);
+    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && *start, SPAR_ERR_MEMORY,
+                  "no memory for the record of a trial run");
+    return SPAR_OK;
+}
+
+void spari_record_free(spari_record *r) {
+    free(r->motion);
+    free(r->beyond);
+    free(r->reaction);
+    free(r->load);
+    *r = (spari_record){0};
+}
+
+int spari_trial_keep(spar_session *s, spari_record *record) {
+    spari_record *kept = spari_zalloc(1, sizeof *kept);
+    SPARI_REQUIRE(s, kept, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    spari_trial_forget(s);
+    *kept = *record;
+    *record = (spari_record){0};
+    s->kept = kept;
+    return SPAR_OK;
+}
+
+void spari_trial_forget(spar_session *s) {
+    if (s->kept) {
+        spari_record_free(s->kept);
+        free(s->kept);
+        s->kept = NULL;
+    }
+}
+
+static int prepare_step(spar_session *s, const spari_run *run) {
+    if (!run->before) {
+        return SPAR_OK;
+    }
+    s->message[0] = '\0';
+    int answer = run->before(s, s->time, run->dt, run->context), status = SPAR_OK;
+    if (answer != 0 && !s->message[0]) {
+        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step answered %d", answer);
+    } else if (answer != 0) {
+        status = SPAR_ERR_USER;
+    }
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+}
+
+static int march(spar_session *s, const spari_run *run, const double *start, spari_record *r) {
+    for (int64_t i = 1; i <= run->steps; i++) {
+        int iterations = 0;
+        SPARI_TRY(prepare_step(s, run));
+        clock_t since = clock();
+        int status = spar_step(s, run->dt, run->solve, run->context, &iterations);
+        r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
+        r->solutions += iterations;
+        SPARI_TRY(status);
+        if (i == 1) {
+            look_at_loads(s, r->load);
+        }
+        if (i * SPARI_SAMPLES % run->steps == 0) {
+            int64_t k = i * SPARI_SAMPLES / run->steps - 1;
+            look(s, start, r->motion + 3 * k * r->stations, r->beyond + 3 * k * r->stations);
+            SPARI_TRY(look_at_reactions(s, r->reaction + 6 * k * r->members));
+            int64_t bad = spari_first_nonfinite(r->motion + 3 * k * r->stations, 3 * r->stations);
+            SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
+        }
+    }
+    return SPAR_OK;
+}
+
+/* The members and fluids there now are the trial's. */
+static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
+    double *start = NULL;
+    int status = record_create(s, r, &start);
+    status = spari_session_seal(s, status);
+    if (status == SPAR_OK) {
+        look(s, start, start, NULL);
+        status = march(s, run, start, r);
+    }
+    if (status == SPAR_OK) {
+        memcpy(r->report, s->coupling->report, sizeof r->report);
+        double shared[2] = {r->seconds, 0};
+        status = spari_comm_sum(s->comm, shared, 1, SPAR_OK, s->message, sizeof s->message);
+        r->seconds = shared[0];
+    }
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        r->asked |= spari_fluid_asked(f);
+    }
+    free(start);
+    return status;
+}
+
+int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
+    stash t;
+    *record = (spari_record){0};
+    int status = stash_create(s, &t);
+    status = status == SPAR_OK ? make_anew(s, &t, wish) : status;
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    if (status == SPAR_OK) {
+        status = run_there(s, run, record);
+    }
+    go_back(s, &t);
+    return status;
+}
+
+int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
+    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+                  call);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
+                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
+    }
+    SPARI_REQUIRE(s, isfinite(run->dt) && run->dt > 0, SPAR_ERR_ARGUMENT,
+                  "%s: dt is %g; give a positive number of seconds", call, run->dt);
+    SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_SAMPLES == 0, SPAR_ERR_ARGUMENT,
+                  "%s: %lld steps; give a multiple of %d, as runs are compared at so many times", call,
+                  (long long)run->steps, SPARI_SAMPLES);
+    return SPAR_OK;
+}
+
+/* ---- comparison ---- */
+
+/* |a - b| / |scale|; where there is no scale any difference counts as all. */
+static double relative(const double *a, const double *b, const double *scale, int64_t n) {
+    double d2 = 0, s2 = 0;
+    for (int64_t i = 0; i < n; i++) {
+        d2 += (a[i] - b[i]) * (a[i] - b[i]);
+        s2 += scale[i] * scale[i];
+    }
+    return d2 == 0 ? 0 : s2 > 0 ? sqrt(d2 / s2) : 1;
+}
+
+double spari_record_motion(const spari_record *a, const spari_record *b) {
+    return relative(a->motion, b->motion, b->beyond, 3 * SPARI_SAMPLES * b->stations);
+}
+
+double spari_record_reaction(const spari_record *a, const spari_record *b) {
+    return relative(a->reaction, b->reaction, b->reaction, 6 * SPARI_SAMPLES * (int64_t)b->members);
+}
+
+double spari_record_load(const spari_record *a, const spari_record *b) {
+    return relative(a->load, b->load, b->load, 6 * (int64_t)b->members);
+}

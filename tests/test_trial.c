@@ -1,0 +1,384 @@
+/* Trial runs go back to the bit, and say what theory says. */
+#include "scene.h"
+
+#include <stdio.h>
+
+enum { NODES = 40 };
+
+/* A cantilever in a fluid that pushes back with the velocity, and a load that comes and goes; its own state is the
+   velocity at t^n, kept before each step. */
+typedef struct scene {
+    spar_session *s;
+    spar_member *b, *body;
+    spar_fluid *f, *g;
+    double x[3 * NODES], v[3 * NODES], old[3 * NODES], force[3 * NODES], moment[3 * NODES];
+    double load, drag, added;
+    int moments, fails;
+} scene;
+
+static int press(spar_session *s, double t, double dt, int iteration, void *context) {
+    scene *c = context;
+    (void)s, (void)iteration;
+    if (c->fails) {
+        return c->fails;
+    }
+    int status = spar_fluid_pull_motion(c->f, 1, c->x, c->v);
+    for (int i = 0; i < NODES && !status; i++) {
+        for (int k = 0; k < 3; k++) {
+            c->force[3 * i + k] = (k == 2 ? c->load * sin(9 * (t + dt)) : 0) - c->drag * c->v[3 * i + k] -
+                                  c->added * (c->v[3 * i + k] - c->old[3 * i + k]) / dt;
+            c->moment[3 * i + k] = k == 1 ? -0.1 * c->load : 0;
+        }
+    }
+    status = status ? status : spar_fluid_push_forces(c->f, c->force, c->moments ? c->moment : NULL);
+    if (!status && c->g) {
+        const double up[3] = {0, 0, 2};
+        status = spar_fluid_push_forces(c->g, up, NULL);
+    }
+    return status;
+}
+
+static int keep(spar_session *s, double t, double dt, void *context) {
+    scene *c = context;
+    (void)s, (void)t, (void)dt;
+    return spar_fluid_pull_motion(c->f, 1, NULL, c->old);
+}
+
+static void build(scene *c, int with_body) {
+    const double g[3] = {0, 0, -9.81}, J[3] = {1, 2, 3}, zero[3] = {0, 0, 0};
+    double K[36], M[36], mass[36], x[3 * NODES];
+    c->s = scene_session();
+    scene_diagonal(K, 1e6, 1e5, 1e5, 100, 120, 400);
+    scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
+    OK(c->s, spar_session_set_gravity(c->s, g));
+    c->b = scene_beam(c->s, "wing", 2, 6, 2, K, M);
+    OK(c->s, spar_member_commit(c->b));
+    if (with_body) {
+        scene_mass(mass, 2, zero, J);
+        OK(c->s, spar_rigid_create(c->s, "body", zero, NULL, mass, &c->body));
+        OK(c->s, spar_member_commit(c->body));
+        OK(c->s, spar_fluid_create(c->body, "lift", &c->g));
+        OK(c->s, spar_fluid_set_force_nodes(c->g, 1, zero));
+        OK(c->s, spar_fluid_map(c->g));
+    }
+    for (int i = 0; i < NODES; i++) {
+        x[3 * i] = 2 * (i + 0.5) / NODES, x[3 * i + 1] = 0.1 * sin(i), x[3 * i + 2] = 0.1 * cos(i);
+    }
+    OK(c->s, spar_fluid_create(c->b, "air", &c->f));
+    OK(c->s, spar_fluid_set_motion_nodes(c->f, NODES, x));
+    OK(c->s, spar_fluid_set_force_nodes(c->f, NODES, x));
+    OK(c->s, spar_fluid_map(c->f));
+}
+
+static void step(scene *c, double dt, int n) {
+    for (int i = 0; i < n; i++) {
+        OK(c->s, (spar_status_text(0), keep(c->s, 0, dt, c)));
+        OK(c->s, spar_step(c->s, dt, press, c, NULL));
+    }
+}
+
+static char *contents(const char *path, long *size) {
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = ftell(file);
+    rewind(file);
+    char *bytes = malloc((size_t)*size);
+    assert_int_equal(fread(bytes, 1, (size_t)*size, file), (size_t)*size);
+    fclose(file);
+    remove(path);
+    return bytes;
+}
+
+/* Before the clock runs and in the middle of a run, with loads of every kind: after trials of all kinds, those that
+   fail among them, the saved state is the same file, and the run goes on with the same bits. */
+static void test_goes_back_to_the_bit(void **state) {
+    (void)state;
+    for (int begun = 0; begun < 2; begun++) {
+        double q[2][12 * 7], report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT],
+            advice[SPAR_ADVICE_COUNT];
+        for (int tried = 0; tried < 2; tried++) {
+            scene c = {.load = 0.02, .drag = 0.01, .moments = 1};
+            const double line_eta[2] = {0.2, 0.9}, line[12] = {0, 1, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0},
+                         follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
+            build(&c, 1);
+            OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
+            OK(c.s, spar_beam_set_line_load(c.b, 2, line_eta, line, SPAR_LOAD_FOLLOWER));
+            OK(c.s, spar_member_add_follower(c.b, 11, follower));
+            OK(c.s, spar_member_add_load(c.b, 4, dead));
+            step(&c, 0.01, begun ? 5 : 0);
+            if (tried) {
+                long size[2];
+                char *file[2];
+                OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
+                file[0] = contents("trial_bits.spar", &size[0]);
+                OK(c.s, spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, report));
+                OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
+                OK(c.s, spar_session_advise(c.s, 0.05, 0.01, 16, keep, press, &c, advice));
+                c.fails = 7;
+                assert_int_equal(spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, report), SPAR_ERR_USER);
+                c.fails = 0;
+                OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
+                file[1] = contents("trial_bits.spar", &size[1]);
+                assert_int_equal(size[0], size[1]);
+                assert_memory_equal(file[0], file[1], (size_t)size[0]);
+                free(file[0]);
+                free(file[1]);
+            }
+            step(&c, 0.01, 5);
+            OK(c.s, spar_member_get_motion(c.b, q[tried], NULL, NULL));
+            spar_session_destroy(&c.s);
+        }
+        assert_memory_equal(q[0], q[1], sizeof q[0]);
+    }
+}
+
+/* A run against itself has no error; the error of dt falls with its square. */
+static void test_errors_of_dt(void **state) {
+    (void)state;
+    const double none[3] = {0, 0, 0}; /* weight that comes on at once would ring in all modes */
+    scene c = {.load = 0.02, .drag = 0.01};
+    double report[SPAR_TRY_COUNT], error[2];
+    build(&c, 0);
+    OK(c.s, spar_session_set_gravity(c.s, none));
+    OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-9, 50));
+    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 0, report));
+    assert_true(report[SPAR_TRY_MOTION] == 0);
+    assert_true(report[SPAR_TRY_SOLUTIONS] >= 4096);
+    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 1, report));
+    assert_true(report[SPAR_TRY_MOTION] == 0 && report[SPAR_TRY_REACTION] == 0 && report[SPAR_TRY_LOAD] == 0);
+    for (int k = 0; k < 2; k++) {
+        OK(c.s, spar_session_try(c.s, 0.32 / (128 << k), 128 << k, keep, press, &c, 1, report));
+        error[k] = report[SPAR_TRY_MOTION];
+    }
+    NEAR(log2(error[0] / error[1]), 2, 0.3);
+    spar_session_destroy(&c.s);
+}
+
+/* Under a load at rest the sizes are ratios of known forces, and what is left out is missing from the support: weight
+   of a beam of m g L = 19.62 N against a load at its tip. */
+static void test_gravity_row(void **state) {
+    (void)state;
+    scene c = {.load = 0};
+    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    const double dead[6] = {0, 0, -19.62, 0, 0, 0};
+    build(&c, 0);
+    OK(c.s, spar_member_add_load(c.b, 11, dead));
+    OK(c.s, spar_member_solve_static(c.b, 4));
+    OK(c.s, spar_session_report_effects(c.s, 1e-3, 8, keep, press, &c, table));
+    const double *gravity = table[SPAR_ROW_GRAVITY];
+    assert_true(gravity[SPAR_COLUMN_IN_FORCE] == 1);
+    assert_true(gravity[SPAR_COLUMN_SIZE] > 0.1 && gravity[SPAR_COLUMN_SIZE] <= 1);
+    assert_true(gravity[SPAR_COLUMN_REACTION] > 0.01);
+    for (int r = 0; r < SPAR_ROW_COUNT; r++) {
+        int there = r == SPAR_ROW_INERTIA || r == SPAR_ROW_GYROSCOPIC || r == SPAR_ROW_GRAVITY ||
+                    r == SPAR_ROW_LARGE_ROTATION || r == SPAR_ROW_FLUID_VELOCITY || r == SPAR_ROW_PREDICTOR;
+        assert_int_equal(table[r][SPAR_COLUMN_IN_FORCE], there);
+        for (int k = 0; k < SPAR_COLUMN_COUNT && !there; k++) {
+            assert_true(table[r][k] == 0);
+        }
+        assert_true(spar_effect_name(r)[0] != '\0');
+    }
+    NEAR(table[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE], 0, 1e-9); /* at rest */
+    assert_string_equal(spar_effect_name(-1), "");
+    assert_string_equal(spar_effect_name(SPAR_ROW_COUNT), "");
+    spar_session_destroy(&c.s);
+}
+
+/* Without inertia the load of the fluid works as in equilibrium: a static scene has the same reactions, gravity left
+   out takes m g L off the support exactly. */
+static void test_left_out_of_statics(void **state) {
+    (void)state;
+    scene c = {.load = 0};
+    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], K[36], M[36];
+    const double g[3] = {0, 0, -9.81}, dead[6] = {0, 0, -10, 0, 0, 0};
+    c.s = scene_session();
+    scene_diagonal(K, 1e9, 1e9, 1e9, 1e9, 1e9, 1e9); /* stiff: moments by the reference's arms */
+    scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
+    OK(c.s, spar_session_set_gravity(c.s, g));
+    c.b = scene_beam(c.s, "wing", 1, 6, 2, K, M);
+    OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION));
+    OK(c.s, spar_member_commit(c.b));
+    OK(c.s, spar_member_add_load(c.b, 5, dead));
+    OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, table));
+    /* reaction: force 10 + 2 g, moment over length 10 + g; without weight 10, 10 */
+    double weight = hypot(2 * 9.81, 9.81), all = hypot(10 + 2 * 9.81, 10 + 9.81);
+    NEAR(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_REACTION], weight / all, 1e-6);
+    spar_session_destroy(&c.s);
+}
+
+/* Fluid parts: a fluid that only sees velocities is not there without them; moments change the first loads by what
+   they are. */
+static void test_fluid_rows(void **state) {
+    (void)state;
+    scene c = {.load = 0.5, .drag = 0, .moments = 1};
+    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    build(&c, 0);
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_SIZE] > 0.05);
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_MOTION] > 0.01);
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_IN_FORCE] == 1); /* pulled, though of no use at drag 0 */
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_MOTION] == 0);
+    spar_session_destroy(&c.s);
+    c = (scene){.load = 0.5, .drag = 0.05};
+    build(&c, 0);
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 0);
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_MOTION] > 0.01);
+    spar_session_destroy(&c.s);
+}
+
+/* What is advised keeps the tolerance when it is run by itself against a finer run, and is not dearer than what there
+   was. The session built to the advice is another one, as a host would build it. */
+static void advised(double tolerance, double added) {
+    enum { STEPS = 32 };
+    const double T = 0.32;
+    double advice[SPAR_ADVICE_COUNT], tip[2][7];
+    int nodes = 0, fidelity = 0, points = 0;
+    int64_t modes = 0;
+    scene c = {.load = 0.05, .drag = 0.01, .added = added};
+    build(&c, 0);
+    if (added > 0) {
+        OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
+    }
+    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, keep, press, &c, advice));
+    OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, &points));
+    assert_true(advice[SPAR_ADVICE_ERROR] <= tolerance);
+    assert_true(advice[SPAR_ADVICE_TRIALS] > 5);
+    spar_session_destroy(&c.s);
+    for (int fine = 0; fine < 2; fine++) {
+        scene r = {.load = 0.05, .drag = 0.01, .added = added};
+        double K[36], M[36], x[3 * NODES];
+        const double g[3] = {0, 0, -9.81};
+        r.s = scene_session();
+        scene_diagonal(K, 1e6, 1e5, 1e5, 100, 120, 400);
+        scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
+        OK(r.s, spar_session_set_gravity(r.s, g));
+        r.b = scene_beam(r.s, "wing", 2, fine ? 9 : nodes, 2, K, M);
+        if (!fine) {
+            OK(r.s, spar_member_set_fidelity(r.b, fidelity, modes));
+        }
+        OK(r.s, spar_member_commit(r.b));
+        for (int i = 0; i < NODES; i++) {
+            x[3 * i] = 2 * (i + 0.5) / NODES, x[3 * i + 1] = 0.1 * sin(i), x[3 * i + 2] = 0.1 * cos(i);
+        }
+        OK(r.s, spar_fluid_create(r.b, "air", &r.f));
+        OK(r.s, spar_fluid_set_motion_nodes(r.f, NODES, x));
+        OK(r.s, spar_fluid_set_force_nodes(r.f, NODES, x));
+        OK(r.s, spar_fluid_map(r.f));
+        int n = fine ? 4096 : (int)lround(T / advice[SPAR_ADVICE_DT]);
+        OK(r.s, spar_session_set_coupling(r.s, fine ? SPAR_COUPLING_IQN_ILS : (int)advice[SPAR_ADVICE_SCHEME], 1e-9,
+                                          fine ? 1e-8 : advice[SPAR_ADVICE_COUPLING_RTOL], 50));
+        if (!fine) {
+            OK(r.s, spar_session_set_integrator(r.s, 0.9, (int)advice[SPAR_ADVICE_SUBSTEPS]));
+            OK(r.s, spar_session_set_predictor(r.s, (int)advice[SPAR_ADVICE_PREDICTOR]));
+            OK(r.s, spar_session_set_newton(r.s, 1e-15, advice[SPAR_ADVICE_NEWTON_RTOL], 50));
+        }
+        step(&r, T / n, n);
+        scene_tip(r.b, tip[fine]);
+        spar_session_destroy(&r.s);
+    }
+    double off = 0, size = 0;
+    for (int k = 0; k < 3; k++) {
+        off = hypot(off, tip[0][k] - tip[1][k]);
+        size = hypot(size, tip[1][k]);
+    }
+    if (getenv("SPAR_SHOW")) {
+        printf("tolerance %g added %g: estimate %g, real %g at the end, cost %.3g, present error %g, %g trials; dt %g, "
+               "scheme %g %g, predictor %g, newton %g, %d nodes, fidelity %d, %d modes\n",
+               tolerance, added, advice[SPAR_ADVICE_ERROR], off / size, advice[SPAR_ADVICE_COST],
+               advice[SPAR_ADVICE_PRESENT_ERROR], advice[SPAR_ADVICE_TRIALS], advice[SPAR_ADVICE_DT],
+               advice[SPAR_ADVICE_SCHEME], advice[SPAR_ADVICE_COUPLING_RTOL], advice[SPAR_ADVICE_PREDICTOR],
+               advice[SPAR_ADVICE_NEWTON_RTOL], nodes, fidelity, (int)modes);
+    }
+    assert_true(off <= 1.5 * tolerance * size); /* the tolerance is of the mean over the run, this is its end */
+}
+
+static void test_advice_is_kept(void **state) {
+    (void)state;
+    advised(1e-2, 0);
+    advised(2e-2, 0.02);
+}
+
+static void test_bad_input(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], advice[SPAR_ADVICE_COUNT];
+    build(&c, 0);
+    assert_int_equal(spar_session_try(NULL, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, NAN, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 12, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_session_message(c.s), "multiple of 8"));
+    assert_int_equal(spar_session_try(c.s, 0.01, 0, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 1, report), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, NULL, NULL, advice), SPAR_ERR_UNSUPPORTED);
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, press, &c, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_advice(c.b, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
+    OK(c.s, spar_step_begin(c.s, 0.01));
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, table), SPAR_ERR_STATE);
+    spar_session_destroy(&c.s);
+}
+
+/* Within a trial nothing may be made, unmade or saved; the trial goes on. */
+static int meddle(spar_session *s, double t, double dt, void *context) {
+    scene *c = context;
+    spar_fluid *f = NULL;
+    spar_member *m = NULL;
+    double report[SPAR_TRY_COUNT];
+    assert_int_equal(spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_STATE);
+    assert_int_equal(spar_fluid_create(c->b, "late", &f), SPAR_ERR_STATE);
+    assert_int_equal(spar_point_create(s, "late", NULL, NULL, &m), SPAR_ERR_STATE);
+    assert_int_equal(spar_fluid_set_motion_nodes(c->f, 0, NULL), SPAR_ERR_STATE);
+    assert_int_equal(spar_fluid_map(c->f), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_save(s, "trial_never.spar"), SPAR_ERR_STATE);
+    f = c->f;
+    spar_fluid_destroy(&f);
+    assert_ptr_equal(f, c->f);
+    return keep(s, t, dt, context);
+}
+
+static void test_meddling(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    double report[SPAR_TRY_COUNT];
+    build(&c, 0);
+    OK(c.s, spar_session_try(c.s, 0.01, 8, meddle, press, &c, 0, report));
+    step(&c, 0.01, 2);
+    spar_session_destroy(&c.s);
+}
+
+/* No members, or members that nothing is to be found of: a point, an external beam. */
+static void test_nothing_to_try(void **state) {
+    (void)state;
+    double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    spar_session *s = scene_session();
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report));
+    spar_member *p;
+    OK(s, spar_point_create(s, "p", NULL, NULL, &p));
+    OK(s, spar_member_commit(p));
+    OK(s, spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, table));
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 1, report));
+    assert_true(report[SPAR_TRY_MOTION] == 0);
+    spar_session_destroy(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_goes_back_to_the_bit),
+        cmocka_unit_test(test_errors_of_dt),
+        cmocka_unit_test(test_gravity_row),
+        cmocka_unit_test(test_left_out_of_statics),
+        cmocka_unit_test(test_fluid_rows),
+        cmocka_unit_test(test_advice_is_kept),
+        cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(test_meddling),
+        cmocka_unit_test(test_nothing_to_try),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
