@@ -25,9 +25,12 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     } else if (status == SPAR_OK && compare && !s->kept) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: there is no run to compare with; try with compare = 0 first", call);
     }
-    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
     status = spari_comm_enter(s->comm, call, status, s->message, sizeof s->message);
-    status = status == SPAR_OK ? spari_trial_run(s, &run, &wish, &record) : status;
+    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    if (status == SPAR_OK) {
+        (void)spari_trial_run(s, &run, &wish, &record);
+        status = record.own;
+    }
     spari_wish_free(&wish);
     if (status == SPAR_OK) {
         report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->kept) : 0;
@@ -281,7 +284,8 @@ static int fill_table(spar_session *s, const spari_run *run, double (*table)[SPA
     spari_record base;
     SPARI_TRY(spari_comm_agree(s->comm, find_sizes(s, run->dt, size), s->message, sizeof s->message));
     SPARI_TRY(spari_wish_create(s, &wish));
-    int status = spari_trial_run(s, run, &wish, &base), asked = base.asked;
+    (void)spari_trial_run(s, run, &wish, &base);
+    int status = base.own, asked = base.asked;
     spari_wish_free(&wish);
     size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];
     size[SPAR_ROW_ITERATION] = base.report[SPAR_REPORT_ADDED_MASS];

@@ -17,12 +17,16 @@ int spari_wish_create(spar_session *s, spari_wish *wish) {
     *wish =
         (spari_wish){s->substeps,    s->predictor,   s->scheme, s->coupling_rtol,
                      s->newton_atol, s->newton_rtol, 0,         spari_zalloc(s->member_count, sizeof *wish->member)};
-    SPARI_REQUIRE(s, wish->member, SPAR_ERR_MEMORY, "no memory for a trial run");
     spari_remake *r = wish->member;
-    for (const spar_member *m = s->members; m; m = m->next, r++) {
+    for (const spar_member *m = s->members; m && r; m = m->next, r++) {
         *r = spari_remake_of(m);
     }
-    return SPAR_OK;
+    int status = r ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    if (status != SPAR_OK) {
+        spari_wish_free(wish);
+    }
+    return status;
 }
 
 void spari_wish_free(spari_wish *wish) {
@@ -306,6 +310,28 @@ static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
     return status;
 }
 
+/* The failing rank's status, on all ranks: they decide alike whether a failure is of the run or of the machine. */
+static int share_failure(spar_session *s, int own) {
+    enum { CODES = SPAR_ERR_USER + 1 };
+    static const int grave[] = {SPAR_ERR_MEMORY, SPAR_ERR_IO};
+    double there[CODES + 1] = {0};
+    if (own == SPAR_OK || own == SPAR_ERR_COMM) {
+        return own; /* known to all; and there is no asking through a broken communicator */
+    }
+    there[own] = 1;
+    SPARI_TRY(spari_comm_sum(s->comm, there, CODES, SPAR_OK, s->message, sizeof s->message));
+    for (size_t k = 0; k < sizeof grave / sizeof *grave; k++) {
+        if (there[grave[k]] > 0) {
+            return grave[k];
+        }
+    }
+    int shared = SPAR_OK + 1;
+    while (there[shared] == 0 || shared == SPAR_ERR_PEER) {
+        shared++;
+    }
+    return shared;
+}
+
 int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
     stash t;
     *record = (spari_record){0};
@@ -316,7 +342,8 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
         status = run_there(s, run, record);
     }
     go_back(s, &t);
-    return status;
+    record->own = status;
+    return share_failure(s, status);
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {

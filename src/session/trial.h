@@ -39,14 +39,16 @@ struct spari_record {
     int64_t solutions;                /* calls of the fluid solver */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
+    int own;                          /* what this rank answers for a run that failed */
 };
 
 /* Refuses what cannot be tried: a step under way, a trial under way, members not committed, bad numbers. Local. */
 int spari_trial_check(spar_session *session, const char *call, const spari_run *run);
-/* The session as it is. Frees: spari_wish_free. */
+/* The session as it is. Frees: spari_wish_free. Collective. */
 int spari_wish_create(spar_session *session, spari_wish *wish);
 void spari_wish_free(spari_wish *wish);
-/* Runs and goes back. The record's memory is taken here; free it with spari_record_free, also after a failure.
+/* Runs and goes back. The record's memory is taken here; free it with spari_record_free, also after a failure. Answers
+   the failing rank's status on all of them, so that they go on alike; record.own is what the host is to be told.
    Collective. */
 int spari_trial_run(spar_session *session, const spari_run *run, const spari_wish *wish, spari_record *record);
 void spari_record_free(spari_record *record);
