@@ -13,7 +13,7 @@
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam. spar_status_text,
-! spar_version, spar_has and spar_vtk_series_add keep their names.
+! spar_version, spar_has, spar_effect_name and spar_vtk_series_add keep their names.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -23,6 +23,8 @@
 ! blades (3,n,blades). n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
 ! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Kinds are those of C, c_double and c_int; a count may also
 ! be a 64-bit integer. Nodes and sections are counted from 1 in arguments; the library's own messages count from 0.
+! Figures that C names by constants from 0 (SPAR_REPORT_*, SPAR_TRY_*, SPAR_ADVICE_*, SPAR_COLUMN_* by SPAR_ROW_*) are found under
+! these names in arrays declared from 0: table(0:SPAR_COLUMN_COUNT-1, 0:SPAR_ROW_COUNT-1).
 !
 ! Life. A session, a polar and an aero object are owned by their variables: destroyed by `destroy`, or at the latest when the
 ! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
@@ -32,16 +34,16 @@
 ! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
 ! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
 module spar
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_int, c_int64_t, &
-      c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
+      c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
-      c_series_add => spar_vtk_series_add
+      c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add
   implicit none
   private
 
   public :: spar_session, spar_member, spar_fluid, spar_polar, spar_aero
-  public :: spar_fluid_solver, spar_log
-  public :: spar_status_text, spar_version, spar_has, spar_vtk_series_add
+  public :: spar_fluid_solver, spar_before_step, spar_log
+  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
 
   public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING
   public :: SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER, SPAR_COUPLING_EXPLICIT
@@ -59,6 +61,15 @@ module spar
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
+  public :: SPAR_TRY_MOTION, SPAR_TRY_REACTION, SPAR_TRY_LOAD, SPAR_TRY_SECONDS, SPAR_TRY_SOLUTIONS, SPAR_TRY_COUNT
+  public :: SPAR_ROW_INERTIA, SPAR_ROW_GYROSCOPIC, SPAR_ROW_GRAVITY, SPAR_ROW_DAMPING, SPAR_ROW_LARGE_ROTATION
+  public :: SPAR_ROW_FLUID_MOMENT, SPAR_ROW_FLUID_VELOCITY, SPAR_ROW_FLUID_POSES, SPAR_ROW_FLUID_HISTORY
+  public :: SPAR_ROW_PREDICTOR, SPAR_ROW_ITERATION, SPAR_ROW_HALF_STEP, SPAR_ROW_COUNT
+  public :: SPAR_COLUMN_IN_FORCE, SPAR_COLUMN_SIZE, SPAR_COLUMN_MOTION, SPAR_COLUMN_REACTION, SPAR_COLUMN_SHARE
+  public :: SPAR_COLUMN_COUNT
+  public :: SPAR_ADVICE_DT, SPAR_ADVICE_SUBSTEPS, SPAR_ADVICE_SCHEME, SPAR_ADVICE_COUPLING_RTOL, SPAR_ADVICE_PREDICTOR
+  public :: SPAR_ADVICE_NEWTON_RTOL, SPAR_ADVICE_ERROR, SPAR_ADVICE_COST, SPAR_ADVICE_PRESENT_ERROR, SPAR_ADVICE_TRIALS
+  public :: SPAR_ADVICE_COUNT
 
   type :: spar_session
     private
@@ -89,6 +100,12 @@ module spar
     procedure :: step_accept => session_step_accept
     procedure :: step_reject => session_step_reject
     procedure :: step => session_step
+    procedure, private :: session_try_64, session_try_32
+    generic :: try => session_try_64, session_try_32
+    procedure, private :: session_report_effects_64, session_report_effects_32
+    generic :: report_effects => session_report_effects_64, session_report_effects_32
+    procedure, private :: session_advise_64, session_advise_32
+    generic :: advise => session_advise_64, session_advise_32
     procedure, private :: session_assign
     generic :: assignment(=) => session_assign
     final :: session_final
@@ -97,7 +114,7 @@ module spar
   type :: spar_member
     private
     type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
-    integer(c_int64_t) :: per_element = 0
+    integer(c_int64_t) :: elements = 1
     character(:), allocatable :: name
   contains
     procedure :: create_point => member_create_point
@@ -138,13 +155,14 @@ module spar
     procedure :: solve_static => member_solve_static
     procedure :: get_modes => member_get_modes
     procedure :: set_modal_damping => member_set_modal_damping
+    procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
   end type spar_member
 
   type :: spar_fluid
     private
-    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
-    integer(c_int64_t) :: per_element = 0
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr, member = c_null_ptr
+    integer(c_int64_t) :: elements = 1 ! of the member
     character(:), allocatable :: name
   contains
     procedure :: create => fluid_create
@@ -233,6 +251,15 @@ module spar
       integer(c_int), intent(inout) :: stat
     end subroutine spar_fluid_solver
 
+    ! What the host does ahead of each step of a trial run, from t to t + dt; as spar_fluid_solver.
+    subroutine spar_before_step(session, t, dt, context, stat)
+      import :: c_double, c_int, spar_session
+      class(spar_session), intent(inout) :: session
+      real(c_double), intent(in) :: t, dt
+      class(*), intent(inout), optional :: context
+      integer(c_int), intent(inout) :: stat
+    end subroutine spar_before_step
+
     ! Takes the library's messages, see session%set_log.
     subroutine spar_log(level, text, context)
       import :: c_int
@@ -246,6 +273,7 @@ module spar
   type :: step_record
     class(spar_session), pointer :: session => null()
     procedure(spar_fluid_solver), pointer, nopass :: solve => null()
+    procedure(spar_before_step), pointer, nopass :: before => null()
     class(*), pointer :: context => null()
   end type step_record
 
@@ -265,6 +293,10 @@ module spar
   interface spar_has
     procedure :: has_feature
   end interface spar_has
+
+  interface spar_effect_name
+    procedure :: effect_name
+  end interface spar_effect_name
 
   interface spar_vtk_series_add
     procedure :: series_add
@@ -578,18 +610,34 @@ contains
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
-    integer(c_int) :: status
+    type(c_funptr) :: to_solver, to_before
 
-    if (present(solve)) then
-      record%session => self
-      record%solve => solve
-      if (present(context)) record%context => context
-      status = spar_step(self%handle, dt, c_funloc(call_solver), c_loc(record), iterations)
-    else
-      status = spar_step(self%handle, dt, c_null_funptr, c_null_ptr, iterations)
-    end if
-    call finish(status, self%handle, stat, errmsg)
+    call fill_record(self, record, to_solver, to_before, solve, context=context)
+    call finish(spar_step(self%handle, dt, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
   end subroutine session_step
+
+  ! What C is handed for the host's procedures: the record with them, and the calls that read it; none for none.
+  subroutine fill_record(self, record, to_solver, to_before, solve, before, context)
+    class(spar_session), intent(inout), target :: self
+    type(step_record), intent(out) :: record
+    type(c_funptr), intent(out) :: to_solver, to_before
+    procedure(spar_fluid_solver), optional :: solve
+    procedure(spar_before_step), optional :: before
+    class(*), intent(inout), target, optional :: context
+
+    record%session => self
+    to_solver = c_null_funptr
+    to_before = c_null_funptr
+    if (present(solve)) then
+      record%solve => solve
+      to_solver = c_funloc(call_solver)
+    end if
+    if (present(before)) then
+      record%before => before
+      to_before = c_funloc(call_before)
+    end if
+    if (present(context)) record%context => context
+  end subroutine fill_record
 
   function call_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
@@ -608,6 +656,124 @@ contains
       call record%solve(record%session, t, dt, iteration, stat=answer)
     end if
   end function call_solver
+
+  function call_before(session, t, dt, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: t, dt
+    integer(c_int) :: answer
+    type(step_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    answer = SPAR_OK
+    if (associated(record%context)) then
+      call record%before(record%session, t, dt, record%context, stat=answer)
+    else
+      call record%before(record%session, t, dt, stat=answer)
+    end if
+  end function call_before
+
+  subroutine session_try_64(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), intent(inout) :: report(SPAR_TRY_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare ! with the last one that did not
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+    logical :: compared
+
+    compared = .false.
+    if (present(compare)) compared = compare
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_session_try(self%handle, dt, steps, to_before, to_solver, c_loc(record), flag(compared), report), &
+        self%handle, stat, errmsg)
+  end subroutine session_try_64
+
+  subroutine session_try_32(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), intent(inout) :: report(SPAR_TRY_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare ! with the last one that did not
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%try(dt, int(steps, c_int64_t), report, before, solve, context, compare, stat, errmsg)
+  end subroutine session_try_32
+
+  subroutine session_report_effects_64(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_ROW_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_session_report_effects(self%handle, dt, steps, to_before, to_solver, c_loc(record), table), &
+        self%handle, stat, errmsg)
+  end subroutine session_report_effects_64
+
+  subroutine session_report_effects_32(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_ROW_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%report_effects(dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
+  end subroutine session_report_effects_32
+
+  subroutine session_advise_64(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: tolerance, dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), intent(inout) :: advice(SPAR_ADVICE_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_session_advise(self%handle, tolerance, dt, steps, to_before, to_solver, c_loc(record), advice), &
+        self%handle, stat, errmsg)
+  end subroutine session_advise_64
+
+  subroutine session_advise_32(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: tolerance, dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), intent(inout) :: advice(SPAR_ADVICE_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%advise(tolerance, dt, int(steps, c_int64_t), advice, before, solve, context, stat, errmsg)
+  end subroutine session_advise_32
 
   ! ---- members ----
 
@@ -655,21 +821,21 @@ contains
 
     made = c_null_ptr
     status = spar_beam_create(session%handle, c_text(name), elements, nodes_per_element, made)
-    if (status == SPAR_OK) call member_take(self, made, session%handle, name, nodes_per_element)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, elements)
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_beam
 
   ! A view of the new member: whatever the variable viewed before stays where it is, in its session.
-  subroutine member_take(self, handle, session, name, per_element)
+  subroutine member_take(self, handle, session, name, elements)
     class(spar_member), intent(inout) :: self
     type(c_ptr), intent(in) :: handle, session
     character(*), intent(in) :: name
-    integer(c_int), intent(in) :: per_element
+    integer(c_int), intent(in) :: elements
 
     self%handle = handle
     self%session = session
     self%name = trim(name)
-    self%per_element = per_element
+    self%elements = elements
   end subroutine member_take
 
   logical function member_exists(self) result(there)
@@ -1150,6 +1316,17 @@ contains
         shapes), self%session, stat, errmsg)
   end subroutine member_get_modes
 
+  subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout), optional :: fidelity
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer(c_int), intent(inout), optional :: nodes_per_element, points
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_advice(self%handle, fidelity, modes, nodes_per_element, points), self%session, stat, errmsg)
+  end subroutine member_get_advice
+
   subroutine member_write_vtk(self, path, stat, errmsg)
     class(spar_member), intent(in) :: self
     character(*), intent(in) :: path
@@ -1175,7 +1352,8 @@ contains
     if (status == SPAR_OK) then
       self%handle = made
       self%session = member%session
-      self%per_element = member%per_element
+      self%member = member%handle
+      self%elements = member%elements
       self%name = trim(name)
     end if
     call finish(status, member%session, stat, errmsg)
@@ -1375,17 +1553,18 @@ contains
     real(c_double), contiguous, intent(inout), optional :: phi(:,:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
+    integer(c_int64_t) :: n, nodes
     character(:), allocatable :: fault
     integer(c_int) :: status
 
     status = spar_fluid_get_count(self%handle, which, n)
+    if (status == SPAR_OK) status = spar_member_get_count(self%member, nodes) ! not those of create: trials vary them
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
     end if
     if (present(first_node)) call need(fault, 'first_node', shape(first_node, kind=c_int64_t), [n])
-    if (present(phi)) call need(fault, 'phi', shape(phi, kind=c_int64_t), [self%per_element, n])
+    if (present(phi)) call need(fault, 'phi', shape(phi, kind=c_int64_t), [nodes / self%elements, n])
     if (allocated(fault)) then
       call refuse('fluid%get_basis', fault, stat, errmsg, self%name)
       return
@@ -2022,6 +2201,14 @@ contains
 
     there = c_has(c_text(feature)) /= 0
   end function has_feature
+
+  ! Of a row of report_effects, from 0 as SPAR_ROW_*; '' for what is no row.
+  function effect_name(row) result(name)
+    integer(c_int), intent(in) :: row
+    character(:), allocatable :: name
+
+    call copy_text(c_effect_name(row), name)
+  end function effect_name
 
   ! Adds a file to an index of files in time; part counts from 0.
   subroutine series_add(path, time, part, file, stat, errmsg)

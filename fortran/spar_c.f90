@@ -35,6 +35,17 @@ module spar_c
   integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, &
       SPAR_EFFECT_GRAVITY = 4, SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
       SPAR_EFFECT_FLUID_HISTORY = 64
+  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, &
+      SPAR_TRY_SECONDS = 3, SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
+  integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, SPAR_ROW_DAMPING = 3, &
+      SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, SPAR_ROW_FLUID_POSES = 7, &
+      SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, SPAR_ROW_HALF_STEP = 11, &
+      SPAR_ROW_COUNT = 12
+  integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
+      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
+  integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
+      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
+      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
@@ -656,6 +667,55 @@ module spar_c
       integer(c_int), intent(inout), optional :: iterations
       integer(c_int) :: status
     end function spar_step
+
+    function spar_session_try(session, dt, steps, before, solve, context, compare, report) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: steps
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      integer(c_int), value :: compare
+      real(c_double), intent(inout), optional :: report(*)
+      integer(c_int) :: status
+    end function spar_session_try
+
+    function spar_effect_name(row) bind(c) result(text)
+      import :: c_int, c_ptr
+      integer(c_int), value :: row
+      type(c_ptr) :: text
+    end function spar_effect_name
+
+    function spar_session_report_effects(session, dt, steps, before, solve, context, table) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: steps
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      real(c_double), intent(inout), optional :: table(*)
+      integer(c_int) :: status
+    end function spar_session_report_effects
+
+    function spar_session_advise(session, tolerance, dt, steps, before, solve, context, advice) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: tolerance, dt
+      integer(c_int64_t), value :: steps
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      real(c_double), intent(inout), optional :: advice(*)
+      integer(c_int) :: status
+    end function spar_session_advise
+
+    function spar_member_get_advice(member, fidelity, modes, nodes_per_element, points) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: fidelity
+      integer(c_int64_t), intent(inout), optional :: modes
+      integer(c_int), intent(inout), optional :: nodes_per_element, points
+      integer(c_int) :: status
+    end function spar_member_get_advice
 
     function spar_session_save(session, path) bind(c) result(status)
       import :: c_char, c_int, c_ptr

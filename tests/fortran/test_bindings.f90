@@ -97,6 +97,14 @@ program test_bindings
   call refused(spar_step_accept(none), 'spar_step_accept')
   call refused(spar_step_reject(none), 'spar_step_reject')
   call refused(spar_step(none, 0.0_c_double, c_null_funptr, none), 'spar_step')
+  call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int), &
+      'spar_session_try')
+  call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+      'spar_session_report_effects')
+  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+      'spar_session_advise')
+  call refused(spar_member_get_advice(none), 'spar_member_get_advice')
+  call check(c_associated(spar_effect_name(0_c_int)), 'spar_effect_name')
   call refused(spar_session_save(none), 'spar_session_save')
   call refused(spar_session_load(none), 'spar_session_load')
   call refused(spar_session_set_log(none, c_null_funptr, none), 'spar_session_set_log')

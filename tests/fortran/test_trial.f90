@@ -1,0 +1,216 @@
+! Trial runs from Fortran: a body on a spring, which is a Fortran fluid, under its weight.
+module trial_fluid
+  use, intrinsic :: iso_c_binding, only: c_double, c_int
+  use spar
+  implicit none
+
+  type :: spring
+    type(spar_fluid), pointer :: fluid => null()
+    real(c_double) :: stiffness = 0
+    integer :: steps = 0, fails_at = -1
+  end type spring
+
+contains
+
+  subroutine solve(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+    real(c_double) :: x(3,1)
+
+    if (.not. session%exists() .or. t < 0 .or. dt <= 0 .or. iteration < 0) stat = 4
+    select type (context)
+    type is (spring)
+      call context%fluid%pull_motion(1.0_c_double, x)
+      call context%fluid%push_forces(-context%stiffness * x)
+    class default
+      stat = 5
+    end select
+  end subroutine solve
+
+  ! Counts the steps of all runs.
+  subroutine count_step(session, t, dt, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+    real(c_double) :: now
+
+    call session%get_time(now)
+    select type (context)
+    type is (spring)
+      context%steps = context%steps + 1
+      if (abs(now - t) > 0 .or. dt <= 0) stat = 6
+      if (context%steps == context%fails_at) stat = 7
+    class default
+      stat = 5
+    end select
+  end subroutine count_step
+
+  ! A host that keeps nothing: without a context.
+  subroutine count_nothing(session, t, dt, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+
+    if (present(context) .or. .not. session%exists() .or. t < 0 .or. dt <= 0) stat = 8
+  end subroutine count_nothing
+end module trial_fluid
+
+program test_trial
+  use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
+  use spar
+  use trial_fluid
+  implicit none
+  real(c_double), parameter :: unit(4) = [1, 0, 0, 0], origin(3) = 0, dt = 0.01_c_double
+  integer :: failures = 0
+
+  call trials()
+  call a_beam()
+  if (failures > 0) error stop 'test_trial failed'
+
+contains
+
+  subroutine check(right, what)
+    logical, intent(in) :: right
+    character(*), intent(in) :: what
+
+    if (right) return
+    failures = failures + 1
+    write (*, '(2a)') 'wrong: ', what
+  end subroutine check
+
+  pure function diagonal(d) result(matrix)
+    real(c_double), intent(in) :: d(6)
+    real(c_double) :: matrix(6,6)
+    integer :: i
+
+    matrix = 0
+    do i = 1, 6
+      matrix(i,i) = d(i)
+    end do
+  end function diagonal
+
+  ! 1 kg on a spring of 4 N/m under its weight: without gravity it does not move, so the error of the motion is all of it,
+  ! 1; without inertia it has no equilibrium to be found (a free body has no stiffness of its own).
+  subroutine trials()
+    type(spar_session) :: session
+    type(spar_member) :: body
+    type(spar_fluid), target :: fluid
+    type(spring) :: context
+    real(c_double) :: report(0:SPAR_TRY_COUNT - 1), table(0:SPAR_COLUMN_COUNT - 1,0:SPAR_ROW_COUNT - 1)
+    real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1), q(7,1), t, size
+    integer(c_int) :: stat, fidelity, nodes, points
+    integer(c_int64_t) :: modes
+    character(300) :: errmsg
+    integer :: row
+
+    call session%create()
+    call session%set_gravity([0.0_c_double, 0.0_c_double, -9.81_c_double])
+    call session%set_coupling(SPAR_COUPLING_FIXED_POINT, 0.0_c_double, 1e-10_c_double, 50)
+    call body%create_rigid(session, 'body', origin, unit, diagonal([1, 1, 1, 1, 1, 1] * 1.0_c_double))
+    call body%commit()
+    call fluid%create(body, 'spring')
+    call fluid%set_motion_nodes(reshape(origin, [3, 1]))
+    call fluid%set_force_nodes(reshape(origin, [3, 1]))
+    call fluid%map()
+    context%fluid => fluid
+    context%stiffness = 4
+    call session%try(dt, 16, report, count_step, solve, context)
+    call check(context%steps == 16, 'before is called ahead of each step')
+    call check(abs(report(SPAR_TRY_MOTION)) <= 0 .and. report(SPAR_TRY_SOLUTIONS) >= 16, 'a first trial')
+    call session%try(dt, 16_c_int64_t, report, count_step, solve, context, compare=.true.)
+    call check(all(abs(report(SPAR_TRY_MOTION:SPAR_TRY_LOAD)) <= 0), 'a trial is as the one before')
+    call session%try(dt, 8, report, count_nothing, compare=.false.)
+    call check(abs(report(SPAR_TRY_MOTION)) <= 0, 'a trial without context')
+    context%fails_at = context%steps + 3
+    call session%try(dt, 16, report, count_step, solve, context, stat=stat, errmsg=errmsg)
+    call check(stat == SPAR_ERR_USER .and. index(errmsg, '7') > 0, 'a failing call before a step: ' // trim(errmsg))
+    call session%try(dt, 12, report, stat=stat, errmsg=errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'multiple of 8') > 0, 'bad steps: ' // trim(errmsg))
+
+    context%stiffness = 1e-6_c_double
+    call session%report_effects(dt, 16, table, count_step, solve, context)
+    call check(abs(table(SPAR_COLUMN_IN_FORCE,SPAR_ROW_GRAVITY) - 1) <= 0, 'gravity is in force')
+    call check(abs(table(SPAR_COLUMN_MOTION,SPAR_ROW_GRAVITY) - 1) < 1e-5_c_double, 'gravity is all of the motion')
+    call check(table(SPAR_COLUMN_MOTION,SPAR_ROW_INERTIA) < 0, 'no run without inertia')
+    do row = 0, SPAR_ROW_COUNT - 1
+      if (table(SPAR_COLUMN_IN_FORCE,row) > 0) cycle
+      call check(all(abs(table(:,row)) <= 0), 'nothing of ' // spar_effect_name(int(row, c_int)))
+    end do
+    call check(spar_effect_name(SPAR_ROW_GRAVITY) == 'gravity' .and. spar_effect_name(-1_c_int) == '', 'names')
+
+    context%stiffness = 4
+    call body%get_advice(fidelity, modes, nodes, points, stat)
+    call check(stat == SPAR_ERR_STATE, 'no advice yet')
+    call session%advise(1e-2_c_double, dt, 16, advice, count_step, solve, context)
+    call check(advice(SPAR_ADVICE_ERROR) <= 1e-2_c_double .and. advice(SPAR_ADVICE_DT) > 0, 'advice')
+    call body%get_advice(nodes_per_element=nodes)
+    call check(nodes == 1, 'the body stays as it is')
+    call session%advise(2.0_c_double, dt, 16_c_int64_t, advice, solve=solve, context=context, stat=stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'a tolerance of 2')
+
+    ! back where it was: g t^2 / 2 to the order of the spring
+    call session%get_time(t)
+    call body%get_motion(q)
+    size = maxval(abs(q(1:3,1)))
+    call check(abs(t) <= 0 .and. size <= 0, 'all trials have gone back')
+  end subroutine trials
+
+  ! Where trials vary the nodes, shapes follow: a beam whose solver asks for the basis of its fluid.
+  subroutine a_beam()
+    type(spar_session) :: session
+    type(spar_member) :: beam
+    type(spar_fluid), target :: fluid
+    type(spring) :: context
+    real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1)
+    integer(c_int) :: nodes
+
+    call session%create()
+    call beam%create_beam(session, 'beam', 1, 5)
+    call beam%set_axis([0.0_c_double, 1.0_c_double], reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
+    call beam%set_sections([0.0_c_double], reshape(diagonal([1d6, 1d6, 1d6, 1d2, 1d2, 1d2]), [6, 6, 1]), &
+        reshape(diagonal([1d0, 1d0, 1d0, 2d-3, 1d-3, 1d-3]), [6, 6, 1]))
+    call beam%commit()
+    call fluid%create(beam, 'air')
+    call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
+    call fluid%set_force_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
+    call fluid%map()
+    context%fluid => fluid
+    call session%advise(0.05_c_double, 0.02_c_double, 16, advice, solve=push_by_basis, context=context)
+    call beam%get_advice(nodes_per_element=nodes)
+    call check(nodes >= 3 .and. nodes <= 24, 'nodes are advised')
+    call check(context%steps > 1, 'runs had other numbers of nodes')
+  end subroutine a_beam
+
+  ! The tip is the last node: its basis is 0, ..., 0, 1 with any number of nodes. context%steps: how many were seen.
+  subroutine push_by_basis(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+    real(c_double) :: phi(24,1)
+    integer :: n, fits
+    integer(c_int) :: answer
+
+    if (.not. session%exists() .or. iteration < 0) stat = 4
+    select type (context)
+    type is (spring)
+      fits = 0
+      do n = 2, 24
+        call context%fluid%get_basis(SPAR_NODES_FORCE, phi=phi(1:n,:), stat=answer)
+        if (answer /= SPAR_OK) cycle
+        fits = n
+        if (abs(phi(n,1) - 1) > 1e-12_c_double) stat = 9
+      end do
+      if (fits == 0) stat = 10
+      if (fits /= context%fails_at) context%steps = context%steps + 1
+      context%fails_at = fits
+      call context%fluid%push_forces(reshape([0.0_c_double, 0.0_c_double, sin(9 * (t + dt))], [3, 1]))
+    end select
+  end subroutine push_by_basis
+end program test_trial
