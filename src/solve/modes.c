@@ -104,8 +104,9 @@ static int shifted(const modal *p, double sigma) {
     return gsl_linalg_cholesky_decomp1(p->A) == GSL_SUCCESS;
 }
 
-/* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-12 of the largest K_ii / M_ii; -1
- * when none does. */
+/* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1 when
+   none does. A smaller one would make 1 / (omega^2 + sigma) of a rigid motion so large that rounding in it drowns the
+   others, a larger one drowns the low modes: an omega^2 keeps what is between sigma and rounding on either side. */
 static double find_shift(const modal *p) {
     double largest = 0;
     if (shifted(p, 0)) {
@@ -115,7 +116,7 @@ static double find_shift(const modal *p) {
         double k = fabs(gsl_matrix_get(p->K, i, i)), m = gsl_matrix_get(p->M, i, i);
         largest = m > 0 && k / m > largest ? k / m : largest;
     }
-    for (double f = 1e-12; f < 1e4; f *= 10) {
+    for (double f = 1e-6; f < 1e4; f *= 10) {
         if (shifted(p, f * largest)) {
             return f * largest;
         }
