@@ -72,7 +72,7 @@ static void meshes(const scene *s) {
     static const int of[][2] = {{2, 8}, {4, 4}, {3, 6}, {8, 4}};
     TURN("nodes", nodes, "%g", 3, 4, 5, 6, 10, 12);
     if (s->spins) {
-        TURN("nodes", nodes, "%g", 16, 24);
+        TURN("nodes", nodes, "%g", 16);
     }
     for (size_t i = 0; i < (s->spins ? sizeof of / sizeof *of : 2); i++) { /* sections that vary ask for pieces */
         knobs k = s->standard;
@@ -84,7 +84,7 @@ static void meshes(const scene *s) {
 }
 
 static void quadratures(const scene *s) {
-    for (int i = 1; i <= 4; i++) {
+    for (int i = 1; i <= 3; i++) {
         knobs k = s->standard;
         char text[40];
         k.rule = s->spins ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;

@@ -1,6 +1,6 @@
 # gnuplot -e "csv='<prefix of the CSV files>'; out='<prefix of the pictures>'; scene='<name>'; own=<error of the
 # reference>; cost=<column: 5 time, 7 instructions>" accuracy.gp
-set terminal pngcairo size 1180,760 font "sans,11" noenhanced
+set terminal pngcairo size 1240,760 font "sans,11" noenhanced
 set datafile separator ","
 set grid lc rgb "#dddddd" lt 1
 set lmargin at screen 0.075
