@@ -2,7 +2,9 @@
 add_library(benchmarks_scenes STATIC EXCLUDE_FROM_ALL "${PROJECT_SOURCE_DIR}/benchmarks/scenes.c")
 target_include_directories(benchmarks_scenes PUBLIC "${PROJECT_SOURCE_DIR}/benchmarks")
 target_link_libraries(benchmarks_scenes PRIVATE spar_flags PUBLIC spar_example_parts spar m)
-target_link_libraries(benchmarks_accuracy PRIVATE benchmarks_scenes)
+foreach(program IN ITEMS benchmarks_accuracy benchmarks_advice)
+  target_link_libraries(${program} PRIVATE benchmarks_scenes)
+endforeach()
 
 # The beam benchmarks count Newton iterations and quadrature points, which the shared library hides: the static one, and
 # the internal headers. The yardstick is GSL over its own CBLAS, so it must not see the fast one.

@@ -182,7 +182,9 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
-                            vary (default) | keep: what spar_session_advise may propose to change */
+                            vary (default) | keep: what spar_session_advise may propose to change
+     advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
+                            the trials, their errors count for as much more as they grow with time */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The coupling of the step under way, or else of the last one; the same on all ranks. iterations: out. residual, size:
    out, by iteration, room for max_iterations of spar_session_set_coupling (1 if explicit): the change of the loads and
@@ -627,7 +629,7 @@ enum {
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. tolerance: in, as SPAR_TRY_MOTION, in (0, 1). dt, steps: in, the host's dt, and how
-   many of it the trials last: what happens later is not seen. before, solve, context: in, as of spar_session_try,
+   many of it the trials last: what happens later is not seen, but see the option advise.horizon. before, solve, context: in, as of spar_session_try,
    called with other dt too. advice: out, [SPAR_ADVICE_COUNT]; what it says of beams: spar_member_get_advice. Members of
    one description (elements, nodes, fidelity, sections) get one advice. What is kept as it is: the options advise.dt,
    advise.nodes, advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO.

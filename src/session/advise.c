@@ -196,6 +196,14 @@ static void tell(const advisor *d, const plan *p, double error, double seconds) 
     s->log(s, SPAR_LOG_INFO, text, s->log_context);
 }
 
+/* How much larger an error is over the time that the host will run: errors of phase grow with time. */
+static double later(const advisor *d, const spari_record *r, const spari_record *base) {
+    const double steepest = 1.5, /* the growth of a run from rest is not all to come */
+        doubt = 1.4;             /* for what was not seen */
+    double longer = d->session->horizon / (d->run.dt * (double)d->run.steps);
+    return longer > 1 ? doubt * pow(longer, fmin(fmax(spari_record_growth(r, base), 0), steepest)) : 1;
+}
+
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
 static int measure(advisor *d, const plan *p, outcome *out) {
     for (int k = 0; k < d->known_count; k++) {
@@ -218,7 +226,7 @@ static int measure(advisor *d, const plan *p, outcome *out) {
             }
             break;
         }
-        out->error = spari_record_motion(&r, &d->reference) + d->reference_error;
+        out->error = spari_record_motion(&r, &d->reference) * later(d, &r, &d->reference) + d->reference_error;
         out->seconds = fmin(out->seconds, r.seconds);
         spent += r.seconds;
         spari_record_free(&r);
@@ -239,7 +247,7 @@ static int is_good(const advisor *d, const outcome *o) {
 static int distance(advisor *d, const plan *p, const spari_record *base, double *part, double *seconds) {
     spari_record r;
     int status = run_plan(d, p, &r);
-    *part = status == SPAR_OK ? spari_record_motion(&r, base) / d->tolerance : INFINITY;
+    *part = status == SPAR_OK ? spari_record_motion(&r, base) * later(d, &r, base) / d->tolerance : INFINITY;
     *seconds = r.seconds;
     tell(d, p, *part * d->tolerance, r.seconds);
     spari_record_free(&r);
@@ -294,7 +302,7 @@ static int find_reference(advisor *d, const plan *present, plan *finest) {
         change = d->reference.motion ? spari_record_motion(&d->reference, &finer) : 0;
         if (d->reference.motion) { /* what is left: the changes to come, a geometric series */
             double rate = before > 0 && change > 0 ? fmin(fmax(before / change, 1.25), 4) : 2;
-            d->reference_error = change / (rate - 1);
+            d->reference_error = change / (rate - 1) * later(d, &d->reference, &finer);
         } else if (ends == 0) {
             d->reference_error = 0;
         }

@@ -224,6 +224,7 @@ static const number_option number_options[] = {
     {"coupling.reuse", offsetof(spar_session, coupling_reuse), 1, 0, 10000, "a whole number from 0 to 10000"},
     {"coupling.filter", offsetof(spar_session, coupling_filter), 0, 0, 0.5, "a number from 0 to 0.5"},
     {"coupling.target", offsetof(spar_session, coupling_target), 0, 1e-15, 1, "a number from 1e-15 to 1"},
+    {"advise.horizon", offsetof(spar_session, horizon), 0, 0, 1e300, "a number >= 0 (seconds)"},
     {"coupling.motion_atol", offsetof(spar_session, motion_atol), 0, 0, 1e300, "a number >= 0 (metres)"},
     {"coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0, 0, 1, "a number from 0 to 1"},
 };

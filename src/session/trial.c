@@ -378,6 +378,24 @@ double spari_record_motion(const spari_record *a, const spari_record *b) {
     return relative(a->motion, b->motion, b->beyond, 3 * SPARI_SAMPLES * b->stations);
 }
 
+double spari_record_growth(const spari_record *a, const spari_record *b) {
+    double sum[4] = {0}; /* of log t, log e, log t log e, log^2 t */
+    int n = 0;
+    for (int k = 0; k < SPARI_SAMPLES; k++) {
+        double e2 = 0;
+        for (int64_t i = 3 * k * b->stations; i < 3 * (k + 1) * b->stations; i++) {
+            e2 += (a->motion[i] - b->motion[i]) * (a->motion[i] - b->motion[i]);
+        }
+        if (e2 > 0) {
+            double t = log(k + 1), e = 0.5 * log(e2);
+            sum[0] += t, sum[1] += e, sum[2] += t * e, sum[3] += t * t;
+            n++;
+        }
+    }
+    double spread = n * sum[3] - sum[0] * sum[0];
+    return n > 2 ? (n * sum[2] - sum[0] * sum[1]) / spread : 0;
+}
+
 double spari_record_reaction(const spari_record *a, const spari_record *b) {
     return relative(a->reaction, b->reaction, b->reaction, 6 * SPARI_SAMPLES * (int64_t)b->members);
 }

@@ -1,0 +1,204 @@
+/* Whether advice is kept: on each scene spar_session_advise is asked for some tolerances, the scene is built to what it
+   says, run over its whole time and compared with a converged run; its cost with the cheapest of a hundred settings
+   such as one would choose by hand, both timed in turn. advice [--scene name] [--tolerance x] [--part x] [--verbose]
+   part: of the scene's time that trials see, default 1/2. A table on stdout. */
+#include "scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { SAMPLES_OF_TRIALS = 8 };
+
+typedef struct choice {
+    knobs k;
+    double error, seconds;
+} choice;
+
+static int verbose;
+
+static void show(const spar_session *s, int level, const char *text, void *context) {
+    (void)s, (void)context;
+    if (verbose || level < SPAR_LOG_INFO) {
+        fprintf(stderr, "\n%s", text);
+    }
+}
+
+static double now(void) {
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+/* Error and least time of some runs; a setting that fails has an infinite error. */
+static void play(const scene *s, const scene_reference *reference, int repeats, choice *c) {
+    c->error = c->seconds = INFINITY;
+    for (int i = 0; i < repeats; i++) {
+        scene_run *run;
+        scene_result result;
+        if (scene_build(s, &c->k, &run) == SPAR_OK && scene_march(run, &result) == SPAR_OK) {
+            c->error = scene_error(reference, &result);
+            c->seconds = fmin(c->seconds, result.seconds);
+        }
+        scene_destroy(&run);
+    }
+}
+
+/* ---- by hand ---- */
+
+static choice best_by_hand(const scene *s, const scene_reference *reference, double tolerance) {
+    static const double factor[] = {4, 2, 1, 0.5, 0.25, 0.125};
+    static const struct {
+        int scheme, predictor;
+    } coupling[] = {{SPAR_COUPLING_EXPLICIT, 1},
+                    {SPAR_COUPLING_EXPLICIT, 2},
+                    {SPAR_COUPLING_FIXED_POINT, 1},
+                    {SPAR_COUPLING_IQN_ILS, 1}};
+    static const struct {
+        int rung, modes, nodes;
+    } shape[] = {{SPAR_FIDELITY_EXACT, 0, 8},
+                 {SPAR_FIDELITY_EXACT, 0, 6},
+                 {SPAR_FIDELITY_EXACT, 0, 5},
+                 {SPAR_FIDELITY_MODAL, 8, 6},
+                 {SPAR_FIDELITY_RIGID, 0, 6}};
+    choice best = {s->standard, INFINITY, INFINITY};
+    for (size_t f = 0; f < sizeof factor / sizeof *factor; f++) {
+        for (size_t c = 0; c < sizeof coupling / sizeof *coupling; c++) {
+            for (size_t b = 0; b < sizeof shape / sizeof *shape; b++) {
+                choice t = {s->standard, 0, 0};
+                t.k.dt = scene_dt(s, s->standard.dt * factor[f]);
+                t.k.newton = 1e-6;
+                t.k.scheme = coupling[c].scheme, t.k.predictor = coupling[c].predictor;
+                t.k.tolerance = coupling[c].scheme ? 1e-2 : t.k.tolerance;
+                t.k.rung = shape[b].rung, t.k.modes = shape[b].modes, t.k.nodes = shape[b].nodes;
+                play(s, reference, 1, &t);
+                if (t.error <= tolerance && t.seconds < best.seconds) {
+                    play(s, reference, 3, &t);
+                    best = t.seconds < best.seconds ? t : best;
+                }
+            }
+        }
+    }
+    return best;
+}
+
+/* ---- by advice ---- */
+
+static knobs advised(const scene *s, const scene_run *run, const double *advice) {
+    knobs k = s->standard;
+    int fidelity = 0, nodes = 0, points = 0;
+    int64_t modes = 0;
+    (void)spar_member_get_advice(run->member, &fidelity, &modes, &nodes, &points);
+    k.dt = scene_dt(s, advice[SPAR_ADVICE_DT] * (1 + 1e-9));
+    k.substeps = (int)advice[SPAR_ADVICE_SUBSTEPS];
+    k.scheme = (int)advice[SPAR_ADVICE_SCHEME];
+    k.tolerance = advice[SPAR_ADVICE_COUPLING_RTOL];
+    k.predictor = (int)advice[SPAR_ADVICE_PREDICTOR];
+    k.newton = advice[SPAR_ADVICE_NEWTON_RTOL];
+    k.rung = fidelity, k.modes = modes, k.nodes = nodes;
+    k.rule = points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
+    k.points = points;
+    return k;
+}
+
+static int ask(const scene *s, double tolerance, double part, double *advice, knobs *k) {
+    scene_run *run;
+    double dt = s->standard.dt;
+    int64_t steps = SAMPLES_OF_TRIALS * llround(part * s->T / dt / SAMPLES_OF_TRIALS);
+    int status = scene_build(s, &s->standard, &run);
+    if (status == SPAR_OK) {
+        char horizon[32];
+        snprintf(horizon, sizeof horizon, "%.17g", s->T);
+        (void)spar_session_set_option(run->session, "advise.horizon", horizon);
+        (void)spar_session_set_log(run->session, show, NULL);
+        status = spar_session_advise(run->session, tolerance, dt, steps, run->before, run->solve, run->context, advice);
+    }
+    if (status == SPAR_OK) {
+        *k = advised(s, run, advice);
+    } else {
+        printf("%-6s %-9.3g %s\n", s->name, tolerance, spar_session_message(run->session));
+    }
+    scene_destroy(&run);
+    return status;
+}
+
+static const char *words(const knobs *k, char *text, size_t size) {
+    static const char *const scheme[] = {"explicit", "fixed", "aitken", "iqn"}, *const rung[] = {"prescribed", "rigid",
+                                                                                                 "linear", "modal",
+                                                                                                 "exact"};
+    char modes[16] = "", tolerance[16] = "", points[16] = "", substeps[24] = "";
+    if (k->rung == SPAR_FIDELITY_MODAL) {
+        snprintf(modes, sizeof modes, " %d", (int)k->modes);
+    }
+    if (k->scheme) {
+        snprintf(tolerance, sizeof tolerance, " %.0e", k->tolerance);
+    }
+    if (k->points > 0) {
+        snprintf(points, sizeof points, "/%d", k->points);
+    }
+    if (k->substeps > 1) {
+        snprintf(substeps, sizeof substeps, " in %d", k->substeps);
+    }
+    snprintf(text, size, "dt %.4g%s, %s%s, predictor %d, Newton %.0e, %s%s, %d%s nodes", k->dt, substeps,
+             scheme[k->scheme], tolerance, k->predictor, k->newton, rung[k->rung], modes, k->nodes, points);
+    return text;
+}
+
+static int check(const scene *s, const scene_reference *reference, double tolerance, double part) {
+    double advice[SPAR_ADVICE_COUNT], since = now(), took;
+    char text[160];
+    choice mine, hand = best_by_hand(s, reference, tolerance), standard = {s->standard, 0, 0};
+    took = now() - since;
+    since = now();
+    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK) {
+        return 1;
+    }
+    took = now() - since;
+    mine.seconds = hand.seconds = INFINITY;
+    double least[2] = {INFINITY, INFINITY};
+    for (int i = 0; i < 3; i++) { /* in turn, as the machine's speed changes */
+        play(s, reference, 1, &mine);
+        play(s, reference, 1, &hand);
+        least[0] = fmin(least[0], mine.seconds), least[1] = fmin(least[1], hand.seconds);
+    }
+    play(s, reference, 1, &standard);
+    int kept = mine.error <= tolerance, cheap = !(least[0] > 2 * least[1]);
+    printf("%-6s %-9.3g %9.2e %9.2e %6.2f %8.3f %8.3f %5.0f %7.1f  %s%s\n", s->name, tolerance,
+           advice[SPAR_ADVICE_ERROR], mine.error, least[0] / least[1], least[0] / standard.seconds,
+           least[1] / standard.seconds, advice[SPAR_ADVICE_TRIALS], took, kept ? "" : "NOT KEPT ", cheap ? "" : "DEAR");
+    printf("       advice: %s\n", words(&mine.k, text, sizeof text));
+    printf("       hand:   %s, error %.2e\n", words(&hand.k, text, sizeof text), hand.error);
+    fflush(stdout);
+    return !kept || !cheap;
+}
+
+int main(int argc, char **argv) {
+    static const double tolerances[SCENE_COUNT][2] = {
+        {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {1e-1, 5e-2}, {1e-2, 1e-3}};
+    const char *only = NULL;
+    double tolerance = 0, part = 0.5;
+    for (int i = 1; i < argc; i++) {
+        verbose |= strcmp(argv[i], "--verbose") == 0;
+        only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
+        tolerance = strcmp(argv[i], "--tolerance") == 0 && i + 1 < argc ? strtod(argv[++i], NULL) : tolerance;
+        part = strcmp(argv[i], "--part") == 0 && i + 1 < argc ? strtod(argv[++i], NULL) : part;
+    }
+    int failed = 0;
+    printf("scene  tolerance estimate      real   cost  /default  hand/d. runs       s  (cost: of the cheapest by "
+           "hand)\n");
+    for (int i = 0; i < SCENE_COUNT; i++) {
+        scene_reference reference;
+        if (only && strcmp(only, scenes[i].name) != 0) {
+            continue;
+        }
+        if (scene_converge(&scenes[i], 16, 14, &reference) != SPAR_OK) {
+            printf("%s: no reference\n", scenes[i].name);
+            return 1;
+        }
+        for (int t = 0; t < (tolerance > 0 ? 1 : 2); t++) {
+            failed += check(&scenes[i], &reference, tolerance > 0 ? tolerance : tolerances[i][t], part);
+        }
+    }
+    scenes_free();
+    return failed > 0;
+}
