@@ -198,10 +198,9 @@ static void tell(const advisor *d, const plan *p, double error, double seconds) 
 
 /* How much larger an error is over the time that the host will run: errors of phase grow with time. */
 static double later(const advisor *d, const spari_record *r, const spari_record *base) {
-    const double steepest = 1.5, /* the growth of a run from rest is not all to come */
-        doubt = 1.4;             /* for what was not seen */
+    const double doubt = 1.3; /* for what was not seen */
     double longer = d->session->horizon / (d->run.dt * (double)d->run.steps);
-    return longer > 1 ? doubt * pow(longer, fmin(fmax(spari_record_growth(r, base), 0), steepest)) : 1;
+    return longer > 1 ? doubt * spari_record_growth(r, base, longer) : 1;
 }
 
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */

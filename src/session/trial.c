@@ -378,22 +378,28 @@ double spari_record_motion(const spari_record *a, const spari_record *b) {
     return relative(a->motion, b->motion, b->beyond, 3 * SPARI_SAMPLES * b->stations);
 }
 
-double spari_record_growth(const spari_record *a, const spari_record *b) {
-    double sum[4] = {0}; /* of log t, log e, log t log e, log^2 t */
-    int n = 0;
+/* Root of the mean square of a + b t over 0 .. h. */
+static double line_mean(double a, double b, double h) {
+    return sqrt(a * a + a * b * h + b * b * h * h / 3);
+}
+
+double spari_record_growth(const spari_record *a, const spari_record *b, double longer) {
+    double n = SPARI_SAMPLES, t1 = 0, t2 = 0, e1 = 0, te = 0; /* sums over the samples */
     for (int k = 0; k < SPARI_SAMPLES; k++) {
-        double e2 = 0;
+        double e = 0, t = (k + 1) / n;
         for (int64_t i = 3 * k * b->stations; i < 3 * (k + 1) * b->stations; i++) {
-            e2 += (a->motion[i] - b->motion[i]) * (a->motion[i] - b->motion[i]);
+            e += (a->motion[i] - b->motion[i]) * (a->motion[i] - b->motion[i]);
         }
-        if (e2 > 0) {
-            double t = log(k + 1), e = 0.5 * log(e2);
-            sum[0] += t, sum[1] += e, sum[2] += t * e, sum[3] += t * t;
-            n++;
-        }
+        t1 += t, t2 += t * t, e1 += sqrt(e), te += t * sqrt(e);
     }
-    double spread = n * sum[3] - sum[0] * sum[0];
-    return n > 2 ? (n * sum[2] - sum[0] * sum[1]) / spread : 0;
+    double slope = (n * te - t1 * e1) / (n * t2 - t1 * t1), level = (e1 - slope * t1) / n;
+    if (level < 0) { /* neither part may be negative */
+        level = 0, slope = te / t2;
+    } else if (slope < 0) {
+        slope = 0, level = e1 / n;
+    }
+    double seen = line_mean(level, slope, 1);
+    return seen > 0 ? line_mean(level, slope, longer) / seen : 1;
 }
 
 double spari_record_reaction(const spari_record *a, const spari_record *b) {

@@ -57,8 +57,9 @@ int spari_trial_keep(spar_session *session, spari_record *record);
 void spari_trial_forget(spar_session *session);
 /* Root of the mean square of the difference over that of b's motion beyond its root, of b's reactions, of its loads. */
 double spari_record_motion(const spari_record *a, const spari_record *b);
-/* Power of time that the difference grows with over the samples, by least squares of the logarithms; 0 if it is none. */
-double spari_record_growth(const spari_record *a, const spari_record *b);
+/* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as the
+   straight line (level and slope not negative) nearest to its samples. */
+double spari_record_growth(const spari_record *a, const spari_record *b, double longer);
 double spari_record_reaction(const spari_record *a, const spari_record *b);
 double spari_record_load(const spari_record *a, const spari_record *b);
 
