@@ -191,7 +191,7 @@ int main(int argc, char **argv) {
         if (only && strcmp(only, scenes[i].name) != 0) {
             continue;
         }
-        if (scene_converge(&scenes[i], 16, 14, &reference) != SPAR_OK) {
+        if (scene_converge(&scenes[i], 16, scenes[i].spins ? 8 : 1, scenes[i].spins ? 8 : 18, &reference) != SPAR_OK) {
             printf("%s: no reference\n", scenes[i].name);
             return 1;
         }

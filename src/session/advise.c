@@ -18,8 +18,11 @@ enum {
     GROUPS = 8,      /* of beams described alike; what is beyond stays as it is */
     FINEST = 6,      /* the reference halves dt so often at most */
     LEAST_NODES = 3, /* of an element; 2 lock */
-    RUNS = 200       /* at most */
+    TRIED = 100      /* settings measured at most */
 };
+
+/* A change has to make a run cheaper by more than the clock's noise. */
+static const double worth = 0.95;
 
 /* Parts of the tolerance that leaving out may take. */
 static const double share_of_rung = 0.35, share_of_nodes = 0.25, share_of_points = 0.15, share_of_newton = 0.02,
@@ -198,9 +201,9 @@ static void tell(const advisor *d, const plan *p, double error, double seconds) 
 
 /* How much larger an error is over the time that the host will run: errors of phase grow with time. */
 static double later(const advisor *d, const spari_record *r, const spari_record *base) {
-    const double doubt = 1.3; /* for what was not seen */
+    const double doubt = 2; /* of what was not seen, as against what was */
     double longer = d->session->horizon / (d->run.dt * (double)d->run.steps);
-    return longer > 1 ? doubt * spari_record_growth(r, base, longer) : 1;
+    return longer > 1 ? 1 + doubt * (spari_record_growth(r, base, longer) - 1) : 1;
 }
 
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
@@ -238,8 +241,9 @@ static int measure(advisor *d, const plan *p, outcome *out) {
     return SPAR_OK;
 }
 
+/* A tenth of the tolerance stays for what an estimate does not see. */
 static int is_good(const advisor *d, const outcome *o) {
-    return o->error <= d->tolerance;
+    return o->error <= 0.9 * d->tolerance;
 }
 
 /* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. */
@@ -345,7 +349,7 @@ static int consider(advisor *d, const plan *p, const spari_record *base, double 
                     int *taken) {
     double part, took;
     SPARI_TRY(distance(d, p, base, &part, &took));
-    *taken = part <= share && took < 0.95 * *seconds;
+    *taken = part <= share && took < worth * *seconds;
     if (*taken) {
         *best = *p;
         *seconds = took;
@@ -451,14 +455,14 @@ static int choose_structure(advisor *d, const plan *finest, plan *chosen) {
 static int coarsest_steps(advisor *d, plan p, int *j, outcome *best) {
     const int finest = 2 * FINEST, coarsest = (int)floor(2 * log2((double)SPARI_SAMPLES / (double)d->run.steps));
     int good = finest + 1, bad = coarsest - 1, at = *j;
-    while (good - bad > 1 && d->trials < RUNS) {
+    while (good - bad > 1 && d->known_count < TRIED) {
         outcome o;
         p.steps = steps_at(d, at);
         SPARI_TRY(measure(d, &p, &o));
         double ratio = isfinite(o.error) ? o.error / d->tolerance : 100;
         if (is_good(d, &o)) {
             good = at;
-            if (o.seconds < best->seconds) {
+            if (o.seconds < worth * best->seconds) {
                 *best = o;
                 *j = at;
             }
@@ -582,13 +586,12 @@ static const struct {
              {coarser, more_nodes},     {finer, lower_rung},        {finer, fewer_points}, {coarser, coarser},
              {fewer_nodes, fewer_nodes}};
 
-/* Moves as long as one makes the run cheaper by more than the clock's noise and keeps the tolerance. */
+/* Moves as long as one pays and keeps the tolerance. */
 static int improve(advisor *d, outcome *best) {
-    const double worth = 0.95;
     int rounds = d->groups > 0 ? d->groups : 1, moved = 1;
-    while (moved && d->trials < RUNS) {
+    while (moved && d->known_count < TRIED) {
         moved = 0;
-        for (size_t k = 0; k < sizeof moves / sizeof *moves && d->trials < RUNS; k++) {
+        for (size_t k = 0; k < sizeof moves / sizeof *moves && d->known_count < TRIED; k++) {
             for (int g = 0; g < rounds; g++) {
                 plan p = best->plan;
                 outcome o;
