@@ -13,7 +13,7 @@
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam. spar_status_text,
-! spar_version, spar_has, spar_effect_name and spar_vtk_series_add keep their names.
+! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -37,13 +37,13 @@ module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
       c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
-      c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add
+      c_effect_name => spar_effect_name, c_aero_effect_name => spar_aero_effect_name, c_series_add => spar_vtk_series_add
   implicit none
   private
 
   public :: spar_session, spar_member, spar_fluid, spar_polar, spar_aero
   public :: spar_fluid_solver, spar_before_step, spar_log
-  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
+  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
 
   public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING
   public :: SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER, SPAR_COUPLING_EXPLICIT
@@ -70,6 +70,8 @@ module spar
   public :: SPAR_ADVICE_DT, SPAR_ADVICE_SUBSTEPS, SPAR_ADVICE_SCHEME, SPAR_ADVICE_COUPLING_RTOL, SPAR_ADVICE_PREDICTOR
   public :: SPAR_ADVICE_NEWTON_RTOL, SPAR_ADVICE_ERROR, SPAR_ADVICE_COST, SPAR_ADVICE_PRESENT_ERROR, SPAR_ADVICE_TRIALS
   public :: SPAR_ADVICE_COUNT
+  public :: SPAR_AERO_ROW_INDUCTION, SPAR_AERO_ROW_TIP_LOSS, SPAR_AERO_ROW_HUB_LOSS, SPAR_AERO_ROW_SWIRL
+  public :: SPAR_AERO_ROW_DRAG, SPAR_AERO_ROW_MOMENT, SPAR_AERO_ROW_COUNT
 
   type :: spar_session
     private
@@ -234,6 +236,8 @@ module spar
     procedure :: get_sections => aero_get_sections
     procedure :: get_flags => aero_get_flags
     procedure :: get_loads => aero_get_loads
+    procedure, private :: aero_report_effects_64, aero_report_effects_32
+    generic :: report_effects => aero_report_effects_64, aero_report_effects_32
     procedure, private :: aero_assign
     generic :: assignment(=) => aero_assign
     final :: aero_final
@@ -297,6 +301,10 @@ module spar
   interface spar_effect_name
     procedure :: effect_name
   end interface spar_effect_name
+
+  interface spar_aero_effect_name
+    procedure :: aero_effect_name
+  end interface spar_aero_effect_name
 
   interface spar_vtk_series_add
     procedure :: series_add
@@ -2180,6 +2188,40 @@ contains
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
   end subroutine aero_get_loads
 
+  subroutine aero_report_effects_64(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_AERO_ROW_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(session, record, to_solver, to_before, solve, before, context)
+    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), table), &
+        session%handle, stat, errmsg)
+  end subroutine aero_report_effects_64
+
+  subroutine aero_report_effects_32(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_AERO_ROW_COUNT)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%report_effects(session, dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
+  end subroutine aero_report_effects_32
+
   ! ---- calls that need no object ----
 
   function status_text(status) result(text)
@@ -2209,6 +2251,14 @@ contains
 
     call copy_text(c_effect_name(row), name)
   end function effect_name
+
+  ! The same of aero%report_effects.
+  function aero_effect_name(row) result(name)
+    integer(c_int), intent(in) :: row
+    character(:), allocatable :: name
+
+    call copy_text(c_aero_effect_name(row), name)
+  end function aero_effect_name
 
   ! Adds a file to an index of files in time; part counts from 0.
   subroutine series_add(path, time, part, file, stat, errmsg)

@@ -52,6 +52,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
   integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, &
       SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer(c_int), parameter :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
+      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
 
   interface
     ! spar.h
@@ -856,6 +858,23 @@ module spar_c
       real(c_double), intent(inout), optional :: per_length(*), force(*), moment(*)
       integer(c_int) :: status
     end function spar_aero_get_loads
+
+    function spar_aero_effect_name(row) bind(c) result(text)
+      import :: c_int, c_ptr
+      integer(c_int), value :: row
+      type(c_ptr) :: text
+    end function spar_aero_effect_name
+
+    function spar_aero_report_effects(aero, session, dt, steps, before, solve, context, table) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: aero, session
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: steps
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      real(c_double), intent(inout), optional :: table(*)
+      integer(c_int) :: status
+    end function spar_aero_report_effects
 
     ! spar_output.h
     function spar_member_write_vtk(member, path) bind(c) result(status)

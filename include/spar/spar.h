@@ -394,9 +394,10 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
    terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
    those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
-   load stiffness; of a rigid one those of the rigid body. n: in, at most the number of free unknowns; frequency_hz[n]: out, ascending, negative where
-   the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out, displacement and rotation, normalised to
-   unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity, commit, solve_static, get_modes. Local. */
+   load stiffness; of a rigid one those of the rigid body. n: in, at most the number of free unknowns; frequency_hz[n]:
+   out, ascending, negative where the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out,
+   displacement and rotation, normalised to unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity,
+   commit, solve_static, get_modes. Local. */
 SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
@@ -600,7 +601,8 @@ enum {
     SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, from the present state */
     SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it */
     SPAR_COLUMN_REACTION = 3, /* the same of the roots' reactions */
-    SPAR_COLUMN_SHARE = 4,    /* of the time, that leaving it out saves; below 0: it then costs more */
+    SPAR_COLUMN_SHARE = 4, /* of the time, that leaving it out saves: of a solution's, but for predictor and iteration,
+                              which change how many there are; below 0: it then costs more */
     SPAR_COLUMN_COUNT = 5
 };
 /* Name of a row, "gravity"; static storage; "" for what is no row. */

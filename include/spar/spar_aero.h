@@ -7,9 +7,9 @@
    A section is a place of a fluid (spar_fluid_set_sections); its aerodynamic centre is the fluid's node. Its frame is
    the one spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x
    cross y. A twist given here is measured from that frame: where the beam's own frames already carry the blade's
-   twist, give the difference (or 0). All calls are local to the rank: an object holds the blades whose fluids live on
-   this rank, which may be none. An object is used by one thread at a time. Angles are in radians; blades and sections
-   are counted from 0. */
+   twist, give the difference (or 0). All calls but the report of effects are local to the rank: an object holds the
+   blades whose fluids live on this rank, which may be none. An object is used by one thread at a time. Angles are in
+   radians; blades and sections are counted from 0. */
 #ifndef SPAR_AERO_H
 #define SPAR_AERO_H
 
@@ -99,6 +99,31 @@ SPAR_API int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_
 /* Loads, global axes: per unit of span [blades][n][6] (force, moment), and as pushed, force and moment
    [blades][n][3]; any NULL. */
 SPAR_API int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment);
+
+/* Rows of the report of effects. */
+enum {
+    SPAR_AERO_ROW_INDUCTION = 0,
+    SPAR_AERO_ROW_TIP_LOSS = 1,
+    SPAR_AERO_ROW_HUB_LOSS = 2,
+    SPAR_AERO_ROW_SWIRL = 3,
+    SPAR_AERO_ROW_DRAG = 4,
+    SPAR_AERO_ROW_MOMENT = 5,
+    SPAR_AERO_ROW_COUNT = 6
+};
+/* Name of a row, "tip loss"; static storage; "" for what is no row. */
+SPAR_API const char *spar_aero_effect_name(int row);
+/* What each effect of this object is worth in the scene as it stands, by trials as of spar_session_try with the effect
+   and without it. session: in, that of the blades, which a rank without blades cannot tell. dt, steps, before, context:
+   in, as there; solve: in, the host's, which calls spar_aero_solve on this object. table: out,
+   [SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], Fortran (SPAR_COLUMN_COUNT, SPAR_AERO_ROW_COUNT), columns as of
+   spar_session_report_effects; size: change of the fluid's loads in the first step, relative to these. In force on all
+   ranks where on any: what is on and has something to do (losses and swirl with induction, hub loss with a hub radius,
+   moments with polars that have some). Collective over the session. The effects are as before afterwards, also after a
+   failure; the results of the last solve are then those of a trial, and spar_session_try compares with the run that had
+   all effects. */
+SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps,
+                                      spar_before_step before, spar_fluid_solver solve, void *context,
+                                      double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]);
 
 #ifdef __cplusplus
 }

@@ -129,6 +129,9 @@ program test_bindings
   call refused(spar_aero_get_sections(none), 'spar_aero_get_sections')
   call refused(spar_aero_get_flags(none), 'spar_aero_get_flags')
   call refused(spar_aero_get_loads(none), 'spar_aero_get_loads')
+  call check(c_associated(spar_aero_effect_name(0_c_int)), 'spar_aero_effect_name')
+  call refused(spar_aero_report_effects(none, none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+      'spar_aero_report_effects')
 
   ! spar_output.h
   call refused(spar_member_write_vtk(none), 'spar_member_write_vtk')

@@ -10,6 +10,10 @@ module trial_fluid
     integer :: steps = 0, fails_at = -1
   end type spring
 
+  type :: wing
+    type(spar_aero), pointer :: aero => null()
+  end type wing
+
 contains
 
   subroutine solve(session, t, dt, iteration, context, stat)
@@ -29,6 +33,23 @@ contains
       stat = 5
     end select
   end subroutine solve
+
+  subroutine solve_wing(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+    real(c_double) :: wind(3,2,1)
+
+    wind = 0
+    wind(2,:,1) = 10
+    if (.not. session%exists() .or. t < 0 .or. dt <= 0 .or. iteration < 0) stat = 4
+    select type (context)
+    type is (wing)
+      call context%aero%solve(1.2_c_double, wind, 1.0_c_double)
+    end select
+  end subroutine solve_wing
 
   ! Counts the steps of all runs.
   subroutine count_step(session, t, dt, context, stat)
@@ -70,6 +91,7 @@ program test_trial
 
   call trials()
   call a_beam()
+  call a_wing()
   if (failures > 0) error stop 'test_trial failed'
 
 contains
@@ -185,6 +207,43 @@ contains
     call check(nodes >= 3 .and. nodes <= 24, 'nodes are advised')
     call check(context%steps > 1, 'runs had other numbers of nodes')
   end subroutine a_beam
+
+  ! Coefficients that are the same at all angles: without drag, cd of hypot(cl, cd) is missing.
+  subroutine a_wing()
+    type(spar_session) :: session
+    type(spar_member) :: beam
+    type(spar_fluid) :: fluid(1)
+    type(spar_polar) :: polar
+    type(spar_aero), target :: aero
+    type(wing) :: context
+    real(c_double), parameter :: half_turn = 3.14159265358979_c_double
+    real(c_double) :: table(0:SPAR_COLUMN_COUNT - 1,0:SPAR_AERO_ROW_COUNT - 1)
+    integer(c_int) :: stat
+    integer :: i
+
+    call session%create()
+    call beam%create_beam(session, 'beam', 1, 5)
+    call beam%set_axis([0.0_c_double, 1.0_c_double], reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
+    call beam%set_sections([0.0_c_double], reshape(diagonal([1d6, 1d6, 1d6, 1d3, 1d3, 1d3]), [6, 6, 1]), &
+        reshape(diagonal([1d0, 1d0, 1d0, 2d-3, 1d-3, 1d-3]), [6, 6, 1]))
+    call beam%commit()
+    call fluid(1)%create(beam, 'air')
+    call fluid(1)%set_sections([-1.0_c_double, 1.0_c_double])
+    call fluid(1)%map()
+    call polar%create([-half_turn, half_turn], [0.3_c_double, 0.3_c_double], [0.4_c_double, 0.4_c_double])
+    call aero%create(fluid)
+    do i = 1, 2
+      call aero%set_section(i, 0.1_c_double, 0.0_c_double, polar)
+    end do
+    context%aero => aero
+    call aero%report_effects(session, 1e-3_c_double, 8, table, solve=solve_wing, context=context)
+    call check(abs(table(SPAR_COLUMN_IN_FORCE,SPAR_AERO_ROW_DRAG) - 1) <= 0, 'drag is in force')
+    call check(abs(table(SPAR_COLUMN_SIZE,SPAR_AERO_ROW_DRAG) - 0.8_c_double) < 1e-3_c_double, 'drag is 4 of 5 parts')
+    call check(all(abs(table(:,SPAR_AERO_ROW_SWIRL)) <= 0), 'no swirl')
+    call check(spar_aero_effect_name(SPAR_AERO_ROW_DRAG) == 'drag', 'names of the blade element')
+    call aero%report_effects(session, 1e-3_c_double, 8_c_int64_t, table, stat=stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'no solver')
+  end subroutine a_wing
 
   ! The tip is the last node: its basis is 0, ..., 0, 1 with any number of nodes. context%steps: how many were seen.
   subroutine push_by_basis(session, t, dt, iteration, context, stat)

@@ -1,0 +1,29 @@
+/* A rotor or wing of blade elements: what its calls share. */
+#ifndef SPARI_AERO_H
+#define SPARI_AERO_H
+
+#include "../fluid/fluid.h"
+#include "element.h"
+
+struct spar_aero {
+    spar_session *session; /* for messages; NULL without blades */
+    int blades;            /* on this rank */
+    int64_t n;             /* sections per blade */
+    spar_fluid **fluid;
+    spari_rotor rotor, first; /* first: as it was described first */
+    int rotor_given, effects_given, solved;
+    spari_section *section;   /* [n] */
+    gsl_interp_accel *accel;  /* [blades][n] */
+    gsl_root_fsolver *solver; /* NULL: no induction so far */
+    double *place;            /* reference places [blades][n][3] */
+    double *length;           /* [blades][n - 1] */
+    double *loss_radius;      /* [blades][n], of the first rotor; NULL: no loss asked for so far */
+    double *x, *v, *q;
+    double *omega;          /* NULL: no rotor */
+    spari_element *element; /* [blades][n] */
+    double *force, *moment; /* moment: NULL before there is one to push */
+    spari_rotor used;       /* in the last solve; rotor_used: it was given then */
+    int rotor_used;
+};
+
+#endif

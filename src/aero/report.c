@@ -1,0 +1,134 @@
+/* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. */
+#include "../session/session.h"
+#include "aero.h"
+
+#include <math.h>
+#include <spar/spar_aero.h>
+#include <string.h>
+
+typedef struct row {
+    const char *name;
+    int effect;
+    int needs; /* without which it means nothing */
+} row;
+
+static const row rows[SPAR_AERO_ROW_COUNT] = {
+    {"induction", SPAR_AERO_INDUCTION, 0},
+    {"tip loss", SPAR_AERO_TIP_LOSS, SPAR_AERO_INDUCTION},
+    {"hub loss", SPAR_AERO_HUB_LOSS, SPAR_AERO_INDUCTION},
+    {"swirl", SPAR_AERO_SWIRL, SPAR_AERO_INDUCTION},
+    {"drag", SPAR_AERO_DRAG, 0},
+    {"pitching moments", SPAR_AERO_MOMENT, 0},
+};
+
+const char *spar_aero_effect_name(int r) {
+    return r >= 0 && r < SPAR_AERO_ROW_COUNT ? rows[r].name : "";
+}
+
+typedef struct trials {
+    double dt;
+    int64_t steps;
+    spar_before_step before;
+    spar_fluid_solver solve;
+    void *context;
+} trials;
+
+static int try_once(spar_session *s, const trials *t, int compare, double report[SPAR_TRY_COUNT]) {
+    return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, report);
+}
+
+static int has_moments(const spar_aero *aero) {
+    int any = 0;
+    for (int64_t i = 0; i < aero->n; i++) {
+        any |= aero->section[i].table && spari_table_has_moment(aero->section[i].table);
+    }
+    return any;
+}
+
+/* On this rank: switched on, and something there to do. */
+static int is_in_force(const spar_aero *aero, int r) {
+    int wanted = rows[r].effect | rows[r].needs;
+    if (aero->blades == 0 || (aero->rotor.effects & wanted) != wanted) {
+        return 0;
+    }
+    return rows[r].effect == SPAR_AERO_HUB_LOSS ? aero->rotor.hub_radius > 0
+                                                : rows[r].effect != SPAR_AERO_MOMENT || has_moments(aero);
+}
+
+/* On any rank: all of them make the same trials. */
+static int find_rows(spar_session *s, const spar_aero *aero, double in_force[SPAR_AERO_ROW_COUNT + 1]) {
+    for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
+        in_force[r] = is_in_force(aero, r);
+    }
+    return spari_comm_sum(s->comm, in_force, SPAR_AERO_ROW_COUNT, SPAR_OK, s->message, sizeof s->message);
+}
+
+/* A run that begins beside its own balance iterates more, which is no price of the effect: the time of one solution. */
+static double cost(const double report[SPAR_TRY_COUNT]) {
+    return report[SPAR_TRY_SECONDS] / fmax(report[SPAR_TRY_SOLUTIONS], 1);
+}
+
+/* The effects come back as they were, whatever fails. Times are the least of three, with and without in turn. */
+static int try_row(spar_session *s, spar_aero *aero, const trials *t, int r, const double *base, double *out) {
+    enum { REPEATS = 3 };
+    double with = cost(base), without = INFINITY, report[SPAR_TRY_COUNT];
+    const int effects = aero->rotor.effects;
+    for (int k = 0; k < REPEATS; k++) {
+        aero->rotor.effects = effects & ~rows[r].effect;
+        int status = try_once(s, t, 1, report);
+        aero->rotor.effects = effects;
+        if (status != SPAR_OK) {
+            out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
+            return SPAR_OK;
+        }
+        out[SPAR_COLUMN_SIZE] = report[SPAR_TRY_LOAD];
+        out[SPAR_COLUMN_MOTION] = report[SPAR_TRY_MOTION];
+        out[SPAR_COLUMN_REACTION] = report[SPAR_TRY_REACTION];
+        without = fmin(without, cost(report));
+        SPARI_TRY(try_once(s, t, 1, report));
+        with = fmin(with, cost(report));
+    }
+    out[SPAR_COLUMN_SHARE] = with > 0 ? 1 - without / with : 0;
+    return SPAR_OK;
+}
+
+static int fill_table(spar_session *s, spar_aero *aero, const trials *t, double (*table)[SPAR_COLUMN_COUNT]) {
+    double in_force[SPAR_AERO_ROW_COUNT + 1], base[SPAR_TRY_COUNT];
+    SPARI_TRY(find_rows(s, aero, in_force));
+    SPARI_TRY(try_once(s, t, 0, base));
+    for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
+        if (in_force[r] > 0) {
+            table[r][SPAR_COLUMN_IN_FORCE] = 1;
+            SPARI_TRY(try_row(s, aero, t, r, base, table[r]));
+        }
+    }
+    return SPAR_OK;
+}
+
+static int check(const spar_session *session, const spar_aero *aero, const trials *t, const void *table,
+                 const char *call) {
+    spar_session *s = (spar_session *)session;
+    SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
+    SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
+                  "%s: the blades are of another session; give theirs", call);
+    SPARI_REQUIRE(s, t->solve, SPAR_ERR_ARGUMENT, "%s: solve is NULL; give the one that spar_step is given", call);
+    SPARI_REQUIRE(s, table, SPAR_ERR_ARGUMENT, "%s: table is NULL", call);
+    return SPAR_OK;
+}
+
+int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps, spar_before_step before,
+                             spar_fluid_solver solve, void *context,
+                             double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+    const char *call = "spar_aero_report_effects";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", call);
+    spar_session *s = session;
+    trials t = {dt, steps, before, solve, context};
+    double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
+    char message[SPARI_MESSAGE_SIZE];
+    SPARI_TRY(spari_comm_enter(s->comm, call, check(s, aero, &t, table, call), s->message, sizeof s->message));
+    memcpy(message, s->message, sizeof message);
+    SPARI_TRY(fill_table(s, aero, &t, made));
+    memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
+    memcpy(table, made, sizeof made);
+    return SPAR_OK;
+}
