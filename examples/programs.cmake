@@ -1,3 +1,13 @@
+# The rotor's sources once more: what effects are worth in its scene.
+if(TARGET examples_rotor)
+  add_executable(examples_spar-effects "${PROJECT_SOURCE_DIR}/examples/rotor.c")
+  set_target_properties(examples_spar-effects PROPERTIES OUTPUT_NAME spar-effects
+    RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples")
+  target_compile_definitions(examples_spar-effects PRIVATE ROTOR_SHOWS_EFFECTS=1
+    SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data" $<$<BOOL:${SPAR_MPI}>:SPAR_WITH_MPI=1>)
+  target_link_libraries(examples_spar-effects PRIVATE spar_flags spar spar_example_parts m $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
+endif()
+
 # The examples as tests: what they print must be what it should.
 if(NOT SPAR_BUILD_TESTS)
   return()
@@ -6,7 +16,9 @@ endif()
 # tests/test_rotor.c runs the rotor as a user does, alone and on several ranks.
 if(TARGET test_rotor AND TARGET examples_rotor)
   add_dependencies(test_rotor examples_rotor)
-  target_compile_definitions(test_rotor PRIVATE ROTOR_PROGRAM="$<TARGET_FILE:examples_rotor>")
+  add_dependencies(test_rotor examples_spar-effects)
+  target_compile_definitions(test_rotor PRIVATE ROTOR_PROGRAM="$<TARGET_FILE:examples_rotor>"
+    EFFECTS_PROGRAM="$<TARGET_FILE:examples_spar-effects>")
   if(SPAR_MPI)
     target_compile_definitions(test_rotor PRIVATE ROTOR_LAUNCHER="${MPIEXEC_EXECUTABLE} --allow-run-as-root --oversubscribe ${MPIEXEC_NUMPROC_FLAG}")
   endif()
@@ -48,7 +60,7 @@ endforeach()
 # The Fortran host, with momentum theory of its own, gives the numbers of the C program to 1e-10, on any number of ranks.
 if(TARGET examples_rotor_fortran)
   set(run --wind 11 --gust 4 --gust-start 0 --gust-length 0.4 --seconds 0.3 --dt 0.01 --elements 1 --nodes 10
-    --tolerance 1e-6 --iterations 20)
+    --coupling-tolerance 1e-6 --iterations 20)
   add_test(NAME example_rotor_reference
     COMMAND examples_rotor ${run} --coupling fixed-point --predictor 1 --rho-inf 0.8 --vtk-every 0 --no-plots --quiet
             --out ${PROJECT_BINARY_DIR}/tests/rotor_reference)

@@ -1,9 +1,11 @@
 /* The NREL 5-MW rotor in the wind, end to end, with public functions only: blades as beams whose roots turn at constant
    speed, blade element momentum theory as the fluid, coupled step by step. Alone or under mpirun, where each rank takes
-   its share of the blades. Run it with --help for what can be chosen. */
+   its share of the blades. Run it with --help for what can be chosen. Compiled with ROTOR_SHOWS_EFFECTS it is
+   spar-effects: the same scene, and what each effect is worth in it. */
 #include "nrel5mw.h"
 #include "rotor_options.h"
 #include "rotor_report.h"
+#include "rotor_view.h"
 #include <math.h>
 #include <spar/spar_output.h>
 #include <stdlib.h>
@@ -18,6 +20,12 @@ static const double pi = 3.14159265358979323846, standard_gravity = 9.80665;
 
 /* Transfers are timed apart from the aerodynamics in one of so many solutions. */
 enum { BLADES_MAX = 16, SAMPLE_EVERY = 64 };
+
+#ifdef ROTOR_SHOWS_EFFECTS
+enum { SHOWS_EFFECTS = 1 };
+#else
+enum { SHOWS_EFFECTS = 0 };
+#endif
 
 typedef struct scene {
     rotor_options options;
@@ -35,6 +43,9 @@ typedef struct scene {
     double *alpha, *induction, *span;
     double *reference, *motion; /* of a blade's nodes [3], [7] */
     int64_t solutions, samples, pictures;
+    int trials;                                     /* begun */
+    double trials_from, trials_begun, trials_shown; /* simulated time; wall time */
+    char trial_text[160];
 } scene;
 
 static double now(void) {
@@ -122,7 +133,8 @@ static int describe_session(scene *s) {
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, o->substeps));
     TRY(spar_session_set_predictor(s->session, o->predictor));
-    TRY(spar_session_set_coupling(s->session, o->scheme, 0, o->tolerance, o->max_iterations));
+    TRY(spar_session_set_coupling(s->session, o->scheme, 0, o->coupling_tolerance, o->max_iterations));
+    TRY(spar_session_set_newton(s->session, 1e-15, o->newton, 50));
     if (o->scheme == SPAR_COUPLING_FIXED_POINT) {
         TRY(spar_session_set_relaxation(s->session, o->relaxation));
     }
@@ -139,6 +151,9 @@ static int describe_rotor(scene *s) {
     nrel5mw_rotor_default(&s->turbine, &s->rotor);
     s->rotor.pitch = (isfinite(o->pitch) ? o->pitch : pitch) * pi / 180;
     s->report.speed = (isfinite(o->rpm) ? o->rpm : rpm) * pi / 30;
+    if (!isfinite(o->seconds)) {
+        o->seconds = SHOWS_EFFECTS && s->report.speed > 0 ? 4 * pi / s->report.speed : 30;
+    }
     if (s->rotor.blades > BLADES_MAX) {
         snprintf(s->turbine.message, sizeof s->turbine.message, "%d blades are more than %d", s->rotor.blades,
                  BLADES_MAX);
@@ -163,6 +178,9 @@ static int create_blade(scene *s, int b) {
                              &s->blade[b]));
     if (!o->rigid && o->quadrature > 0) {
         TRY(spar_beam_set_quadrature(s->blade[b], SPAR_QUADRATURE_SECTIONS, o->quadrature));
+    }
+    if (!o->rigid && o->fidelity != SPAR_FIDELITY_EXACT) {
+        TRY(spar_member_set_fidelity(s->blade[b], o->fidelity, o->fidelity == SPAR_FIDELITY_MODAL ? o->modes : 0));
     }
     if (o->effects_given) {
         TRY(spar_member_set_effects(s->blade[b], o->effects));
@@ -245,12 +263,15 @@ static void blow(scene *s, double t) {
     }
 }
 
-static int pull_places(scene *s) {
-    for (int k = 0; k < s->mine; k++) {
-        int64_t at = k * s->turbine.aero_n;
-        TRY(spar_fluid_pull_motion(s->fluid[k], s->options.theta, s->place + 3 * at, NULL));
+/* The aerodynamics of the step from t to t + dt: of the motion and the time alone, so trials can repeat it. */
+static int solve_aero(scene *s, double t, double dt) {
+    int status = SPAR_OK;
+    for (int k = 0; k < s->mine && s->options.shear != 0 && status == SPAR_OK; k++) {
+        double *place = s->place + 3 * k * s->turbine.aero_n;
+        status = spar_fluid_pull_motion(s->fluid[k], s->options.theta, place, NULL);
     }
-    return SPAR_OK;
+    blow(s, t + s->options.theta * dt);
+    return status == SPAR_OK ? spar_aero_solve(s->aero, s->turbine.density, s->inflow, s->options.theta) : status;
 }
 
 /* spar_aero_solve takes motion out and puts loads in; doing just that once more tells what part of its time it is. The
@@ -273,14 +294,10 @@ static int sample_transfer(scene *s) {
     return SPAR_OK;
 }
 
-/* The aerodynamics of the step from t to t + dt. */
+/* The same in a step of the run, with its time taken. */
 static int solve_fluid(scene *s, double t, double dt) {
     double since = now();
-    if (s->options.shear != 0 && pull_places(s) != SPAR_OK) {
-        return 1;
-    }
-    blow(s, t + s->options.theta * dt);
-    TRY(spar_aero_solve(s->aero, s->turbine.density, s->inflow, s->options.theta));
+    TRY(solve_aero(s, t, dt));
     lap(s, ROTOR_AERO, &since);
     return s->solutions++ % SAMPLE_EVERY == 0 ? sample_transfer(s) : SPAR_OK;
 }
@@ -409,11 +426,14 @@ static int take_picture(scene *s, double t) {
 
 /* ---- the run ---- */
 
-static int drive(scene *s, double angle) {
+static int drive(const scene *s, double angle) {
     double q[7], v[6], a[6];
     for (int b = 0; b < s->rotor.blades; b++) {
         nrel5mw_root_motion(&s->turbine, &s->rotor, b, angle, s->report.speed, 0, q, v, a);
-        TRY(spar_member_drive_root(s->blade[b], q, v, a));
+        int status = spar_member_drive_root(s->blade[b], q, v, a);
+        if (status != SPAR_OK) {
+            return status;
+        }
     }
     return SPAR_OK;
 }
@@ -421,9 +441,7 @@ static int drive(scene *s, double angle) {
 static int step(scene *s, double t, double dt, double angle, int *iterations) {
     int done = 0;
     double since = now();
-    if (drive(s, angle) != SPAR_OK) {
-        return 1;
-    }
+    TRY(drive(s, angle));
     TRY(spar_step_begin(s->session, dt));
     lap(s, ROTOR_PREDICT, &since);
     for (*iterations = 0; !done; ++*iterations) {
@@ -479,13 +497,7 @@ static int run(scene *s) {
     const rotor_options *o = &s->options;
     int64_t steps = (int64_t)ceil(o->seconds / o->dt - 1e-9);
     double begun = now(), shown = 0, picture = 0, since;
-    double every = isfinite(o->vtk_every) ? o->vtk_every : fmax(0.25, o->seconds / 240);
-    if (!o->rigid && !o->straight && bend(s) != SPAR_OK) {
-        return 1;
-    }
-    if (solve_fluid(s, 0, 0) != SPAR_OK) { /* the loads the first prediction begins with */
-        return 1;
-    }
+    double every = SHOWS_EFFECTS ? 0 : isfinite(o->vtk_every) ? o->vtk_every : fmax(0.25, o->seconds / 240);
     for (int64_t i = 0; i <= steps; i++) {
         double t = i == steps ? o->seconds : (double)i * o->dt, angle = s->report.speed * t;
         double before = (double)(i - 1) * o->dt;
@@ -513,6 +525,92 @@ static int run(scene *s) {
     return SPAR_OK;
 }
 
+/* Where the run begins. */
+static int start(scene *s) {
+    const rotor_options *o = &s->options;
+    if (!o->rigid && !o->straight && bend(s) != SPAR_OK) {
+        return 1;
+    }
+    return solve_fluid(s, 0, 0); /* the loads the first prediction begins with */
+}
+
+/* ---- trials ---- */
+
+/* A line on stderr once the trials take longer than two seconds, as show_progress. */
+static void show_trials(scene *s) {
+    int terminal = isatty(STDERR_FILENO);
+    double wall = now() - s->trials_begun;
+    if (s->rank != 0 || s->options.quiet || wall < 2 || wall - s->trials_shown < (terminal ? 0.2 : 10)) {
+        return;
+    }
+    s->trials_shown = wall;
+    fprintf(stderr, "%srotor: %.0f s, trial %d%s%.*s%s", terminal ? "\r" : "", wall, s->trials,
+            s->trial_text[0] ? "; last: " : "", terminal ? 90 : 159, s->trial_text, terminal ? "\033[K" : "\n");
+    fflush(stderr);
+}
+
+/* What the session's log says of its trials. */
+static void hear(const spar_session *session, int level, const char *text, void *context) {
+    scene *s = context;
+    const char *trial = strstr(text, ": trial ");
+    (void)session;
+    if (level == SPAR_LOG_INFO && trial) {
+        snprintf(s->trial_text, sizeof s->trial_text, "%s", strchr(trial + 2, ':') + 2);
+    }
+}
+
+static int before_step(spar_session *session, double t, double dt, void *context) {
+    scene *s = context;
+    (void)session;
+    s->trials += t <= s->trials_from;
+    show_trials(s);
+    return drive(s, s->report.speed * (t + dt));
+}
+
+static int solve_step(spar_session *session, double t, double dt, int iteration, void *context) {
+    (void)session, (void)iteration;
+    return solve_aero(context, t, dt);
+}
+
+static rotor_trial begin_trials(scene *s, double turns) {
+    const rotor_options *o = &s->options;
+    double turn = s->report.speed > 0 ? 2 * pi / s->report.speed : 6,
+           seconds = isfinite(o->trial) ? o->trial : turns * turn;
+    s->trials_begun = now();
+    s->trials_shown = 0;
+    s->trials = 0;
+    spar_session_get_time(s->session, &s->trials_from, NULL, NULL);
+    spar_session_set_log(s->session, hear, s);
+    return (rotor_trial){s->session, s->aero, s->blade[0], o->dt, rotor_trial_steps(seconds, o->dt), before_step,
+                         solve_step, s};
+}
+
+static void end_trials(scene *s) {
+    spar_session_set_log(s->session, NULL, NULL);
+    if (s->trials_shown > 0 && isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r\033[K");
+    }
+}
+
+static int show_effects(scene *s) {
+    rotor_trial t = begin_trials(s, 0.5);
+    int status = rotor_view_effects(&t, s->options.csv, s->rank == 0);
+    end_trials(s);
+    TRY(status);
+    return SPAR_OK;
+}
+
+/* Two turns: coupling that lets the motion grow slowly is not seen in less. */
+static int ask_advice(scene *s) {
+    rotor_trial t = begin_trials(s, 2);
+    int status = rotor_view_advice(&t, &s->options, s->rank == 0);
+    end_trials(s);
+    TRY(status);
+    return SPAR_OK;
+}
+
+/* ---- the whole ---- */
+
 /* The sampled transfers stand for all; what spar_aero_solve took without them is aerodynamics. */
 static void settle_times(scene *s) {
     double *phase = s->report.phase, scale = (double)s->solutions / (double)s->samples;
@@ -523,15 +621,20 @@ static void settle_times(scene *s) {
     s->report.wall -= taken;
 }
 
-static int rotor(scene *s) {
-    char folder[1024];
-    snprintf(folder, sizeof folder, "%s/vtk", s->options.out);
-    if (s->rank == 0 && rotor_make_folder(folder) != 0) {
-        return 1;
-    }
-    if (describe_rotor(s) != SPAR_OK || describe_session(s) != SPAR_OK || build(s) != SPAR_OK || run(s) != SPAR_OK) {
-        return 1;
-    }
+static int set_up(scene *s) {
+    return describe_rotor(s) != SPAR_OK || describe_session(s) != SPAR_OK || build(s) != SPAR_OK || start(s) != SPAR_OK;
+}
+
+/* A scene of nothing but its options, and the ranks. */
+static void clear(scene *s) {
+    *s = (scene){.options = s->options, .rank = s->rank, .ranks = s->ranks};
+    s->report.options = &s->options;
+    s->report.turbine = &s->turbine;
+    s->report.rotor = &s->rotor;
+    s->report.ranks = s->ranks;
+}
+
+static int write_results(scene *s) {
     settle_times(s);
     if (s->rank != 0) {
         return 0;
@@ -546,13 +649,35 @@ static int rotor(scene *s) {
     return 0;
 }
 
+static int rotor(scene *s) {
+    char folder[1024];
+    snprintf(folder, sizeof folder, "%s/vtk", s->options.out);
+    if (!SHOWS_EFFECTS && s->rank == 0 && rotor_make_folder(folder) != 0) {
+        return 1;
+    }
+    if (set_up(s) != 0) {
+        return 1;
+    }
+    if (isfinite(s->options.tolerance)) { /* built anew, with the settings advised */
+        if (ask_advice(s) != SPAR_OK) {
+            return 1;
+        }
+        release(s);
+        clear(s);
+        if (set_up(s) != 0) {
+            return 1;
+        }
+    }
+    if (run(s) != SPAR_OK) {
+        return 1;
+    }
+    return SHOWS_EFFECTS ? show_effects(s) : write_results(s);
+}
+
 int main(int argc, char **argv) {
     scene s = {0};
     ranks_begin(&s, &argc, &argv);
-    s.report.options = &s.options;
-    s.report.turbine = &s.turbine;
-    s.report.rotor = &s.rotor;
-    s.report.ranks = s.ranks;
+    clear(&s);
     int failed = rotor_options_read(&s.options, argc, argv);
     if (!failed && s.options.help) {
         if (s.rank == 0) {

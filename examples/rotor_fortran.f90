@@ -925,7 +925,7 @@ contains
         call number(name, value, seconds)
       case ('--dt')
         call number(name, value, dt)
-      case ('--tolerance')
+      case ('--coupling-tolerance')
         call number(name, value, tolerance)
       case ('--elements')
         call whole(name, value, elements)
@@ -980,7 +980,7 @@ contains
         '  --dt S                coupling step [0.02]', &
         '  --elements N          beam elements per blade [1]', &
         '  --nodes N             nodes per element [10]', &
-        '  --tolerance R         change of the loads that ends the iteration [1e-6]', &
+        '  --coupling-tolerance R change of the loads that ends the iteration [1e-6]', &
         '  --iterations N        coupling iterations at most [20]', &
         '  --data FOLDER         the tables of the turbine', &
         '  --history FILE        writes the history, in the columns of the program rotor', &

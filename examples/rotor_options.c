@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { NUMBER, WHOLE, TEXT, FLAG, SCHEME, EFFECTS, WITHOUT };
+enum kind { NUMBER, WHOLE, TEXT, FLAG, SCHEME, FIDELITY, EFFECTS, WITHOUT };
 
 typedef struct option {
     const char *name;
@@ -29,7 +29,8 @@ static const option options[] = {
     {"gust-length", NUMBER, AT(gust_length), 1e-3, 1e9, "S", "how long it lasts [10]"},
     {"tilt", NUMBER, AT(tilt), -90, 90, "DEG", "shaft tilt [5]"},
     {"precone", NUMBER, AT(precone), -45, 45, "DEG", "blade precone, tips upwind [2.5]"},
-    {"seconds", NUMBER, AT(seconds), 1e-6, 1e9, "S", "time to simulate [30]"},
+    {"seconds", NUMBER, AT(seconds), 1e-6, 1e9, "S",
+     "time to simulate [30]; spar-effects: before it looks [two turns]"},
     {"dt", NUMBER, AT(dt), 1e-7, 10, "S", "coupling step [0.02]"},
     {"rigid", FLAG, AT(rigid), 0, 0, NULL, "rigid blades"},
     {"straight", FLAG, AT(straight), 0, 0, NULL, "begin with straight blades, not with bent ones"},
@@ -37,16 +38,26 @@ static const option options[] = {
     {"nodes", WHOLE, AT(nodes), 2, 24, "N", "nodes per element [10]"},
     {"quadrature", WHOLE, AT(quadrature), 0, 10, "N",
      "points per interval of the section table [0: the library's choice]"},
+    {"fidelity", FIDELITY, AT(fidelity), 0, 0, "NAME",
+     "of the blades: prescribed, rigid, linear, modal or exact [exact]"},
+    {"modes", WHOLE, AT(modes), 1, 1000, "N", "of modal blades [8]"},
     {"effects", EFFECTS, 0, 0, 0, "A,B,...", "these effects alone (names below)"},
     {"without", WITHOUT, 0, 0, 0, "A,B,...", "all the scene has but these"},
     {"coupling", SCHEME, AT(scheme), 0, 0, "NAME", "explicit, fixed-point, aitken or iqn [fixed-point]"},
-    {"tolerance", NUMBER, AT(tolerance), 0, 1, "R", "change of the loads, relative, that ends the iteration [1e-6]"},
+    {"coupling-tolerance", NUMBER, AT(coupling_tolerance), 0, 1, "R",
+     "change of the loads, relative, that ends the iteration [1e-6]"},
     {"iterations", WHOLE, AT(max_iterations), 1, 1000, "N", "coupling iterations at most [20]"},
     {"relaxation", NUMBER, AT(relaxation), 1e-6, 2, "W", "of the fixed-point iteration [1]"},
     {"predictor", WHOLE, AT(predictor), 0, 2, "ORDER", "extrapolation of the loads: 0, 1, 2 [1]"},
     {"rho-inf", NUMBER, AT(rho_inf), 0, 1, "R", "spectral radius of generalised-alpha [0.8]"},
     {"substeps", WHOLE, AT(substeps), 1, 10000, "N", "structure steps per coupling step [1]"},
+    {"newton", NUMBER, AT(newton), 0, 1, "R", "increment, relative, that ends Newton's iteration [1e-12]"},
     {"theta", NUMBER, AT(theta), 0, 1, "THETA", "where in the step the fluid takes the motion [1]"},
+    {"tolerance", NUMBER, AT(tolerance), 1e-12, 1, "R",
+     "run with the cheapest settings that keep this error of the deflection [none: as given]"},
+    {"trial", NUMBER, AT(trial), 1e-6, 1e9, "S",
+     "how long trials last [--tolerance: two turns, spar-effects: half a turn]"},
+    {"csv", FLAG, AT(csv), 0, 0, NULL, "spar-effects: for a spreadsheet"},
     {"vtk-every", NUMBER, AT(vtk_every), 0, 1e9, "S", "simulated time between pictures for ParaView, 0: none [0.25]"},
     {"out", TEXT, AT(out), 0, 0, "FOLDER", "where the files go [rotor-out]"},
     {"data", TEXT, AT(data), 0, 0, "FOLDER", "the turbine's tables [" SPAR_DATA_DIR "/nrel5mw]"},
@@ -76,8 +87,34 @@ enum { EFFECT_COUNT = sizeof effects / sizeof effects[0] };
 static const char *const schemes[] = {"explicit", "fixed-point", "aitken", "iqn"}; /* SPAR_COUPLING_* */
 enum { SCHEMES = sizeof schemes / sizeof schemes[0] };
 
+static const char *const fidelities[] = {"prescribed", "rigid", "linear", "modal", "exact"}; /* SPAR_FIDELITY_* */
+enum { FIDELITIES = sizeof fidelities / sizeof fidelities[0] };
+
 const char *rotor_scheme_name(int scheme) {
     return schemes[scheme];
+}
+
+const char *rotor_fidelity_name(int fidelity) {
+    return fidelities[fidelity];
+}
+
+void rotor_options_print(const rotor_options *o, FILE *file) {
+    fprintf(file, " --dt %.6g --substeps %d --predictor %d --newton %.2g --coupling %s", o->dt, o->substeps,
+            o->predictor, o->newton, schemes[o->scheme]);
+    if (o->scheme != SPAR_COUPLING_EXPLICIT) {
+        fprintf(file, " --coupling-tolerance %.2g", o->coupling_tolerance);
+    }
+    if (o->rigid) {
+        return;
+    }
+    fprintf(file, " --fidelity %s", fidelities[o->fidelity]);
+    if (o->fidelity == SPAR_FIDELITY_MODAL) {
+        fprintf(file, " --modes %d", o->modes);
+    }
+    fprintf(file, " --nodes %d", o->nodes);
+    if (o->quadrature > 0) {
+        fprintf(file, " --quadrature %d", o->quadrature);
+    }
 }
 
 void rotor_operating_point(double wind, double *rpm, double *pitch) {
@@ -108,7 +145,7 @@ void rotor_options_help(const char *program) {
         char left[64];
         snprintf(left, sizeof left, "--%s%s%s", options[i].name, options[i].value ? " " : "",
                  options[i].value ? options[i].value : "");
-        printf("  %-24s %s\n", left, options[i].help);
+        printf("  %-26s %s\n", left, options[i].help);
     }
     printf("\nEffects:");
     for (int i = 0; i < EFFECT_COUNT; i++) {
@@ -155,14 +192,18 @@ static int read_number(const option *p, const char *text, double *value) {
     return 0;
 }
 
-static int read_scheme(const char *text, int *scheme) {
-    for (int i = 0; i < SCHEMES; i++) {
-        if (strcmp(text, schemes[i]) == 0) {
-            *scheme = i;
+static int read_name(const option *p, const char *text, const char *const *names, int n, int *chosen) {
+    for (int i = 0; i < n; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            *chosen = i;
             return 0;
         }
     }
-    fprintf(stderr, "rotor: --coupling %s: explicit, fixed-point, aitken or iqn\n", text);
+    fprintf(stderr, "rotor: --%s %s:", p->name, text);
+    for (int i = 0; i < n; i++) {
+        fprintf(stderr, "%s%s", i == 0 ? " " : i + 1 < n ? ", " : " or ", names[i]);
+    }
+    fprintf(stderr, "\n");
     return 1;
 }
 
@@ -182,7 +223,9 @@ static int read_value(rotor_options *o, const option *p, const char *text) {
         *(const char **)field = text;
         return 0;
     case SCHEME:
-        return read_scheme(text, field);
+        return read_name(p, text, schemes, SCHEMES, field);
+    case FIDELITY:
+        return read_name(p, text, fidelities, FIDELITIES, field);
     case EFFECTS:
     case WITHOUT:
         return read_effects(o, text, p->kind == WITHOUT);
@@ -201,7 +244,7 @@ static void set_defaults(rotor_options *o) {
                          .gust_length = 10,
                          .tilt = NAN,
                          .precone = NAN,
-                         .seconds = 30,
+                         .seconds = NAN,
                          .dt = 0.02,
                          .elements = 1,
                          .nodes = 10,
@@ -209,7 +252,12 @@ static void set_defaults(rotor_options *o) {
                          .max_iterations = 20,
                          .predictor = 1,
                          .substeps = 1,
-                         .tolerance = 1e-6,
+                         .fidelity = SPAR_FIDELITY_EXACT,
+                         .modes = 8,
+                         .coupling_tolerance = 1e-6,
+                         .newton = 1e-12,
+                         .tolerance = NAN,
+                         .trial = NAN,
                          .relaxation = 1,
                          .rho_inf = 0.8,
                          .theta = 1,

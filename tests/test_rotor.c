@@ -8,6 +8,9 @@
 #ifndef ROTOR_PROGRAM
 #define ROTOR_PROGRAM ""
 #endif
+#ifndef EFFECTS_PROGRAM
+#define EFFECTS_PROGRAM ""
+#endif
 #ifndef ROTOR_LAUNCHER
 #define ROTOR_LAUNCHER ""
 #endif
@@ -68,16 +71,20 @@ static double mean(const table *t, const char *name, double from) {
     return sum / n;
 }
 
-/* Runs the program; 0 ranks: without a launcher. Returns its exit status. */
-static int run(int ranks, const char *arguments, const char *folder) {
+/* Runs a program; 0 ranks: without a launcher. Returns its exit status. */
+static int run_program(const char *program, int ranks, const char *arguments, const char *folder) {
     char command[2048], launcher[512] = "";
     if (ranks > 0) {
         snprintf(launcher, sizeof launcher, "%s %d ", ROTOR_LAUNCHER, ranks);
     }
-    snprintf(command, sizeof command, "%s%s --quiet --no-plots --out %s %s >%s.log 2>&1", launcher, ROTOR_PROGRAM,
-             folder, arguments, folder);
+    snprintf(command, sizeof command, "%s%s --quiet --no-plots --out %s %s >%s.log 2>&1", launcher, program, folder,
+             arguments, folder);
     int status = system(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static int run(int ranks, const char *arguments, const char *folder) {
+    return run_program(ROTOR_PROGRAM, ranks, arguments, folder);
 }
 
 static int in_log(const char *folder, const char *text) {
@@ -191,6 +198,143 @@ static void test_ranks(void **state) {
     free(one.value);
 }
 
+/* ---- trials ---- */
+
+enum { VALUES = 5 };
+
+/* Values of an effect that spar-effects --csv has written: in force, size, deflection, root loads, time. */
+static void read_effect(const char *folder, const char *name, double value[VALUES]) {
+    char path[256], line[1024];
+    int found = 0;
+    snprintf(path, sizeof path, "%s.log", folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        char *at = strchr(line, ',');
+        if (!at || (size_t)(at - line) != strlen(name) || strncmp(line, name, strlen(name)) != 0) {
+            continue;
+        }
+        at = strchr(at + 1, ',');
+        for (int c = 0; c < VALUES; c++) {
+            value[c] = strtod(at + 1, &at);
+        }
+        found = 1;
+    }
+    fclose(file);
+    assert_true(found);
+}
+
+/* Root of the mean square of the difference of two columns of all blades, each against its size, both over the rows
+   from, from + every, ... */
+static double difference(const table *a, const table *b, const char *const kinds[2], int from, int every) {
+    double off = 0, size = 0;
+    for (int blade = 1; blade <= 3; blade++) {
+        for (int k = 0; k < 2; k++) {
+            char name[32];
+            snprintf(name, sizeof name, kinds[k][0] == 't' ? "tip_%s%d_m" : "root_%s%d_Nm", strchr(kinds[k], ' ') + 1,
+                     blade);
+            int c = column(a, name);
+            for (int i = from; i < a->rows; i += every) {
+                double x = a->value[i * a->columns + c], y = b->value[i * b->columns + c];
+                off += (x - y) * (x - y);
+                size += x * x;
+            }
+        }
+    }
+    return sqrt(off / size);
+}
+
+static const char *const tips[2] = {"tip flap", "tip edge"}, *const roots[2] = {"root flap", "root edge"};
+
+/* What spar-effects says of gravity is what two runs show, one of them without it, from the same straight blades (one
+   short step aside, after which it looks). Its deflection is the mean over 8 places of a blade, of which the tips move
+   most: within a quarter of the tips'. Its root loads are forces, moments by the blade's length, and the centrifugal
+   force is in them, so that gravity's part is less than of the bending moments; not by more than 5. */
+static void test_gravity(void **state) {
+    (void)state;
+    double value[VALUES];
+    need_program();
+    const char *scene = "--straight --dt 0.05 --nodes 6 --vtk-every 0";
+    char arguments[256];
+    snprintf(arguments, sizeof arguments, "%s --seconds 1e-6 --trial 0.8 --csv", scene);
+    assert_int_equal(run_program(EFFECTS_PROGRAM, 0, arguments, "effects_gravity"), 0);
+    read_effect("effects_gravity", "gravity", value);
+    assert_true(value[0] == 1);
+    snprintf(arguments, sizeof arguments, "%s --seconds 0.8", scene);
+    assert_int_equal(run(0, arguments, "rotor_heavy"), 0);
+    snprintf(arguments, sizeof arguments, "%s --seconds 0.8 --without gravity", scene);
+    assert_int_equal(run(0, arguments, "rotor_weightless"), 0);
+    table heavy = read_table("rotor_heavy/history.csv"), weightless = read_table("rotor_weightless/history.csv");
+    double tip = difference(&heavy, &weightless, tips, 2, 2), root = difference(&heavy, &weightless, roots, 2, 2);
+    print_message("gravity: deflection %.4f, tips %.4f; root loads %.4f, bending at the roots %.4f\n", value[2], tip,
+                  value[3], root);
+    NEAR(value[2], tip, 0.25 * tip);
+    assert_true(value[3] < root && value[3] > root / 5);
+    free(heavy.value);
+    free(weightless.value);
+    snprintf(arguments, sizeof arguments, "%s --seconds 1e-6 --trial 0.4 --without drag", scene);
+    assert_int_equal(run_program(EFFECTS_PROGRAM, 0, arguments, "effects_words"), 0);
+    assert_true(in_log("effects_words", "leave gravity out: "));
+    assert_true(in_log("effects_words", "not in force: "));
+    assert_false(in_log("effects_words", "leave drag out: "));
+}
+
+/* On four ranks, one of them without a blade, it says the same. */
+static void test_effects_on_ranks(void **state) {
+    (void)state;
+    static const char *const names[] = {"gravity", "tip loss", "drag", "pitching moments", "fluid velocities"};
+    need_program();
+    if (ROTOR_LAUNCHER[0] == '\0') {
+        skip();
+    }
+    const char *arguments = "--dt 0.05 --nodes 5 --seconds 0.1 --trial 0.4 --csv";
+    assert_int_equal(run_program(EFFECTS_PROGRAM, 0, arguments, "effects_np0"), 0);
+    assert_int_equal(run_program(EFFECTS_PROGRAM, 4, arguments, "effects_np4"), 0);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        double one[VALUES], four[VALUES];
+        read_effect("effects_np0", names[i], one);
+        read_effect("effects_np4", names[i], four);
+        assert_true(one[0] == 1 && four[0] == 1);
+        for (int c = 1; c < VALUES - 1; c++) {
+            NEAR(four[c], one[c], 1e-5 * fabs(one[c]) + 1e-9);
+        }
+    }
+}
+
+/* Straight blades let go in the wind, with settings for 3 per cent of the deflection: the tips of the run that is made
+   with them against one with four times as many steps as given, more nodes and every step converged. The tolerance is
+   that of the mean over the blade at eight times, this of the tips at all of them: half as much again is allowed. */
+static void test_tolerance(void **state) {
+    (void)state;
+    need_program();
+    const char *scene = "--straight --seconds 1.6 --vtk-every 0";
+    char arguments[256];
+    snprintf(arguments, sizeof arguments, "%s --tolerance 3e-2 --trial 1.6", scene);
+    assert_int_equal(run(0, arguments, "rotor_advised"), 0);
+    assert_true(in_log("rotor_advised", "Settings for a tolerance of 0.03"));
+    assert_true(in_log("rotor_advised", "as options: --dt "));
+    snprintf(arguments, sizeof arguments, "%s --dt 0.005 --nodes 14 --coupling iqn --coupling-tolerance 1e-8", scene);
+    assert_int_equal(run(0, arguments, "rotor_fine"), 0);
+    table advised = read_table("rotor_advised/history.csv"), fine = read_table("rotor_fine/history.csv");
+    table there = fine; /* at the times of the other */
+    there.rows = advised.rows;
+    there.value = calloc((size_t)(there.rows * there.columns), sizeof(double));
+    assert_int_equal(advised.columns, fine.columns);
+    for (int i = 0; i < advised.rows; i++) {
+        double place = fmin(advised.value[i * advised.columns] / 0.005, fine.rows - 1.0), whole = floor(place);
+        const double *a = fine.value + (int)whole * fine.columns, *b = whole < place ? a + fine.columns : a;
+        for (int c = 0; c < fine.columns; c++) {
+            there.value[i * fine.columns + c] = a[c] + (place - whole) * (b[c] - a[c]);
+        }
+    }
+    double off = difference(&there, &advised, tips, 1, 1);
+    print_message("tolerance 0.03: the tips are off by %.4f of their way, in %d steps\n", off, advised.rows - 1);
+    assert_true(off < 1.5 * 0.03);
+    free(advised.value);
+    free(fine.value);
+    free(there.value);
+}
+
 static void test_bad_input(void **state) {
     (void)state;
     need_program();
@@ -215,6 +359,9 @@ int main(void) {
         cmocka_unit_test(test_rigid_as_aerodyn),
         cmocka_unit_test(test_flexible),
         cmocka_unit_test(test_ranks),
+        cmocka_unit_test(test_gravity),
+        cmocka_unit_test(test_effects_on_ranks),
+        cmocka_unit_test(test_tolerance),
         cmocka_unit_test(test_bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
