@@ -2,6 +2,10 @@
    what is reported, and what a failure leaves behind. The maps are in closed form (pistons.h). */
 #include "pistons.h"
 
+#include "member/member.h"
+
+#include <stdio.h>
+
 /* Steps the explicit scheme from a load of 1 at t^0; returns the last load pushed. */
 static double explicit_run(int order, double ratio, int steps, double dt) {
     pistons p;
@@ -328,6 +332,59 @@ static void predictor_lags(void **state) {
     }
 }
 
+/* One step of a parabola; what was predicted for it, against order k's polynomial through the last values. */
+static void step_of_order(pistons *p, int i, double dt, int k) {
+    double f[4], predicted[6];
+    int done;
+    for (int j = 0; j < 4; j++) { /* at t^{n+1}, t^n, t^{n-1}, t^{n-2} */
+        double t = (i + 1 - j) * dt;
+        f[j] = p->b[0] + p->b[1] * t + p->b[2] * t * t;
+    }
+    const double expected[3] = {f[1], 2 * f[1] - f[2], f[0]};
+    OK(p->session, spar_step_begin(p->session, dt));
+    OK(p->session, spar_member_get_loads(p->body[0], predicted));
+    NEAR(predicted[0], expected[k], 1e-13);
+    OK(p->session, spar_step_solve(p->session));
+    polynomial(p->session, i * dt, dt, 0, p);
+    OK(p->session, spar_step_check(p->session, &done));
+    OK(p->session, spar_step_accept(p->session));
+}
+
+/* No more loads are kept than the order needs; an order that is raised is reached step by step, and through a file too.
+ */
+static void order_may_change(void **state) {
+    (void)state;
+    static const int set[] = {0, 0, 0, 2, 2, 2, 2, 1, 1, 2, 2, 0, 1, 1},
+                     used[] = {0, 0, 0, 0, 1, 2, 2, 1, 1, 1, 2, 0, 0, 1};
+    static const double dt = 0.1, r = 0;
+    static const char *const path = "order.spar";
+    pistons p;
+    pistons_create(&p, 1, &r);
+    p.b[0] = 2, p.b[1] = -5, p.b[2] = 3;
+    polynomial(p.session, -dt, dt, 0, &p);
+    for (int i = 0; i < 14; i++) {
+        OK(p.session, spar_session_set_predictor(p.session, set[i]));
+        for (int k = 0; k < 3; k++) {
+            assert_true((p.body[0]->load_history[k] != NULL) == (k <= set[i]));
+        }
+        step_of_order(&p, i, dt, used[i]);
+    }
+    for (int to = 0; to < 3; to++) { /* saved with order 1 */
+        pistons other;
+        OK(p.session, spar_session_save(p.session, path));
+        pistons_create(&other, 1, &r);
+        memcpy(other.b, p.b, sizeof p.b);
+        OK(other.session, spar_session_set_predictor(other.session, to));
+        OK(other.session, spar_session_load(other.session, path));
+        for (int i = 14; i < 16; i++) {
+            step_of_order(&other, i, dt, to < 2 ? to : i - 13);
+        }
+        pistons_destroy(&other);
+    }
+    (void)remove(path);
+    pistons_destroy(&p);
+}
+
 /* ---- several fluid steps in one ---- */
 
 /* Pushes over parts of the step are averaged by their lengths: 1/4 of 8, 1/4 of 4, 1/2 of 2 is 4; each pass anew. */
@@ -431,6 +488,7 @@ int main(void) {
         cmocka_unit_test(instability_warning),
         cmocka_unit_test(predictor_is_exact),
         cmocka_unit_test(predictor_lags),
+        cmocka_unit_test(order_may_change),
         cmocka_unit_test(pushes_are_averaged),
         cmocka_unit_test(mean_moments_come_and_go),
         cmocka_unit_test(settings_are_checked),

@@ -156,7 +156,8 @@ SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, 
    50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
 /* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2.
-   A young clock has too few loads: the first step uses 0, the second 1 at most. */
+   As many loads are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has
+   been raised. SPAR_ERR_MEMORY: the order is as before. */
 SPAR_API int spar_session_set_predictor(spar_session *session, int order);
 /* How a step is iterated. scheme: in, SPAR_COUPLING_*. Done when the change of the fluid's nodal loads is below atol
    + rtol |loads|, in newtons, moments by the member's length; max_iterations >= 1, past which spar_step_check answers

@@ -1,5 +1,6 @@
 #include "fluid.h"
 
+#include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "projection.h"
 #include "state.h"
@@ -69,19 +70,14 @@ void spari_history_free(spari_history *h) {
     free(h);
 }
 
-spari_history *spari_history_create(int64_t n) {
+spari_history *spari_history_create(int64_t n, int order) {
     spari_history *h = spari_zalloc(1, sizeof *h);
     if (!h) {
         return NULL;
     }
     h->n = n;
     h->after = spari_zalloc(3 * n, sizeof *h->after);
-    int whole = h->after != NULL;
-    for (int i = 0; i < 3; i++) {
-        h->past[i] = spari_zalloc(3 * n, sizeof *h->past[i]);
-        whole = whole && h->past[i];
-    }
-    if (!whole) {
+    if (!h->after || spari_history_keep(h->past, 3 * n, order) != SPAR_OK) {
         spari_history_free(h);
         return NULL;
     }
@@ -420,7 +416,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
 
 /* A history for n nodes in place of the old one. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
-    spari_history *h = spari_history_create(n);
+    spari_history *h = spari_history_create(n, fluid->member->session->predictor);
     if (!h) {
         return SPAR_ERR_MEMORY;
     }

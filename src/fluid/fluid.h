@@ -11,6 +11,8 @@ void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids
    that keep node forces (SPAR_EFFECT_FLUID_HISTORY) have work to do. ratio = dt^{n+1}/dt^n; order 0, 1 or 2 as in force
    at this step. */
+/* Past node forces for a predictor of this order, if they are kept. SPAR_ERR_MEMORY: all is as before. */
+int spari_fluid_keep(spar_fluid *fluid, int order);
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]);
 void spari_fluid_accept(spar_fluid *fluid);
 void spari_fluid_reject(spar_fluid *fluid);

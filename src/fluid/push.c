@@ -274,6 +274,11 @@ void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
     }
 }
 
+int spari_fluid_keep(spar_fluid *fluid, int order) {
+    spari_history *h = fluid->history;
+    return h ? spari_history_keep(h->past, 3 * h->n, order) : SPAR_OK;
+}
+
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]) {
     spari_history *h = fluid->history;
     double w[3];
@@ -306,9 +311,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     if (!h->pushed) { /* loads not given anew stay as they were */
         memcpy(h->after, h->past[0], size);
     }
-    double *oldest = h->past[2];
-    h->past[2] = h->past[1], h->past[1] = h->past[0], h->past[0] = oldest;
-    memcpy(h->past[0], h->after, size);
+    spari_history_shift(h->past, 3 * h->n, fluid->member->session->predictor, h->after);
 }
 
 void spari_fluid_reject(spar_fluid *fluid) {

@@ -38,12 +38,12 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     return SPAR_OK;
 }
 
-static int copy_history(const spari_history *from, spari_history **to) {
+static int copy_history(const spari_history *from, int order, spari_history **to) {
     *to = NULL;
     if (!from) {
         return SPAR_OK;
     }
-    spari_history *h = *to = spari_history_create(from->n);
+    spari_history *h = *to = spari_history_create(from->n, order);
     if (!h) {
         return SPAR_ERR_MEMORY;
     }
@@ -51,7 +51,7 @@ static int copy_history(const spari_history *from, spari_history **to) {
     size_t size = 3 * (size_t)h->n * sizeof *h->after;
     if (size > 0) {
         memcpy(h->after, from->after, size);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3 && h->past[k] && from->past[k]; k++) {
             memcpy(h->past[k], from->past[k], size);
         }
     }
@@ -83,7 +83,8 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         SPARI_TRY(spar_fluid_map(f));
         spari_history_free(f->history); /* the map has begun it with zeros */
     }
-    return copy_history(old->history, &f->history) == SPAR_OK ? SPAR_OK : no_memory(f);
+    int order = f->member->session->predictor;
+    return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory(f);
 }
 
 int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* A state: these, then load and load_accepted [nodes][6] if mapped; then, if node forces are kept, the nodes' places,
-   their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3]. */
+   their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not look so far back. */
 enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_AUDIT, S_HEAD = S_AUDIT + 8 };
 
 static int64_t state_size(const spar_fluid *fluid, const double *head) {
@@ -49,7 +49,11 @@ int spari_fluid_save(const spar_fluid *fluid, double *state) {
         SPARI_FLUID_REQUIRE(fluid, places, SPAR_ERR_MEMORY, "no memory to save the node forces");
         const double *all[] = {places, h->after, h->past[0], h->past[1], h->past[2]};
         for (int k = 0; k < 5 && n > 0; k++, at += n) {
-            memcpy(at, all[k], n * sizeof *at);
+            if (all[k]) {
+                memcpy(at, all[k], n * sizeof *at);
+            } else {
+                memset(at, 0, n * sizeof *at);
+            }
         }
         free(places);
     }
@@ -120,8 +124,10 @@ static int take_forces(const spar_fluid *fluid, int count, const double *const *
         }
         for (int k = 0; k < 4 && copy; k++) {
             double *to = k == 0 ? h->after : h->past[k - 1];
-            /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker) */
-            memcpy(to + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof *to);
+            if (to) { /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker)
+                       */
+                memcpy(to + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof *to);
+            }
         }
     }
     int ok = found != NULL;
@@ -163,7 +169,7 @@ int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states)
     }
     SPARI_TRY(take_forces(fluid, count, states, NULL));
     if (!on || fluid->history->n != s->n) { /* not in use before all ranks can load */
-        fluid->history_next = spari_history_create(s->n);
+        fluid->history_next = spari_history_create(s->n, fluid->member->session->predictor);
         if (!fluid->history_next) {
             return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for the node forces");
         }

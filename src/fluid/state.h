@@ -22,7 +22,7 @@ typedef struct spari_history {
     int pushed; /* a push came in the step under way */
     int64_t n;
     double *after;   /* [n][3] at t^{n+1}: predicted, then pushed */
-    double *past[3]; /* at t^n, t^{n-1}, t^{n-2} */
+    double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
 } spari_history;
 
 struct spar_fluid {
@@ -83,8 +83,8 @@ int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
-/* Node forces for n nodes, zeros; NULL: no memory. */
-spari_history *spari_history_create(int64_t n);
+/* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
+spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
 /* Keeps node forces for n nodes from now on, beginning with zeros. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);

@@ -1,6 +1,11 @@
-/* Extrapolation in time. */
+/* Extrapolation in time, and the past values it needs. */
 #ifndef SPARI_PREDICTOR_H
 #define SPARI_PREDICTOR_H
+
+#include "../session/status.h"
+
+#include <stdlib.h>
+#include <string.h>
 
 /* Weights at t^{n+1} of the values at t^n, t^{n-1}, t^{n-2}: the polynomial of `order` 0, 1 or 2 through them, steps of
    any length, last[0] the step to t^n and last[1] the one before. Order 1 is the spec's f + dt^{n+1}/dt^n (f^n -
@@ -15,6 +20,34 @@ static inline void spari_predictor(int order, double dt, const double last[2], d
         w[0] = (dt + a) * (dt + b) / (a * b);
         w[1] = -dt * (dt + b) / (a * (b - a));
         w[2] = dt * (dt + a) / (b * (b - a));
+    }
+}
+
+/* Past values [n] at t^n, t^{n-1}, ... for an order: arrays up to that one are there (zeros where they are new), those
+   beyond go. SPAR_ERR_MEMORY: nothing that was there is gone. */
+static inline int spari_history_keep(double *past[3], int64_t n, int order) {
+    for (int k = 0; k <= order; k++) {
+        past[k] = past[k] ? past[k] : spari_zalloc(n, sizeof **past);
+        if (!past[k]) {
+            return SPAR_ERR_MEMORY;
+        }
+    }
+    for (int k = order + 1; k < 3; k++) {
+        free(past[k]);
+        past[k] = NULL;
+    }
+    return SPAR_OK;
+}
+
+/* A step on: what was at t^n is at t^{n-1}, `now` [n] is at t^n. */
+static inline void spari_history_shift(double *past[3], int64_t n, int order, const double *now) {
+    double *oldest = past[order];
+    for (int k = order; k > 0; k--) {
+        past[k] = past[k - 1];
+    }
+    past[0] = oldest;
+    if (n > 0) {
+        memcpy(oldest, now, sizeof *now * (size_t)n);
     }
 }
 

@@ -168,27 +168,28 @@ int spari_member_effects(const spar_member *m) {
     return spari_rung_effects(m, e & possible);
 }
 
-/* The arrays over the nodes, and how many numbers a node has in each. */
+/* The arrays over the nodes, how many numbers a node has in each, and the least order of the predictor that needs it.
+ */
 static const struct {
     size_t field;
-    int width;
+    int width, order;
 } node_arrays[] = {
-    {offsetof(spar_member, xr), 3},
-    {offsetof(spar_member, qr), 4},
-    {offsetof(spar_member, now.q), 7},
-    {offsetof(spar_member, now.v), 6},
-    {offsetof(spar_member, now.a), 6},
-    {offsetof(spar_member, after.q), 7},
-    {offsetof(spar_member, after.v), 6},
-    {offsetof(spar_member, after.a), 6},
-    {offsetof(spar_member, dead), 6},
-    {offsetof(spar_member, load_used), 6},
-    {offsetof(spar_member, load_pushed), 6},
-    {offsetof(spar_member, load_history[0]), 6},
-    {offsetof(spar_member, load_history[1]), 6},
-    {offsetof(spar_member, load_history[2]), 6},
-    {offsetof(spar_member, load_solved[0]), 6},
-    {offsetof(spar_member, load_solved[1]), 6},
+    {offsetof(spar_member, xr), 3, 0},
+    {offsetof(spar_member, qr), 4, 0},
+    {offsetof(spar_member, now.q), 7, 0},
+    {offsetof(spar_member, now.v), 6, 0},
+    {offsetof(spar_member, now.a), 6, 0},
+    {offsetof(spar_member, after.q), 7, 0},
+    {offsetof(spar_member, after.v), 6, 0},
+    {offsetof(spar_member, after.a), 6, 0},
+    {offsetof(spar_member, dead), 6, 0},
+    {offsetof(spar_member, load_used), 6, 0},
+    {offsetof(spar_member, load_pushed), 6, 0},
+    {offsetof(spar_member, load_history[0]), 6, 0},
+    {offsetof(spar_member, load_history[1]), 6, 1},
+    {offsetof(spar_member, load_history[2]), 6, 2},
+    {offsetof(spar_member, load_solved[0]), 6, 0},
+    {offsetof(spar_member, load_solved[1]), 6, 0},
 };
 enum { NODE_ARRAYS = sizeof node_arrays / sizeof *node_arrays };
 
@@ -198,6 +199,9 @@ static double **node_array(spar_member *m, int k) {
 
 static int allocate(spar_member *m) {
     for (int k = 0; k < NODE_ARRAYS; k++) {
+        if (node_arrays[k].order > m->session->predictor) {
+            continue;
+        }
         double *x = spari_zalloc(node_arrays[k].width * m->nodes, sizeof *x);
         SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
         *node_array(m, k) = x;

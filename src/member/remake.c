@@ -132,7 +132,9 @@ static void carry_state(const spar_member *old, spar_member *m) {
     interpolate(E, P, n, 6, -1, old->now.v, m->now.v);
     interpolate(E, P, n, 6, -1, old->now.a, m->now.a);
     for (size_t k = 0; k < sizeof to / sizeof *to; k++) {
-        spari_remake_loads(old, m, loads[k], to[k]);
+        if (loads[k] && to[k]) { /* past loads are kept as far as either predictor looks */
+            spari_remake_loads(old, m, loads[k], to[k]);
+        }
     }
     spari_member_restart(m);
     memcpy(m->drive, old->drive, sizeof m->drive);

@@ -49,10 +49,26 @@ static void pass_clock(stream *t, spar_session *s) {
     pass_int(t, &s->iteration);
     pass_int(t, &s->iterating);
     pass_int(t, &s->order);
+    pass_int(t, &s->past);
     pass_int(t, &s->started);
     pass_int(t, &phase);
     if (t->mode == READ) {
         s->phase = (spari_phase)phase;
+        s->past = s->past < s->predictor ? s->past : s->predictor;
+    }
+}
+
+/* What may not be kept here, or was not there: zeros in the file. */
+static void pass_kept(stream *t, double *words, int64_t n) {
+    double zero = 0;
+    if (words) {
+        pass(t, words, n);
+    } else if (t->mode == WRITE) {
+        for (int64_t i = 0; i < n; i++) {
+            pass(t, &zero, 1);
+        }
+    } else {
+        (void)spari_image_get(t->image, n);
     }
 }
 
@@ -67,7 +83,7 @@ static void pass_member(stream *t, spar_member *m) {
         pass(t, motions[k], width[k] * n);
     }
     for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
-        pass(t, loads[k], 6 * n);
+        pass_kept(t, loads[k], 6 * n);
     }
     pass(t, m->drive, 2 * 19);
     pass(t, &m->dissipated, 1);

@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include "../math/predictor.h"
 #include "../member/body.h"
 #include "../member/rung.h"
 #include "../solve/solver.h"
@@ -148,7 +149,16 @@ int spar_session_set_predictor(spar_session *session, int order) {
     const char *call = "spar_session_set_predictor";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", call, order);
+    int status = SPAR_OK;
+    for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
+        status = m->committed ? spari_history_keep(m->load_history, 6 * m->nodes, order) : SPAR_OK;
+    }
+    for (spar_fluid *f = session->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+        status = spari_fluid_keep(f, order);
+    }
+    SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", call, order);
     session->predictor = order;
+    session->past = session->past < order ? session->past : order;
     return SPAR_OK;
 }
 

@@ -26,7 +26,7 @@ struct spar_session {
     int substeps;
     double newton_atol, newton_rtol;
     int newton_max;
-    int predictor;
+    int predictor; /* its order; as many loads before those of t^n are kept */
     int scheme;
     double coupling_atol, coupling_rtol;
     int coupling_max;
@@ -46,6 +46,7 @@ struct spar_session {
     int64_t step;
     int iteration;
     spari_phase phase;
+    int past;           /* loads before those of t^n that there are so far: the order of the next prediction */
     int order;          /* of the predictor in the step under way */
     int iterating;      /* the last check asked for another iteration */
     int started;        /* the clock has run */

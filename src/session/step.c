@@ -46,8 +46,9 @@ static void predict_loads(spar_member *m, int order, double dt, const double las
     spari_predictor(order, dt, last, w);
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
         double f = w[0] * m->load_history[0][i];
-        f += order > 0 ? w[1] * m->load_history[1][i] : 0;
-        f += order > 1 ? w[2] * m->load_history[2][i] : 0;
+        for (int k = 1; k <= order; k++) {
+            f += w[k] * m->load_history[k][i];
+        }
         m->load_used[i] = f;
     }
 }
@@ -91,7 +92,7 @@ int spar_step_begin(spar_session *session, double dt) {
             memcpy(m->load_history[0], m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
         }
     }
-    int order = s->step < s->predictor ? (int)s->step : s->predictor;
+    int order = s->past;
     for (spar_member *m = s->members; m; m = m->next) {
         hold_root(m);
         predict_loads(m, order, dt, s->dt_last);
@@ -182,15 +183,11 @@ int spar_step_check(spar_session *session, int *done) {
 /* ---- accept and reject ---- */
 
 static void shift_history(spar_session *s, spar_member *m) {
-    double *oldest = m->load_history[2];
-    m->load_history[2] = m->load_history[1];
-    m->load_history[1] = m->load_history[0];
-    m->load_history[0] = oldest;
     /* a step that was never checked had no loads but those it was solved with */
     if (s->phase != SPARI_CHECKED) {
         memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
     }
-    memcpy(oldest, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+    spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
 }
 
 int spar_step_accept(spar_session *session) {
@@ -209,6 +206,7 @@ int spar_step_accept(spar_session *session) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
     }
+    s->past = s->past < s->predictor ? s->past + 1 : s->predictor;
     s->time += s->dt;
     s->step++;
     s->dt_last[1] = s->dt_last[0];

@@ -71,6 +71,7 @@ static const spar_member *member_before(const spar_session *s, const stash *t, c
 static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
     s->substeps = wish->substeps;
     s->predictor = wish->predictor;
+    s->past = s->past < s->predictor ? s->past : s->predictor;
     s->scheme = wish->scheme;
     s->coupling_rtol = wish->coupling_rtol;
     s->newton_atol = wish->newton_atol;
