@@ -1,7 +1,7 @@
 /* Whether advice is kept: on each scene spar_session_advise is asked for some tolerances, the scene is built to what it
-   says, run over its whole time and compared with a converged run; its cost with the cheapest of a hundred settings
-   such as one would choose by hand, both timed in turn. advice [--scene name] [--tolerance x] [--part x] [--verbose]
-   part: of the scene's time that trials see, default 1/2. A table on stdout. */
+   says, run over its whole time and compared with a converged run; its cost with the cheapest of 120 settings such as
+   one would choose by hand, both timed in turn. advice [--scene name] [--tolerance x] [--part x] [--out file.csv]
+   [--verbose]. part: of the scene's time that trials see, default 1/2. A table on stdout; --out for advice.gp. */
 #include "scenes.h"
 
 #include <math.h>
@@ -18,6 +18,7 @@ typedef struct choice {
 } choice;
 
 static int verbose;
+static FILE *csv; /* NULL: not wanted */
 
 static void show(const spar_session *s, int level, const char *text, void *context) {
     (void)s, (void)context;
@@ -46,37 +47,44 @@ static void play(const scene *s, const scene_reference *reference, int repeats, 
 
 /* ---- by hand ---- */
 
-static choice best_by_hand(const scene *s, const scene_reference *reference, double tolerance) {
-    static const double factor[] = {4, 2, 1, 0.5, 0.25, 0.125};
-    static const struct {
-        int scheme, predictor;
-    } coupling[] = {{SPAR_COUPLING_EXPLICIT, 1},
-                    {SPAR_COUPLING_EXPLICIT, 2},
-                    {SPAR_COUPLING_FIXED_POINT, 1},
-                    {SPAR_COUPLING_IQN_ILS, 1}};
-    static const struct {
-        int rung, modes, nodes;
-    } shape[] = {{SPAR_FIDELITY_EXACT, 0, 8},
-                 {SPAR_FIDELITY_EXACT, 0, 6},
-                 {SPAR_FIDELITY_EXACT, 0, 5},
-                 {SPAR_FIDELITY_MODAL, 8, 6},
-                 {SPAR_FIDELITY_RIGID, 0, 6}};
-    choice best = {s->standard, INFINITY, INFINITY};
-    for (size_t f = 0; f < sizeof factor / sizeof *factor; f++) {
-        for (size_t c = 0; c < sizeof coupling / sizeof *coupling; c++) {
-            for (size_t b = 0; b < sizeof shape / sizeof *shape; b++) {
-                choice t = {s->standard, 0, 0};
-                t.k.dt = scene_dt(s, s->standard.dt * factor[f]);
-                t.k.newton = 1e-6;
-                t.k.scheme = coupling[c].scheme, t.k.predictor = coupling[c].predictor;
-                t.k.tolerance = coupling[c].scheme ? 1e-2 : t.k.tolerance;
-                t.k.rung = shape[b].rung, t.k.modes = shape[b].modes, t.k.nodes = shape[b].nodes;
-                play(s, reference, 1, &t);
-                if (t.error <= tolerance && t.seconds < best.seconds) {
-                    play(s, reference, 3, &t);
-                    best = t.seconds < best.seconds ? t : best;
-                }
-            }
+static const double factors[] = {4, 2, 1, 0.5, 0.25, 0.125};
+static const struct {
+    int scheme, predictor;
+} couplings[] = {{SPAR_COUPLING_EXPLICIT, 1},
+                 {SPAR_COUPLING_EXPLICIT, 2},
+                 {SPAR_COUPLING_FIXED_POINT, 1},
+                 {SPAR_COUPLING_IQN_ILS, 1}};
+static const struct {
+    int rung, modes, nodes;
+} shapes[] = {{SPAR_FIDELITY_EXACT, 0, 8},
+              {SPAR_FIDELITY_EXACT, 0, 6},
+              {SPAR_FIDELITY_EXACT, 0, 5},
+              {SPAR_FIDELITY_MODAL, 8, 6},
+              {SPAR_FIDELITY_RIGID, 0, 6}};
+#define LENGTH(x) (sizeof(x) / sizeof *(x))
+enum { CHOICES = LENGTH(factors) * LENGTH(couplings) * LENGTH(shapes) };
+
+static void choose_by_hand(const scene *s, const scene_reference *reference, choice hand[CHOICES]) {
+    for (size_t i = 0; i < CHOICES; i++) {
+        size_t f = i / (LENGTH(couplings) * LENGTH(shapes)), c = i / LENGTH(shapes) % LENGTH(couplings),
+               b = i % LENGTH(shapes);
+        choice *t = &hand[i];
+        t->k = s->standard;
+        t->k.dt = scene_dt(s, s->standard.dt * factors[f]);
+        t->k.newton = 1e-6;
+        t->k.scheme = couplings[c].scheme, t->k.predictor = couplings[c].predictor;
+        t->k.tolerance = t->k.scheme ? 1e-2 : t->k.tolerance;
+        t->k.rung = shapes[b].rung, t->k.modes = shapes[b].modes, t->k.nodes = shapes[b].nodes;
+        play(s, reference, 3, t);
+    }
+}
+
+/* The cheapest that keeps the tolerance; NULL: none does. */
+static const choice *best_by_hand(const choice hand[CHOICES], double tolerance) {
+    const choice *best = NULL;
+    for (int i = 0; i < CHOICES; i++) {
+        if (hand[i].error <= tolerance && (!best || hand[i].seconds < best->seconds)) {
+            best = &hand[i];
         }
     }
     return best;
@@ -144,60 +152,88 @@ static const char *words(const knobs *k, char *text, size_t size) {
     return text;
 }
 
-static int check(const scene *s, const scene_reference *reference, double tolerance, double part) {
-    double advice[SPAR_ADVICE_COUNT], since = now(), took;
+/* For the picture: what it was, the tolerance, error and cost over the default's. */
+static void keep(const scene *s, const char *what, double tolerance, const choice *c, const choice *standard) {
+    if (csv && isfinite(c->error)) {
+        fprintf(csv, "%s,%s,%g,%.4e,%.4f\n", s->name, what, tolerance, c->error, c->seconds / standard->seconds);
+    }
+}
+
+static int check(const scene *s, const scene_reference *reference, const choice by_hand[CHOICES],
+                 const choice *standard, double tolerance, double part) {
+    double advice[SPAR_ADVICE_COUNT], since = now(), took, least[2] = {INFINITY, INFINITY};
     char text[160];
-    choice mine, hand = best_by_hand(s, reference, tolerance), standard = {s->standard, 0, 0};
-    took = now() - since;
-    since = now();
-    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK) {
+    const choice *best = best_by_hand(by_hand, tolerance);
+    choice mine, hand;
+    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK || !best) {
         return 1;
     }
     took = now() - since;
-    mine.seconds = hand.seconds = INFINITY;
-    double least[2] = {INFINITY, INFINITY};
+    hand = *best;
     for (int i = 0; i < 3; i++) { /* in turn, as the machine's speed changes */
         play(s, reference, 1, &mine);
         play(s, reference, 1, &hand);
         least[0] = fmin(least[0], mine.seconds), least[1] = fmin(least[1], hand.seconds);
     }
-    play(s, reference, 1, &standard);
-    int kept = mine.error <= tolerance, cheap = !(least[0] > 2 * least[1]);
+    mine.seconds = least[0], hand.seconds = least[1];
+    int kept = mine.error <= tolerance, cheap = mine.seconds <= 2 * hand.seconds;
     printf("%-6s %-9.3g %9.2e %9.2e %6.2f %8.3f %8.3f %5.0f %7.1f  %s%s\n", s->name, tolerance,
-           advice[SPAR_ADVICE_ERROR], mine.error, least[0] / least[1], least[0] / standard.seconds,
-           least[1] / standard.seconds, advice[SPAR_ADVICE_TRIALS], took, kept ? "" : "NOT KEPT ", cheap ? "" : "DEAR");
+           advice[SPAR_ADVICE_ERROR], mine.error, mine.seconds / hand.seconds, mine.seconds / standard->seconds,
+           hand.seconds / standard->seconds, advice[SPAR_ADVICE_TRIALS], took, kept ? "" : "NOT KEPT ",
+           cheap ? "" : "DEAR");
     printf("       advice: %s\n", words(&mine.k, text, sizeof text));
     printf("       hand:   %s, error %.2e\n", words(&hand.k, text, sizeof text), hand.error);
     fflush(stdout);
+    keep(s, "advice", tolerance, &mine, standard);
+    keep(s, "best", tolerance, &hand, standard);
     return !kept || !cheap;
+}
+
+static int check_scene(const scene *s, const double *tolerance, int count, double part) {
+    scene_reference reference;
+    choice hand[CHOICES], standard = {s->standard, 0, 0};
+    int failed = 0;
+    if (scene_converge(s, 16, s->spins ? 8 : 1, s->spins ? 8 : 18, &reference) != SPAR_OK) {
+        printf("%s: no reference\n", s->name);
+        return 1;
+    }
+    choose_by_hand(s, &reference, hand);
+    play(s, &reference, 3, &standard);
+    keep(s, "default", 0, &standard, &standard);
+    for (int i = 0; i < CHOICES; i++) {
+        keep(s, "hand", 0, &hand[i], &standard);
+    }
+    for (int t = 0; t < count; t++) {
+        failed += check(s, &reference, hand, &standard, tolerance[t], part);
+    }
+    return failed;
 }
 
 int main(int argc, char **argv) {
     static const double tolerances[SCENE_COUNT][2] = {
-        {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {1e-1, 5e-2}, {1e-2, 1e-3}};
+        {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {1e-2, 1e-3}};
     const char *only = NULL;
     double tolerance = 0, part = 0.5;
     for (int i = 1; i < argc; i++) {
         verbose |= strcmp(argv[i], "--verbose") == 0;
         only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
         tolerance = strcmp(argv[i], "--tolerance") == 0 && i + 1 < argc ? strtod(argv[++i], NULL) : tolerance;
+        if (strcmp(argv[i], "--out") == 0 && i + 1 < argc && !csv) {
+            csv = fopen(argv[++i], "w");
+        }
         part = strcmp(argv[i], "--part") == 0 && i + 1 < argc ? strtod(argv[++i], NULL) : part;
     }
     int failed = 0;
     printf("scene  tolerance estimate      real   cost  /default  hand/d. runs       s  (cost: of the cheapest by "
            "hand)\n");
     for (int i = 0; i < SCENE_COUNT; i++) {
-        scene_reference reference;
-        if (only && strcmp(only, scenes[i].name) != 0) {
-            continue;
+        if (!only || strcmp(only, scenes[i].name) == 0) {
+            fprintf(stderr, "%s ...\r", scenes[i].name);
+            failed += check_scene(&scenes[i], tolerance > 0 ? &tolerance : tolerances[i], tolerance > 0 ? 1 : 2, part);
         }
-        if (scene_converge(&scenes[i], 16, scenes[i].spins ? 8 : 1, scenes[i].spins ? 8 : 18, &reference) != SPAR_OK) {
-            printf("%s: no reference\n", scenes[i].name);
-            return 1;
-        }
-        for (int t = 0; t < (tolerance > 0 ? 1 : 2); t++) {
-            failed += check(&scenes[i], &reference, tolerance > 0 ? tolerance : tolerances[i][t], part);
-        }
+    }
+    if (csv) {
+        fclose(csv);
     }
     scenes_free();
     return failed > 0;
