@@ -68,7 +68,8 @@ static void print_line(const line *l) {
         printf(" %11s %11s %8s", "fails", "fails", "");
     } else {
         printf(" %11s %11s %6.0f %%", percent(l->value[SPAR_COLUMN_MOTION], motion),
-               percent(l->value[SPAR_COLUMN_REACTION], loads), 100 * l->value[SPAR_COLUMN_SHARE]);
+               percent(l->value[SPAR_COLUMN_REACTION], loads),
+               round(100 * l->value[SPAR_COLUMN_SHARE]) + 0.0); /* no -0 */
     }
     print_words(l);
 }

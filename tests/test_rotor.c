@@ -254,7 +254,7 @@ static void test_gravity(void **state) {
     (void)state;
     double value[VALUES];
     need_program();
-    const char *scene = "--straight --dt 0.05 --nodes 6 --vtk-every 0";
+    const char *scene = "--straight --dt 0.05 --nodes 6 --coupling explicit --vtk-every 0";
     char arguments[256];
     snprintf(arguments, sizeof arguments, "%s --seconds 1e-6 --trial 0.8 --csv", scene);
     assert_int_equal(run_program(EFFECTS_PROGRAM, 0, arguments, "effects_gravity"), 0);

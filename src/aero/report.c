@@ -105,9 +105,7 @@ static int fill_table(spar_session *s, spar_aero *aero, const trials *t, double 
     return SPAR_OK;
 }
 
-static int check(const spar_session *session, const spar_aero *aero, const trials *t, const void *table,
-                 const char *call) {
-    spar_session *s = (spar_session *)session;
+static int check(spar_session *s, const spar_aero *aero, const trials *t, const void *table, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
                   "%s: the blades are of another session; give theirs", call);
