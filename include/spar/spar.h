@@ -147,9 +147,9 @@ SPAR_API const char *spar_session_message(const spar_session *session);
 /* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 /* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). rho_inf: in, spectral radius at infinite
-   frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9; an exact beam that turns at Omega, with parts that the
-   step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. substeps: in, structural steps per coupling step, >=
-   1, with loads interpolated linearly between t^n and t^{n+1}; default 1. */
+   frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9; an exact beam that spins at Omega without a driven
+   root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. substeps: in, structural steps per
+   coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1}; default 1. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
    rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,

@@ -1,5 +1,5 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
-   composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. */
+   composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/rung.h"
@@ -32,10 +32,175 @@ static scheme scheme_of(const spar_member *member, double rho, double h) {
     return c;
 }
 
+/* ---- seen from a driven root ---- */
+
+/* A substep's ends in the variables of the scheme: seen from a driven root in its axes, in which steady turning is rest
+   and stiff directions stay (docs/beam.md), else as they are; and the end as the body takes it. */
+typedef struct ends {
+    spari_state from, to, seen;
+    const double *root; /* q, v, a of a driven root at the end; NULL: as they are */
+    double carried;     /* how far the root takes the member along, as size_of */
+} ends;
+
+static void arm_of(const spar_member *m, int node, double arm[3]) {
+    int P = m->per_element, element = P > 1 && node > 0 ? (node - 1) / (P - 1) : 0; /* joints stand twice there */
+    for (int k = 0; k < 3; k++) {
+        arm[k] = m->xr[3 * (node + element) + k] - m->xr[k];
+    }
+}
+
+/* Motion of all nodes as seen from a root with q, v, a; b is so already. */
+static void look_from(const spar_member *m, const double *root, const spari_state *s, spari_state *own) {
+    double W[3], A[3], back[4];
+    spari_quat_conj(root + 3, back);
+    spari_rotate_back(root + 3, root + 10, W);
+    spari_rotate_back(root + 3, root + 16, A);
+    for (int i = 0; i < m->solver->n; i++) {
+        double arm[3], d[3], c1[3], c2[3], c3[3], *v = own->v + 6 * i, *a = own->a + 6 * i, *q = own->q + 7 * i;
+        arm_of(m, i, arm);
+        for (int k = 0; k < 3; k++) {
+            d[k] = arm[k] + s->q[7 * i + k] - root[k];
+        }
+        for (int k = 0; k < 6; k++) {
+            v[k] = s->v[6 * i + k] - root[7 + k];
+            a[k] = s->a[6 * i + k] - root[13 + k];
+        }
+        spari_rotate_back(root + 3, d, d);
+        for (int k = 0; k < 6; k += 3) {
+            spari_rotate_back(root + 3, v + k, v + k);
+            spari_rotate_back(root + 3, a + k, a + k);
+        }
+        spari_quat_mul(back, s->q + 7 * i + 3, q + 3);
+        spari_cross(W, d, c1);
+        for (int k = 0; k < 3; k++) {
+            q[k] = d[k] - arm[k];
+            v[k] -= c1[k];
+            c1[k] += 2 * v[k];
+        }
+        spari_cross(W, c1, c2);
+        spari_cross(A, d, c3);
+        spari_cross(W, v + 3, c1);
+        for (int k = 0; k < 3; k++) {
+            a[k] -= c2[k] + c3[k];
+            a[3 + k] -= c1[k];
+        }
+    }
+    memcpy(own->b, s->b, (size_t)(6 * m->solver->n) * sizeof *own->b);
+}
+
+/* And back, into what the body takes. */
+static void show(const spar_member *m, ends *e) {
+    const double *root = e->root;
+    double W[3], A[3];
+    if (!root) {
+        return;
+    }
+    spari_rotate_back(root + 3, root + 10, W);
+    spari_rotate_back(root + 3, root + 16, A);
+    for (int i = 0; i < m->solver->n; i++) {
+        const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
+        double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
+                                                  *B = e->seen.a + 6 * i;
+        arm_of(m, i, arm);
+        for (int k = 0; k < 3; k++) {
+            d[k] = arm[k] + e->to.q[7 * i + k];
+        }
+        spari_cross(W, d, c1);
+        for (int k = 0; k < 3; k++) {
+            V[k] = v[k] + c1[k];
+            V[3 + k] = v[3 + k] + W[k];
+            c1[k] += 2 * v[k];
+        }
+        spari_cross(W, c1, c2);
+        spari_cross(A, d, c3);
+        spari_cross(W, v + 3, c1);
+        for (int k = 0; k < 3; k++) {
+            B[k] = a[k] + c2[k] + c3[k];
+            B[3 + k] = a[3 + k] + A[k] + c1[k];
+        }
+        spari_rotate(root + 3, d, d);
+        for (int k = 0; k < 6; k += 3) {
+            spari_rotate(root + 3, V + k, V + k);
+            spari_rotate(root + 3, B + k, B + k);
+        }
+        for (int k = 0; k < 3; k++) {
+            q[k] = root[k] + d[k] - arm[k];
+            V[k] += root[7 + k];
+            B[k] += root[13 + k];
+        }
+        spari_quat_mul(root + 3, e->to.q + 7 * i + 3, q + 3);
+        spari_quat_normalise(q + 3);
+    }
+    memcpy(e->seen.b, e->to.b, (size_t)(6 * m->solver->n) * sizeof(double));
+}
+
+/* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */
+static void lose_jump(const spar_member *m, double h, const double *from, const double *to, spari_state *own) {
+    double J[6], E[6], back[4], less[3];
+    spari_solver_jump(from, to, h, J, E);
+    for (int k = 0; k < 3; k++) {
+        less[k] = -E[3 + k];
+    }
+    spari_quat_exp(less, back);
+    for (int i = 1; i < m->solver->n; i++) {
+        double *q = own->q + 7 * i, *v = own->v + 6 * i, d[3], c1[3], c2[3];
+        arm_of(m, i, d);
+        for (int k = 0; k < 3; k++) {
+            d[k] += q[k];
+        }
+        spari_cross(J + 3, d, c1);
+        spari_cross(E + 3, d, c2);
+        for (int k = 0; k < 3; k++) {
+            v[k] -= J[k] + c1[k];
+            v[3 + k] -= J[3 + k];
+            q[k] -= E[k] + c2[k];
+        }
+        spari_quat_mul(back, q + 3, q + 3);
+    }
+}
+
+/* q, v, a of the root node */
+static void root_of(const spari_state *s, double root[19]) {
+    memcpy(root, s->q, 7 * sizeof *root);
+    memcpy(root + 7, s->v, 6 * sizeof *root);
+    memcpy(root + 13, s->a, 6 * sizeof *root);
+}
+
+/* The distance of b from a is that of another step: see stretch_for. */
+static void stretch(int n, double ratio, spari_state *s) {
+    for (int i = 0; i < 6 * n && ratio != 1; i++) {
+        s->b[i] = s->a[i] + ratio * (s->b[i] - s->a[i]);
+    }
+}
+
+static ends ends_of(const spar_member *m, const scheme *c, const double *root, double ratio, spari_state *from,
+                    spari_state *to) {
+    spari_solver *s = m->solver;
+    ends e = {*from, *to, *to, NULL, 0};
+    if (s->own[0].q && !c->still) {
+        double before[19], turn[4], psi[3], way[3];
+        root_of(from, before);
+        spari_quat_conj(before + 3, turn);
+        spari_quat_mul(root + 3, turn, turn);
+        spari_quat_log(turn, psi);
+        for (int k = 0; k < 3; k++) {
+            way[k] = root[k] - before[k];
+        }
+        e.from = s->own[0], e.to = s->own[1], e.root = root;
+        e.carried = spari_norm(way) / m->body->length + spari_norm(psi);
+        look_from(m, before, from, &e.from);
+        lose_jump(m, c->h, before, root, &e.from);
+    }
+    stretch(s->n, ratio, &e.from);
+    return e;
+}
+
+/* ---- one substep ---- */
+
 /* State of `to` from the increments: place, and without inertia the rates. The rotation vector is the increment plus
    h^2/12 omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly: the scheme stays of
    second order and reversible, and a fast spin about an axis that turns no longer drifts off its axis. */
-static void place_node(const scheme *c, const spari_state *from, spari_state *to, const double *x, int i) {
+static void place_node(const scheme *c, const spari_state *from, const spari_state *to, const double *x, int i) {
     double p[4], psi[3] = {x[6 * i + 3], x[6 * i + 4], x[6 * i + 5]};
     if (!c->still) {
         double turn[3];
@@ -59,21 +224,18 @@ static void place_node(const scheme *c, const spari_state *from, spari_state *to
 /* What stays over the step in the starting values of Newton. */
 typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
 
-/* Starting values of Newton. Smooth motion: the acceleration stays; in the frame of a root that turns, that is the
-   acceleration that turns with it. Where stiff parts ring, their acceleration says nothing of the next: the velocity
-   stays. Where the step is longer than the motion lasts: the place stays. */
-static void predict(const spar_member *member, const scheme *c, const double turn[4], guess stays,
-                    const spari_state *from, spari_state *to, double *x) {
+/* Starting values of Newton. Smooth motion: the acceleration stays. Where stiff parts ring, their acceleration says
+   nothing of the next: the velocity stays. Where the step is longer than the motion lasts: the place stays. */
+static void predict(const spar_member *member, const scheme *c, guess stays, ends *e, double *x) {
+    const spari_state *from = &e->from, *to = &e->to;
     int n = member->solver->n;
     double h = c->h;
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate(turn, from->a + 6 * i + k, to->a + 6 * i + k);
-        }
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             double b = from->b[k], a = from->a[k];
             if (stays == ACCELERATION) {
-                to->b[k] = ((1 - c->alpha_f) * to->a[k] + c->alpha_f * a - c->alpha_m * b) / (1 - c->alpha_m);
+                to->a[k] = a;
+                to->b[k] = (a - c->alpha_m * b) / (1 - c->alpha_m);
             } else { /* the b that makes x = h v or 0, and the a that goes with it */
                 to->b[k] = (1 - 0.5 / c->beta) * b - (stays == PLACE ? from->v[k] / (h * c->beta) : 0);
                 to->a[k] = ((1 - c->alpha_m) * to->b[k] + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
@@ -83,11 +245,13 @@ static void predict(const spar_member *member, const scheme *c, const double tur
         }
         place_node(c, from, to, x, i);
     }
+    show(member, e);
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
-static void carry(const spar_member *member, const scheme *c, const double *root, const double turn[4],
-                  const spari_state *from, spari_state *to, double *x) {
+static void carry(const spar_member *member, const scheme *c, const double *root, const double turn[4], const ends *e,
+                  double *x) {
+    const spari_state *from = &e->from, *to = &e->to;
     const spari_solver *s = member->solver;
     int P = member->per_element, driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
@@ -109,11 +273,11 @@ static void carry(const spar_member *member, const scheme *c, const double *root
 }
 
 /* A driven root goes where it is told. */
-static void impose_root(const spar_member *member, const double *root, const spari_state *from, spari_state *to,
-                        double *x) {
+static void impose_root(const spar_member *member, const double *root, const ends *e, double *x) {
+    const spari_state *from = &e->from, *to = &e->to;
     int first, end;
     spari_solver_fixed(member, &first, &end);
-    if (end == 0) {
+    if (end == 0 || e->root) { /* seen from itself a root does not move */
         return;
     }
     double c[4], p[4];
@@ -186,10 +350,26 @@ static int correct(const spar_member *member, const double *q, const double *r, 
     return 0;
 }
 
-/* dx = tinv dtheta: the inverse tangent operator of the rotation vector psi, and the inverse of d psi / d x = I - k
-   omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
-static void update_tangent_operators(const spari_solver *s, const scheme *c, const spari_state *from,
-                                     const spari_state *to, const double *x) {
+/* T := R T R^T */
+static void turn_matrix(const double q[4], double T[9]) {
+    for (int side = 0; side < 2; side++) {
+        for (int j = 0; j < 3; j++) { /* rows: T R^T, then columns */
+            double x[3];
+            for (int k = 0; k < 3; k++) {
+                x[k] = side ? T[3 * k + j] : T[3 * j + k];
+            }
+            spari_rotate(q, x, x);
+            for (int k = 0; k < 3; k++) {
+                T[side ? 3 * k + j : 3 * j + k] = x[k];
+            }
+        }
+    }
+}
+
+/* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
+   d x = I - k omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
+static void update_tangent_operators(const spari_solver *s, const scheme *c, const ends *e, const double *x) {
+    const spari_state *from = &e->from, *to = &e->to;
     double k = c->still ? 0 : c->h * c->h * c->cv / 12;
     for (int i = 0; i < s->n; i++) {
         const double *w = from->v + 6 * i + 3;
@@ -206,13 +386,16 @@ static void update_tangent_operators(const spari_solver *s, const scheme *c, con
                 out[3 * m + j] = f * (column[m] + k * wt[m] + along * w[m]);
             }
         }
+        if (e->root) {
+            turn_matrix(e->root + 3, out);
+        }
     }
 }
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply(const spar_member *member, const scheme *c, const spari_state *from, spari_state *to,
-                    double longest, double *x, double *dx) {
+static double apply(const spar_member *member, const scheme *c, ends *e, double longest, double *x, double *dx) {
+    const spari_state *to = &e->to;
     const spari_solver *s = member->solver;
     double largest = 0, length = member->body->length;
     for (int i = 0; i < s->n; i++) {
@@ -222,6 +405,9 @@ static double apply(const spar_member *member, const scheme *c, const spari_stat
             turn[k] = t[3 * k] * d[3] + t[3 * k + 1] * d[4] + t[3 * k + 2] * d[5];
         }
         memcpy(d + 3, turn, sizeof turn);
+        for (int k = 0; k < 6 && e->root; k += 3) {
+            spari_rotate_back(e->root + 3, d + k, d + k);
+        }
         largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
     }
     double cut = largest > longest ? longest / largest : 1;
@@ -234,8 +420,9 @@ static double apply(const spar_member *member, const scheme *c, const spari_stat
             to->a[k] += c->cm * step;
             to->b[k] += to_b * step;
         }
-        place_node(c, from, to, x, i);
+        place_node(c, &e->from, to, x, i);
     }
+    show(member, e);
     return largest;
 }
 
@@ -274,35 +461,35 @@ static int close_to(double x, double kept) {
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
    what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
    that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how,
-                           const spari_state *from, spari_state *to, double *x, int *iterations) {
+static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how, ends *e, double *x,
+                           int *iterations) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
     double last = 0, longest = how == FULL ? 0.5 : INFINITY;
     s->factored = s->factored && how == KEPT && close_to(c->cm, s->kept_cm) && close_to(c->cv, s->kept_cv);
     int fresh = !s->factored;
     for (int it = 1; it <= session->newton_max; it++, ++*iterations) {
-        impose_root(member, root, from, to, x);
-        double scale = balance(member, c, to, s->r);
+        impose_root(member, root, e, x);
+        double scale = balance(member, c, &e->seen, s->r);
         if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
             return "met numbers that are not finite";
         }
-        update_tangent_operators(s, c, from, to, x);
-        if (!s->factored && form_tangent(member, c, to)) {
+        update_tangent_operators(s, c, e, x);
+        if (!s->factored && form_tangent(member, c, &e->seen)) {
             return "found a singular tangent";
         }
-        if (correct(member, to->q, s->r, s->dx)) {
+        if (correct(member, e->seen.q, s->r, s->dx)) {
             return "found a singular tangent";
         }
         double noise = infinity_norm(s->r, 6 * s->n);
-        double correction = apply(member, c, from, to, longest, x, s->dx);
+        double correction = apply(member, c, e, longest, x, s->dx);
         s->newton++;
-        double tolerance = session->newton_atol + session->newton_rtol * size_of(member, x);
+        double tolerance = session->newton_atol + session->newton_rtol * (size_of(member, x) + e->carried);
         double theta = last > 0 ? correction / last : 0;
         double left = last > 0 && theta < 1 && how != FULL ? theta / (1 - theta) * correction : correction;
         int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * member->body->stiffest);
         if (left <= tolerance || noise <= 16 * DBL_EPSILON * scale || stuck) {
-            impose_root(member, root, from, to, x);
+            impose_root(member, root, e, x);
             s->factored = s->factored && (fresh || it <= PATIENCE);
             return NULL;
         }
@@ -319,8 +506,7 @@ static const char *attempt(spar_member *member, const scheme *c, const double *r
 }
 
 /* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spar_member *member, const scheme *c, const double *root, const double turn[4],
-                  const spari_state *from, spari_state *to, double *x) {
+static int newton(spar_member *member, const scheme *c, const double *root, const double turn[4], ends *e, double *x) {
     const char *wrong = NULL;
     int iterations = 0;
     static const struct {
@@ -329,11 +515,11 @@ static int newton(spar_member *member, const scheme *c, const double *root, cons
     } attempts[] = {{KEPT, ACCELERATION}, {FRESH, ACCELERATION}, {FULL, VELOCITY}, {FULL, PLACE}};
     for (size_t k = member->solver->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (c->still) {
-            carry(member, c, root, turn, from, to, x);
+            carry(member, c, root, turn, e, x);
         } else {
-            predict(member, c, turn, attempts[k].stays, from, to, x);
+            predict(member, c, attempts[k].stays, e, x);
         }
-        wrong = attempt(member, c, root, attempts[k].how, from, to, x, &iterations);
+        wrong = attempt(member, c, root, attempts[k].how, e, x, &iterations);
         if (!wrong) {
             return SPAR_OK;
         }
@@ -421,7 +607,14 @@ static int start(spar_member *member, const scheme *c) {
         "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia to every "
         "direction in which it can move freely",
         member->name);
-    memcpy(b->b, b->a, (size_t)(6 * n) * sizeof *b->b);
+    const double *a = b->a;
+    if (s->own[0].q) {
+        double root[19];
+        root_of(b, root);
+        look_from(member, root, b, &s->own[0]);
+        a = s->own[0].a;
+    }
+    memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
     s->started = 1;
     return SPAR_OK;
 }
@@ -429,14 +622,8 @@ static int start(spar_member *member, const scheme *c) {
 /* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its
    distance from a^n scales. Without this a sequence of uneven steps is of first order. A much larger step gets no more
    than four times the distance: it is mostly what an unresolved part left there. */
-static void rescale(spari_solver *s, double h) {
-    if (s->h_begin <= 0 || h == s->h_begin) {
-        return;
-    }
-    double ratio = fmin(h / s->h_begin, 4);
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->to.b[i] = s->to.a[i] + ratio * (s->to.b[i] - s->to.a[i]);
-    }
+static double stretch_for(const spari_solver *s, double h) {
+    return s->h_begin > 0 && h != s->h_begin ? fmin(h / s->h_begin, 4) : 1;
 }
 
 static void swap(spari_state *a, spari_state *b) {
@@ -462,7 +649,7 @@ int spari_solver_advance(spar_member *member, double dt) {
         SPARI_TRY(start(member, &c));
     }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-    rescale(s, c.h);
+    double ratio = stretch_for(s, c.h);
     s->h_solved = c.h;
     memcpy(before, member->drive[0], sizeof before);
     double power = s->power_begin;
@@ -481,7 +668,8 @@ int spari_solver_advance(spar_member *member, double dt) {
             spari_quat_conj(before + 3, conj);
             spari_quat_mul(root + 3, conj, turn);
         }
-        int status = newton(member, &c, root, turn, &s->from, &s->to, s->increment);
+        ends e = ends_of(member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
+        int status = newton(member, &c, root, turn, &e, s->increment);
         if (status != SPAR_OK) {
             s->factored = 0;
             return status;

@@ -864,31 +864,30 @@ static void predict(const spari_frame *f, const scheme *c, const spari_frame_sta
     }
 }
 
-/* A root whose velocity changes by more than its accelerations say (hosts that give none, a sudden start) leaves the
-   nodes the velocity they have: seen from the root they lose the jump. Smooth driving has a jump of third order in h.
- */
-static void jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
-                 const spari_frame_state *to) {
-    double J[6];
+/* Where the root jumps (hosts that give no accelerations, a sudden start) the nodes keep place and velocity: seen from
+   it they lose the jump; modal ones to the nearest, in the norm of the mass. */
+static void lose_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                      const spari_frame_state *to) {
+    double jump[2][6], *rows[2] = {from->v, from->y};
     int P = m->per_element;
-    for (int k = 0; k < 6; k++) {
-        J[k] = to->root[7 + k] - from->root[7 + k] - 0.5 * h * (from->root[13 + k] + to->root[13 + k]);
-    }
-    spari_rotate_back(to->root + 3, J, J);
-    spari_rotate_back(to->root + 3, J + 3, J + 3);
-    for (int k = 6; k < f->n && f->basis; k++) { /* modal: to the nearest, in the norm of the mass */
-        from->v[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
-    }
-    for (int i = 1; i < f->nodes && !f->basis; i++) {
-        int64_t at = m->elements == 1 ? i : i + (i - 1) / (P - 1);
-        double arm[3], turn[3];
-        for (int k = 0; k < 3; k++) {
-            arm[k] = m->xr[3 * at + k] - m->xr[k];
+    spari_solver_jump(from->root, to->root, h, jump[0], jump[1]);
+    for (int s = 0; s < 2; s++) {
+        const double *J = jump[s];
+        double *x = rows[s];
+        for (int k = 6; k < f->n && f->basis; k++) {
+            x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
         }
-        spari_cross(J + 3, arm, turn);
-        for (int k = 0; k < 3; k++) {
-            from->v[6 * i + k] -= J[k] + turn[k];
-            from->v[6 * i + 3 + k] -= J[3 + k];
+        for (int i = 1; i < f->nodes && !f->basis; i++) {
+            int64_t at = m->elements == 1 ? i : i + (i - 1) / (P - 1);
+            double arm[3], turn[3];
+            for (int k = 0; k < 3; k++) {
+                arm[k] = m->xr[3 * at + k] - m->xr[k];
+            }
+            spari_cross(J + 3, arm, turn);
+            for (int k = 0; k < 3; k++) {
+                x[6 * i + k] -= J[k] + turn[k];
+                x[6 * i + 3 + k] -= J[3 + k];
+            }
         }
     }
 }
@@ -904,7 +903,7 @@ static int substep(spari_frame *f, spar_member *m, const scheme *c, spari_frame_
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     f->factored = same;
     if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
-        jump(f, m, c->h, from, to);
+        lose_jump(f, m, c->h, from, to);
     }
     predict(f, c, from, to);
     double *fixed = f->increment;

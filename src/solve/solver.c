@@ -1,5 +1,6 @@
 #include "solver.h"
 
+#include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/rung.h"
 #include "../session/session.h"
@@ -37,6 +38,14 @@ spari_solver *spari_solver_create(const spar_member *member) {
         spari_solver_free(s);
         return NULL;
     }
+    for (int k = 0; k < 2 && member->root == SPAR_ROOT_DRIVEN && (member->effects & SPAR_EFFECT_INERTIA); k++) {
+        double *block = spari_zalloc(25 * n, sizeof *block);
+        if (!block) {
+            spari_solver_free(s);
+            return NULL;
+        }
+        carve(block, s->n, &s->own[k]);
+    }
     carve(s->block[0], s->n, &s->begin);
     carve(s->block[1], s->n, &s->from);
     carve(s->block[2], s->n, &s->to);
@@ -50,6 +59,8 @@ void spari_solver_free(spari_solver *s) {
     for (int k = 0; k < 3; k++) {
         free(s->block[k]);
     }
+    free(s->own[0].q);
+    free(s->own[1].q);
     free(s->increment);
     free(s->load);
     free(s->load0);
@@ -87,6 +98,25 @@ void spari_solver_accept(spari_solver *s) {
 void spari_solver_fixed(const spar_member *member, int *first, int *end) {
     *first = 0;
     *end = member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
+}
+
+void spari_solver_jump(const double *from, const double *to, double h, double velocity[6], double place[6]) {
+    double back[4], turn[4];
+    for (int k = 0; k < 3; k++) {
+        place[k] = to[k] - from[k];
+    }
+    spari_quat_conj(from + 3, back);
+    spari_quat_mul(to + 3, back, turn);
+    spari_quat_log(turn, place + 3);
+    for (int k = 0; k < 6; k++) {
+        const double *v = from + 7, *a = from + 13, *b = to + 13;
+        velocity[k] = to[7 + k] - v[k] - 0.5 * h * (a[k] + b[k]);
+        place[k] -= h * (v[k] + velocity[k] + h * (a[k] / 3 + b[k] / 6));
+    }
+    for (int k = 0; k < 6; k += 3) {
+        spari_rotate_back(to + 3, velocity + k, velocity + k);
+        spari_rotate_back(to + 3, place + k, place + k);
+    }
 }
 
 void spari_solver_gather(const spar_member *m, const double *nodal, double *unique) {

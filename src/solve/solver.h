@@ -8,7 +8,7 @@
 #include "linear.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
- * doubles a node. */
+ * doubles a node. With a driven root b is that of the motion seen from it. */
 typedef struct spari_state {
     double *q, *v, *a, *b;
 } spari_state;
@@ -18,6 +18,7 @@ struct spari_solver {
     spari_state begin;            /* at t^n */
     spari_state from, to;         /* a substep's ends; after a solve `to` is t^{n+1} */
     double *block[3];             /* the memory of the three */
+    spari_state own[2];           /* driven root: a substep's ends seen from it; else NULL */
     double *increment;            /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
     double *tinv;                 /* [n][9] inverse tangent operator of the rotation vector */
     double *load, *load0, *load1; /* [n][6] at a substep's end, at t^n and at t^{n+1} */
@@ -60,6 +61,10 @@ void spari_solver_fixed(const spar_member *member, int *first, int *end);
 void spari_solver_gather(const spar_member *member, const double *nodal, double *unique);
 /* Motion q, v, a of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
 void spari_solver_root_at(const spar_member *member, double s, double dt, double out[19]);
+/* What a driven root from [19] does until to [19], h later, beyond what its accelerations, then its velocities say: a
+   jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
+   order in h for smooth driving. */
+void spari_solver_jump(const double *from, const double *to, double h, double velocity[6], double place[6]);
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv);
