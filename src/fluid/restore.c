@@ -122,10 +122,10 @@ static int take_forces(const spar_fluid *fluid, int count, const double *const *
             const double *x = state_places(fluid, states[k]);
             n = found[i] >= x && found[i] < x + 3 * (int64_t)states[k][S_NODES] ? (int64_t)states[k][S_NODES] : n;
         }
-        for (int k = 0; k < 4 && copy; k++) {
+        for (int k = 0; k < 4 && h; k++) {
             double *to = k == 0 ? h->after : h->past[k - 1];
-            if (to) { /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker)
-                       */
+            if (to) {
+                /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker) */
                 memcpy(to + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof *to);
             }
         }
