@@ -1,6 +1,7 @@
 /* The cheapest settings for a tolerance, by trials. First a run that is converged; then, one after the other with a
-   share of the tolerance for each, what of the structure can be left out; then the coupling and dt together; at last
-   single and double moves that still pay. Errors are those of whole runs, costs the processor time of their steps. */
+   share of the tolerance for each, what of the structure can be left out; then the coupling and dt together; then
+   single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are those
+   of whole runs, costs the processor time of their steps. */
 #include "trial.h"
 
 #include "../math/basis.h"
@@ -15,10 +16,14 @@
 static const char *const CALL = "spar_session_advise";
 
 enum {
-    GROUPS = 8,      /* of beams described alike; what is beyond stays as it is */
-    FINEST = 6,      /* the reference halves dt so often at most */
-    LEAST_NODES = 3, /* of an element; 2 lock */
-    TRIED = 100      /* settings measured at most */
+    GROUPS = 8,        /* of beams described alike; what is beyond stays as it is */
+    FINEST = 6,        /* the reference halves dt so often at most */
+    LEAST_NODES = 3,   /* of an element; 2 lock */
+    TRIED = 100,       /* settings measured before moves end */
+    KNOWN = 400,       /* and remembered at most */
+    LONGER = 4,        /* times the trials: the run that stability is looked at in, */
+    LEAST_STEPS = 256, /* and so many steps at least */
+    DOUBTED = 12       /* settings looked at so */
 };
 
 /* A change has to make a run cheaper by more than the clock's noise. */
@@ -54,7 +59,7 @@ typedef struct advisor {
     int groups, *group; /* [members] of which group; -1: as it is */
     spari_record reference;
     double reference_error;
-    outcome *known; /* [trials that were measured against the reference] */
+    outcome *known; /* [KNOWN] settings measured against the reference */
     int known_count, trials;
 } advisor;
 
@@ -83,7 +88,8 @@ static const spar_member *member_of_group(const advisor *d, int group) {
 static int find_groups(advisor *d) {
     const spar_session *s = d->session;
     d->group = spari_zalloc(s->member_count, sizeof *d->group);
-    SPARI_REQUIRE(d->session, d->group, SPAR_ERR_MEMORY, "%s: no memory", CALL);
+    d->known = spari_zalloc(KNOWN, sizeof *d->known);
+    SPARI_REQUIRE(d->session, d->group && d->known, SPAR_ERR_MEMORY, "%s: no memory", CALL);
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         d->group[k] = -1;
@@ -131,7 +137,8 @@ static int is_of_the_plan(int status) {
            status == SPAR_ERR_UNSUPPORTED || status == SPAR_ERR_ARGUMENT || status == SPAR_ERR_MAPPING;
 }
 
-static int run_plan(advisor *d, const plan *p, spari_record *record) {
+/* longer: times the host's steps */
+static int run_plan(advisor *d, const plan *p, int longer, spari_record *record) {
     spar_session *s = d->session;
     spari_wish wish;
     spari_run run = d->run;
@@ -146,7 +153,7 @@ static int run_plan(advisor *d, const plan *p, spari_record *record) {
             r->per_element = g->nodes, r->fidelity = g->fidelity, r->modes = g->modes, r->points = g->points;
         }
     }
-    run.steps = p->steps;
+    run.steps = longer * p->steps;
     run.dt = d->run.dt * (double)d->run.steps / (double)p->steps;
     int status = spari_trial_run(s, &run, &wish, record);
     d->trials++;
@@ -220,7 +227,7 @@ static int measure(advisor *d, const plan *p, outcome *out) {
     *out = (outcome){*p, INFINITY, INFINITY};
     for (int k = 0; k < REPEATS && spent < enough; k++) {
         spari_record r;
-        int status = run_plan(d, p, &r);
+        int status = run_plan(d, p, 1, &r);
         if (status != SPAR_OK) {
             spari_record_free(&r);
             if (!is_of_the_plan(status)) {
@@ -234,10 +241,9 @@ static int measure(advisor *d, const plan *p, outcome *out) {
         spari_record_free(&r);
     }
     tell(d, p, out->error, out->seconds);
-    outcome *more = realloc(d->known, (size_t)(d->known_count + 1) * sizeof *more);
-    SPARI_REQUIRE(d->session, more, SPAR_ERR_MEMORY, "%s: no memory", CALL);
-    d->known = more;
-    d->known[d->known_count++] = *out;
+    if (d->known_count < KNOWN) {
+        d->known[d->known_count++] = *out;
+    }
     return SPAR_OK;
 }
 
@@ -249,7 +255,7 @@ static int is_good(const advisor *d, const outcome *o) {
 /* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. */
 static int distance(advisor *d, const plan *p, const spari_record *base, double *part, double *seconds) {
     spari_record r;
-    int status = run_plan(d, p, &r);
+    int status = run_plan(d, p, 1, &r);
     *part = status == SPAR_OK ? spari_record_motion(&r, base) * later(d, &r, base) / d->tolerance : INFINITY;
     *seconds = r.seconds;
     tell(d, p, *part * d->tolerance, r.seconds);
@@ -292,7 +298,7 @@ static int find_reference(advisor *d, const plan *present, plan *finest) {
     for (int level = 0; level <= ends && d->reference_error > share_of_reference * d->tolerance; level++) {
         spari_record finer;
         plan p = reference_plan(d, present, level);
-        int status = run_plan(d, &p, &finer);
+        int status = run_plan(d, &p, 1, &finer);
         if (status != SPAR_OK) {
             spari_record_free(&finer);
             if (!is_of_the_plan(status)) {
@@ -424,11 +430,11 @@ static int choose_structure(advisor *d, const plan *finest, plan *chosen) {
     spari_record base;
     p.steps = d->run.steps;
     p.rtol = fmax(p.rtol, 1e-2 * d->tolerance);
-    int status = run_plan(d, &p, &base);
+    int status = run_plan(d, &p, 1, &base);
     while (is_of_the_plan(status) && p.steps < finest->steps) {
         spari_record_free(&base);
         p.steps *= 2;
-        status = run_plan(d, &p, &base);
+        status = run_plan(d, &p, 1, &base);
     }
     for (int g = 0; g < d->groups && status == SPAR_OK; g++) {
         status = s->keep_fidelity ? SPAR_OK : choose_rung(d, &p, g, &base);
@@ -441,7 +447,7 @@ static int choose_structure(advisor *d, const plan *finest, plan *chosen) {
     }
     if (status == SPAR_OK) { /* Newton's tolerance by itself, against the same shapes */
         spari_record_free(&base);
-        status = run_plan(d, &p, &base);
+        status = run_plan(d, &p, 1, &base);
         status = status == SPAR_OK ? choose_newton(d, &p, &base) : status;
     }
     spari_record_free(&base);
@@ -609,6 +615,67 @@ static int improve(advisor *d, outcome *best) {
     return SPAR_OK;
 }
 
+/* ---- stability ---- */
+
+/* Whether a part of the loads that turns round with every step is there and grows, and not with the motion itself, as
+   the finer run shows it. */
+static int seesaws(const spari_record *r, const spari_record *finer) {
+    const double there = 1e-8, grows = 2; /* squares */
+    double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN));
+    return r->alternating[1] > there && r->alternating[1] > grows * same * r->alternating[0];
+}
+
+/* Whether the settings stay near a run with half the dt and a tight coupling for longer than the trials were: what
+   grows slowly enough to pass a trial is found here. Errors of phase may have grown as the time has. */
+static int look_longer(advisor *d, const plan *p, int *stays) {
+    int longer = p->steps * LONGER < LEAST_STEPS ? (int)(LEAST_STEPS / p->steps) + 1 : LONGER;
+    plan q = *p;
+    spari_record run, finer = {0};
+    int status = run_plan(d, p, longer, &run);
+    if (status == SPAR_OK) {
+        q.steps = 2 * p->steps;
+        q.predictor = 1;
+        q.newton = fmin(q.newton, 1e-9);
+        if (!d->session->keep_coupling) {
+            q.scheme = SPAR_COUPLING_IQN_ILS;
+            q.rtol = 1e-4;
+        }
+        status = run_plan(d, &q, longer, &finer);
+    }
+    double error = status == SPAR_OK ? spari_record_motion(&run, &finer) : INFINITY;
+    *stays = error <= longer * d->tolerance && !seesaws(&run, &finer);
+    tell(d, p, error, run.seconds);
+    spari_record_free(&run);
+    spari_record_free(&finer);
+    return is_of_the_plan(status) ? SPAR_OK : status;
+}
+
+/* The cheapest of all settings that keep the tolerance and stay stable. */
+static int find_stable(advisor *d, outcome *best) {
+    int stays = 0;
+    for (int k = 0; k < DOUBTED && isfinite(best->seconds); k++) {
+        SPARI_TRY(look_longer(d, &best->plan, &stays));
+        if (stays) {
+            return SPAR_OK;
+        }
+        outcome next = {.error = INFINITY, .seconds = INFINITY};
+        for (int i = 0; i < d->known_count; i++) {
+            outcome *o = &d->known[i];
+            if (memcmp(&o->plan, &best->plan, sizeof o->plan) == 0) {
+                o->error = INFINITY;
+            } else if (is_good(d, o) && o->seconds < next.seconds) {
+                next = *o;
+            }
+        }
+        *best = next;
+    }
+    return spari_fail(
+        d->session, SPAR_ERR_NUMERIC,
+        "%s: settings that keep the tolerance over the trials drift away after them; ask with more steps, "
+        "or for less",
+        CALL);
+}
+
 /* ---- the answer ---- */
 
 /* The finest settings known not to fail, where the shares left nothing: they are tried as they are. */
@@ -626,7 +693,7 @@ static int search(advisor *d, const plan *present, outcome *now, outcome *best) 
     }
     if (isfinite(best->seconds)) {
         SPARI_TRY(improve(d, best));
-        return SPAR_OK;
+        return find_stable(d, best);
     }
     double least = INFINITY;
     for (int k = 0; k < d->known_count; k++) {

@@ -39,7 +39,7 @@ struct spar_session {
     int theta_on_group;              /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
     int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
-    double horizon; /* option advise.horizon */
+    double horizon;                                        /* option advise.horizon */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */

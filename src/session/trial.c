@@ -50,7 +50,7 @@ static int stash_create(spar_session *s, stash *t) {
         t->fluid_count++;
     }
     t->members = spari_zalloc(s->member_count, sizeof *t->members);
-    t->fluids = spari_zalloc(t->fluid_count, sizeof *t->fluids);
+    t->fluids = spari_zalloc(t->fluid_count, sizeof(spar_fluid *));
     SPARI_REQUIRE(s, t->members && t->fluids, SPAR_ERR_MEMORY, "no memory for a trial run");
     s->coupling = NULL;
     s->coupling_stale = 1;
@@ -220,8 +220,9 @@ static int record_create(spar_session *s, spari_record *r, double **start) {
     r->beyond = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->beyond);
     r->reaction = spari_zalloc(6 * SPARI_SAMPLES * (int64_t)r->members, sizeof *r->reaction);
     r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
+    r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
     *start = spari_zalloc(3 * r->stations, sizeof **start);
-    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && *start, SPAR_ERR_MEMORY,
+    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && r->trail && *start, SPAR_ERR_MEMORY,
                   "no memory for the record of a trial run");
     return SPAR_OK;
 }
@@ -231,6 +232,7 @@ void spari_record_free(spari_record *r) {
     free(r->beyond);
     free(r->reaction);
     free(r->load);
+    free(r->trail);
     *r = (spari_record){0};
 }
 
@@ -266,7 +268,29 @@ static int prepare_step(spar_session *s, const spari_run *run) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
+/* Loads of step i: unstable explicit coupling begins as a saw-tooth, whose second differences change sign with every
+   step, while those of a motion that the steps resolve keep theirs. size: squares of the loads in each quarter. */
+static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_record *r, double size[4]) {
+    int n = 6 * r->members, quarter = (int)((i - 1) * 4 / steps);
+    double *now = r->trail + i % 3 * n, *last = r->trail + (i + 2) % 3 * n, *before = r->trail + (i + 1) % 3 * n,
+           *turn = r->trail + 3 * n, product = 0;
+    look_at_loads(s, now);
+    for (int k = 0; k < n; k++) {
+        double second = now[k] - 2 * last[k] + before[k];
+        product += second * turn[k];
+        turn[k] = second;
+        size[quarter] += now[k] * now[k];
+    }
+    if (i == 1) {
+        memcpy(r->load, now, (size_t)n * sizeof *now);
+    }
+    if (quarter % 2 == 1) {
+        r->alternating[quarter / 2] += fmax(-product, 0);
+    }
+}
+
 static int march(spar_session *s, const spari_run *run, const double *start, spari_record *r) {
+    double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
         int iterations = 0;
         SPARI_TRY(prepare_step(s, run));
@@ -275,9 +299,7 @@ static int march(spar_session *s, const spari_run *run, const double *start, spa
         r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
         r->solutions += iterations;
         SPARI_TRY(status);
-        if (i == 1) {
-            look_at_loads(s, r->load);
-        }
+        watch_loads(s, i, run->steps, r, size);
         if (i * SPARI_SAMPLES % run->steps == 0) {
             int64_t k = i * SPARI_SAMPLES / run->steps - 1;
             look(s, start, r->motion + 3 * k * r->stations, r->beyond + 3 * k * r->stations);
@@ -286,6 +308,8 @@ static int march(spar_session *s, const spari_run *run, const double *start, spa
             SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
         }
     }
+    r->alternating[0] = size[1] > 0 ? r->alternating[0] / size[1] : 0;
+    r->alternating[1] = size[3] > 0 ? r->alternating[1] / size[3] : 0;
     return SPAR_OK;
 }
 

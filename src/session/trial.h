@@ -35,8 +35,11 @@ struct spari_record {
     double *reaction; /* [SPARI_SAMPLES][members][6], moments by the member's length */
     double *load; /* [members][6]: fluid loads after the first step, their sum and moment by the length about the root's
                      reference place */
-    double seconds;                   /* processor time of the steps, all ranks */
-    int64_t solutions;                /* calls of the fluid solver */
+    double *trail;         /* [4][members][6] the same of the last three steps, and their second difference */
+    double alternating[2]; /* part of the loads that turns round from step to step, squared, relative to the loads: in
+                              the second and in the last quarter of the run */
+    double seconds;        /* processor time of the steps, all ranks */
+    int64_t solutions;     /* calls of the fluid solver */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
     int own;                          /* what this rank answers for a run that failed */
