@@ -600,9 +600,8 @@ static int show_effects(scene *s) {
     return SPAR_OK;
 }
 
-/* Two turns: coupling that lets the motion grow slowly is not seen in less. */
 static int ask_advice(scene *s) {
-    rotor_trial t = begin_trials(s, 2);
+    rotor_trial t = begin_trials(s, 1);
     int status = rotor_view_advice(&t, &s->options, s->rank == 0);
     end_trials(s);
     TRY(status);

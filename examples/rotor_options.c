@@ -56,7 +56,7 @@ static const option options[] = {
     {"tolerance", NUMBER, AT(tolerance), 1e-12, 1, "R",
      "run with the cheapest settings that keep this error of the deflection [none: as given]"},
     {"trial", NUMBER, AT(trial), 1e-6, 1e9, "S",
-     "how long trials last [--tolerance: two turns, spar-effects: half a turn]"},
+     "how long trials last [--tolerance: a turn, spar-effects: half a turn]"},
     {"csv", FLAG, AT(csv), 0, 0, NULL, "spar-effects: for a spreadsheet"},
     {"vtk-every", NUMBER, AT(vtk_every), 0, 1e9, "S", "simulated time between pictures for ParaView, 0: none [0.25]"},
     {"out", TEXT, AT(out), 0, 0, "FOLDER", "where the files go [rotor-out]"},
