@@ -32,7 +32,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
         status = record.own;
     }
     spari_wish_free(&wish);
-    if (status == SPAR_OK) {
+    if (status == SPAR_OK && report) { /* checked above */
         report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->kept) : 0;
         report[SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->kept) : 0;
         report[SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->kept) : 0;

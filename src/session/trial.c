@@ -62,7 +62,7 @@ static int stash_create(spar_session *s, stash *t) {
 
 static const spar_member *member_before(const spar_session *s, const stash *t, const spar_member *member) {
     int k = 0;
-    for (const spar_member *m = s->members; m != member; m = m->next) {
+    for (const spar_member *m = s->members; m && m != member; m = m->next) {
         k++;
     }
     return t->members + k;
