@@ -600,7 +600,8 @@ enum {
 enum {
     SPAR_COLUMN_IN_FORCE = 0, /* 1; 0: the scene has it not, and the rest of the row is 0 */
     SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, from the present state */
-    SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it */
+    SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it (a log
+                                 is told why, at SPAR_LOG_INFO) */
     SPAR_COLUMN_REACTION = 3, /* the same of the roots' reactions */
     SPAR_COLUMN_SHARE = 4, /* of the time, that leaving it out saves: of a solution's, but for predictor and iteration,
                               which change how many there are; below 0: it then costs more */

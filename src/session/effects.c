@@ -6,6 +6,7 @@
 #include "../member/body.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -233,6 +234,15 @@ static double cost(const spari_record *record, int r) {
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
 }
 
+static void tell_failure(spar_session *s, int r) {
+    char text[SPARI_MESSAGE_SIZE + 100];
+    if (s->log) {
+        (void)snprintf(text, sizeof text, "spar_session_report_effects: without %s the run fails: %s", rows[r].name,
+                       s->message);
+        s->log(s, SPAR_LOG_INFO, text, s->log_context);
+    }
+}
+
 static int try_row(spar_session *s, const spari_run *run, int r, const spari_record *base, double *out) {
     enum { REPEATS = 3 }; /* times are the least of so many, with and without in turn */
     double with = cost(base, r), without = INFINITY;
@@ -262,6 +272,7 @@ static int try_row(spar_session *s, const spari_run *run, int r, const spari_rec
     }
     spari_wish_free(&wish);
     if (is_of_the_run(status)) {
+        tell_failure(s, r);
         out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
         out[SPAR_COLUMN_SHARE] = 0;
         return SPAR_OK;
