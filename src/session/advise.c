@@ -311,6 +311,12 @@ static int improve(spari_advisor *d, spari_outcome *best) {
 
 /* ---- the answer ---- */
 
+/* Whether a is bound to be unstable where b is: the same in time, with no finer steps and no tighter coupling. */
+static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
+    return a->scheme == b->scheme && a->predictor == b->predictor && a->substeps == b->substeps &&
+           a->steps <= b->steps && (a->scheme == SPAR_COUPLING_EXPLICIT || a->rtol >= b->rtol);
+}
+
 /* The cheapest of all settings that keep the tolerance and stay stable. */
 static int find_stable(spari_advisor *d, spari_outcome *best) {
     int stays = 0;
@@ -322,7 +328,7 @@ static int find_stable(spari_advisor *d, spari_outcome *best) {
         spari_outcome next = {.error = INFINITY, .seconds = INFINITY};
         for (int i = 0; i < d->known_count; i++) {
             spari_outcome *o = &d->known[i];
-            if (memcmp(&o->plan, &best->plan, sizeof o->plan) == 0) {
+            if (is_no_stabler(&o->plan, &best->plan)) {
                 o->error = INFINITY;
             } else if (spari_plan_is_good(d, o) && o->seconds < next.seconds) {
                 next = *o;

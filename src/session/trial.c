@@ -308,8 +308,9 @@ static int march(spar_session *s, const spari_run *run, const double *start, spa
             SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
         }
     }
-    r->alternating[0] = size[1] > 0 ? r->alternating[0] / size[1] : 0;
-    r->alternating[1] = size[3] > 0 ? r->alternating[1] / size[3] : 0;
+    for (int k = 0; k < 2; k++) {
+        r->alternating[k] = size[1] + size[3] > 0 ? r->alternating[k] / (size[1] + size[3]) : 0;
+    }
     return SPAR_OK;
 }
 

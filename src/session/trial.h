@@ -36,8 +36,8 @@ struct spari_record {
     double *load; /* [members][6]: fluid loads after the first step, their sum and moment by the length about the root's
                      reference place */
     double *trail;         /* [4][members][6] the same of the last three steps, and their second difference */
-    double alternating[2]; /* part of the loads that turns round from step to step, squared, relative to the loads: in
-                              the second and in the last quarter of the run */
+    double alternating[2]; /* part of the loads that turns round from step to step, squared, in the second and in the
+                              last quarter of the run, relative to the loads of both */
     double seconds;        /* processor time of the steps, all ranks */
     int64_t solutions;     /* calls of the fluid solver */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
