@@ -165,24 +165,30 @@ static int check(const scene *s, const scene_reference *reference, const choice 
     char text[160];
     const choice *best = best_by_hand(by_hand, tolerance);
     choice mine, hand;
-    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK || !best) {
+    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK) {
         return 1;
     }
     took = now() - since;
-    hand = *best;
+    hand = best ? *best : (choice){s->standard, INFINITY, INFINITY};
     for (int i = 0; i < 3; i++) { /* in turn, as the machine's speed changes */
         play(s, reference, 1, &mine);
-        play(s, reference, 1, &hand);
+        if (best) {
+            play(s, reference, 1, &hand);
+        }
         least[0] = fmin(least[0], mine.seconds), least[1] = fmin(least[1], hand.seconds);
     }
     mine.seconds = least[0], hand.seconds = least[1];
-    int kept = mine.error <= tolerance, cheap = mine.seconds <= 2 * hand.seconds;
+    int kept = mine.error <= tolerance, cheap = !best || mine.seconds <= 2 * hand.seconds;
     printf("%-6s %-9.3g %9.2e %9.2e %6.2f %8.3f %8.3f %5.0f %7.1f  %s%s\n", s->name, tolerance,
            advice[SPAR_ADVICE_ERROR], mine.error, mine.seconds / hand.seconds, mine.seconds / standard->seconds,
            hand.seconds / standard->seconds, advice[SPAR_ADVICE_TRIALS], took, kept ? "" : "NOT KEPT ",
            cheap ? "" : "DEAR");
     printf("       advice: %s\n", words(&mine.k, text, sizeof text));
-    printf("       hand:   %s, error %.2e\n", words(&hand.k, text, sizeof text), hand.error);
+    if (best) {
+        printf("       hand:   %s, error %.2e\n", words(&hand.k, text, sizeof text), hand.error);
+    } else {
+        printf("       hand:   none of the %d keeps it\n", CHOICES);
+    }
     fflush(stdout);
     keep(s, "advice", tolerance, &mine, standard);
     keep(s, "best", tolerance, &hand, standard);
