@@ -553,7 +553,11 @@ static void show_trials(scene *s) {
 static void hear(const spar_session *session, int level, const char *text, void *context) {
     scene *s = context;
     const char *trial = strstr(text, ": trial ");
+    const char *why = strstr(text, "without ");
     (void)session;
+    if (level == SPAR_LOG_INFO && !trial && why && s->rank == 0) { /* an effect that cannot be left out */
+        fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", why);
+    }
     if (level == SPAR_LOG_INFO && trial) {
         snprintf(s->trial_text, sizeof s->trial_text, "%s", strchr(trial + 2, ':') + 2);
     }
