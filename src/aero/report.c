@@ -1,5 +1,5 @@
 /* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. */
-#include "../session/session.h"
+#include "../session/trial.h"
 #include "aero.h"
 
 #include <math.h>
@@ -25,15 +25,7 @@ const char *spar_aero_effect_name(int r) {
     return r >= 0 && r < SPAR_AERO_ROW_COUNT ? rows[r].name : "";
 }
 
-typedef struct trials {
-    double dt;
-    int64_t steps;
-    spar_before_step before;
-    spar_fluid_solver solve;
-    void *context;
-} trials;
-
-static int try_once(spar_session *s, const trials *t, int compare, double report[SPAR_TRY_COUNT]) {
+static int try_once(spar_session *s, const spari_run *t, int compare, double report[SPAR_TRY_COUNT]) {
     return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, report);
 }
 
@@ -69,7 +61,7 @@ static double cost(const double report[SPAR_TRY_COUNT]) {
 }
 
 /* The effects come back as they were, whatever fails. Times are the least of three, with and without in turn. */
-static int try_row(spar_session *s, spar_aero *aero, const trials *t, int r, const double *base, double *out) {
+static int try_row(spar_session *s, spar_aero *aero, const spari_run *t, int r, const double *base, double *out) {
     enum { REPEATS = 3 };
     double with = cost(base), without = INFINITY, report[SPAR_TRY_COUNT];
     const int effects = aero->rotor.effects;
@@ -92,7 +84,7 @@ static int try_row(spar_session *s, spar_aero *aero, const trials *t, int r, con
     return SPAR_OK;
 }
 
-static int fill_table(spar_session *s, spar_aero *aero, const trials *t, double (*table)[SPAR_COLUMN_COUNT]) {
+static int fill_table(spar_session *s, spar_aero *aero, const spari_run *t, double (*table)[SPAR_COLUMN_COUNT]) {
     double in_force[SPAR_AERO_ROW_COUNT + 1], base[SPAR_TRY_COUNT];
     SPARI_TRY(find_rows(s, aero, in_force));
     SPARI_TRY(try_once(s, t, 0, base));
@@ -105,7 +97,7 @@ static int fill_table(spar_session *s, spar_aero *aero, const trials *t, double 
     return SPAR_OK;
 }
 
-static int check(spar_session *s, const spar_aero *aero, const trials *t, const void *table, const char *call) {
+static int check(spar_session *s, const spar_aero *aero, const spari_run *t, const void *table, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
                   "%s: the blades are of another session; give theirs", call);
@@ -120,7 +112,7 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     const char *call = "spar_aero_report_effects";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", call);
     spar_session *s = session;
-    trials t = {dt, steps, before, solve, context};
+    spari_run t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
     SPARI_TRY(spari_comm_enter(s->comm, call, check(s, aero, &t, table, call), s->message, sizeof s->message));

@@ -98,6 +98,10 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
 double spari_member_length(const spar_member *member);
 /* Whether spar advances the member (not a point, not external). */
 int spari_member_is_solved(const spar_member *member);
+/* Whether the motion of the root is given, so that it carries the member; else it is one of the unknowns. */
+static inline int spari_member_root_is_given(const spar_member *member) {
+    return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;
+}
 /* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */
 static inline double spari_member_xi(const spar_member *member, int element, double local) {
     return 2.0 * ((double)element + 0.5 * (1.0 + local)) / (double)member->elements - 1.0;

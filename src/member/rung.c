@@ -55,10 +55,6 @@ int spari_rung_prescribed(const spar_member *m) {
     return m->fidelity == SPAR_FIDELITY_PRESCRIBED;
 }
 
-static int root_is_given(const spar_member *m) {
-    return m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN;
-}
-
 int spari_rung_check(const spar_member *m) {
     const char *call = "spar_member_commit";
     if (m->fidelity == SPAR_FIDELITY_EXACT) {
@@ -66,7 +62,7 @@ int spari_rung_check(const spar_member *m) {
     }
     SPARI_REQUIRE(m->session, m->kind == SPARI_BEAM && !m->external, SPAR_ERR_STATE,
                   "%s: '%s': a fidelity below exact is for beams that spar solves for", call, m->name);
-    SPARI_REQUIRE(m->session, m->fidelity != SPAR_FIDELITY_PRESCRIBED || root_is_given(m), SPAR_ERR_STATE,
+    SPARI_REQUIRE(m->session, m->fidelity != SPAR_FIDELITY_PRESCRIBED || spari_member_root_is_given(m), SPAR_ERR_STATE,
                   "%s: '%s' is prescribed and its root is free or pinned: nothing says where it goes; fix or drive its "
                   "root, or make it rigid",
                   call, m->name);
@@ -93,7 +89,7 @@ int spari_rung_effects(const spar_member *m, int effects) {
         return effects & ~SPAR_EFFECT_DAMPING;
     case SPAR_FIDELITY_LINEAR:
     case SPAR_FIDELITY_MODAL: /* the rotation of a root that is given is large all the same */
-        return root_is_given(m) ? effects : effects & ~SPAR_EFFECT_LARGE_ROTATION;
+        return spari_member_root_is_given(m) ? effects : effects & ~SPAR_EFFECT_LARGE_ROTATION;
     default:
         return effects;
     }
@@ -313,7 +309,8 @@ int spari_rung_create(spar_member *m) {
         return SPAR_OK;
     }
     SPARI_REQUIRE(m->session,
-                  root_is_given(m) || m->fidelity == SPAR_FIDELITY_RIGID || (m->effects & SPAR_EFFECT_INERTIA),
+                  spari_member_root_is_given(m) || m->fidelity == SPAR_FIDELITY_RIGID ||
+                      (m->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_STATE,
                   "spar_member_commit: '%s' is linear without inertia and nothing holds it: fix or drive its root, or "
                   "leave INERTIA on",
@@ -495,7 +492,7 @@ int spari_rung_energy(const spar_member *m, double energy[4]) {
 void spari_rung_pose(const spar_member *m, const spari_motion *nodes, double pose[13]) {
     memset(pose, 0, 13 * sizeof *pose);
     pose[3] = 1;
-    if (m->rung && root_is_given(m)) {
+    if (m->rung && spari_member_root_is_given(m)) {
         memcpy(pose, nodes->q, 7 * sizeof *pose);
     }
     if (m->rung && m->root == SPAR_ROOT_DRIVEN) {

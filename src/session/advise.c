@@ -61,9 +61,7 @@ static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_recor
     static const int64_t modes[] = {16, 8, 4, 2};
     double seconds = base->seconds;
     spari_plan best = *p, q = *p;
-    int held = 0, taken, small;
-    const spar_member *m = spari_plan_member(d, g);
-    held = m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN;
+    int taken, small;
     spari_shape *b = &q.group[g];
     b->fidelity = SPAR_FIDELITY_LINEAR;
     SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &small));
@@ -75,7 +73,7 @@ static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_recor
     b->modes = 0;
     b->fidelity = SPAR_FIDELITY_RIGID;
     SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &taken));
-    if (taken && held) {
+    if (taken && spari_member_root_is_given(spari_plan_member(d, g))) {
         b->fidelity = SPAR_FIDELITY_PRESCRIBED;
         SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &taken));
     }

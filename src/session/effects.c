@@ -114,8 +114,7 @@ static int member_terms(spar_member *m, double sum[TERMS]) {
 /* Largest turn of a node against its root, or against the reference where nothing holds it. */
 static double largest_turn(const spar_member *m) {
     const double unit[4] = {1, 0, 0, 0};
-    int held = m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN;
-    const double *base = held ? m->now.q + 3 : unit;
+    const double *base = spari_member_root_is_given(m) ? m->now.q + 3 : unit;
     double largest = 0;
     for (int64_t i = 0; i < m->nodes; i++) {
         double back[4], turn[4], psi[3];

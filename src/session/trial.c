@@ -163,7 +163,7 @@ static void beyond_root(const spar_member *m, const double X[3], const double u[
 static void look(const spar_session *s, const double *start, double *motion, double *beyond) {
     int64_t at = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        int held = m->kind == SPARI_BEAM && (m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN);
+        int held = m->kind == SPARI_BEAM && spari_member_root_is_given(m);
         for (int k = 0; k < stations_of(m); k++, at += 3) {
             double X[3], *u = motion + at;
             if (m->nodes == 1) {
