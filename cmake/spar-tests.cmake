@@ -1,4 +1,5 @@
-# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count.
+# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count,
+# torture.
 find_package(PkgConfig QUIET)
 find_path(SPAR_CMOCKA_INCLUDE cmocka.h)
 find_library(SPAR_CMOCKA_LIBRARY cmocka)
@@ -120,3 +121,4 @@ endif()
 include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)
+include("${PROJECT_SOURCE_DIR}/tests/torture/torture.cmake")
