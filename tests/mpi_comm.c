@@ -9,6 +9,7 @@
 
 #include "comm/comm.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,11 +29,12 @@ static void identity(void **state) {
 static void refused_communicators(void **state) {
     (void)state;
     spari_comm *c = NULL;
-    const char *why = NULL;
-    assert_int_equal(spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_NULL), &c, &why), SPAR_ERR_ARGUMENT);
+    char why[SPARI_MESSAGE_SIZE] = "";
+    int null = (int)MPI_Comm_c2f(MPI_COMM_NULL);
+    assert_int_equal(spari_comm_create_fortran(null, &c, SPAR_OK, why, sizeof why), SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(why, "MPI_COMM_NULL"));
-    assert_int_not_equal(spari_comm_create_fortran(123456789, &c, &why), SPAR_OK);
-    assert_int_not_equal(spari_comm_create_fortran(-7, &c, &why), SPAR_OK);
+    assert_int_not_equal(spari_comm_create_fortran(123456789, &c, SPAR_OK, why, sizeof why), SPAR_OK);
+    assert_int_not_equal(spari_comm_create_fortran(-7, &c, SPAR_OK, why, sizeof why), SPAR_OK);
     assert_null(c);
 }
 
@@ -62,11 +64,8 @@ static void same_bits(void **state) {
     }
     assert_int_equal(spari_comm_sum(ranks, x, 32, SPAR_OK, text, sizeof text), SPAR_OK);
     for (int i = 0; i < 32; i++) {
-        int same = 0;
-        uint64_t bits;
-        memcpy(&bits, x + i, sizeof bits);
-        assert_int_equal(spari_comm_same(ranks, bits, &same), SPAR_OK);
-        assert_int_equal(same, 1);
+        const spari_alike alike = spari_real("sum", x[i]);
+        assert_int_equal(spari_comm_enter(ranks, "sums", &alike, 1, SPAR_OK, text, sizeof text), SPAR_OK);
     }
 }
 
@@ -103,7 +102,7 @@ static void failures(void **state) {
         if (!status) {
             text[0] = '\0';
         }
-        check_told(failing, spari_comm_enter(ranks, "spar_step_solve", status, text, sizeof text), text);
+        check_told(failing, spari_comm_enter(ranks, "spar_step_solve", NULL, 0, status, text, sizeof text), text);
     }
     free(first);
     free(y);
@@ -124,10 +123,10 @@ static void different_calls(void **state) {
     (void)state;
     char text[SPARI_MESSAGE_SIZE] = "";
     const char *call = rank == size - 1 ? "spar_step_check" : "spar_step_solve";
-    int status = spari_comm_enter(ranks, call, SPAR_OK, text, sizeof text);
+    int status = spari_comm_enter(ranks, call, NULL, 0, SPAR_OK, text, sizeof text);
     assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_COMM);
     assert_true(size == 1 || strstr(text, call) == text);
-    assert_int_equal(spari_comm_enter(ranks, "spar_step_check", SPAR_OK, text, sizeof text), SPAR_OK);
+    assert_int_equal(spari_comm_enter(ranks, "spar_step_check", NULL, 0, SPAR_OK, text, sizeof text), SPAR_OK);
 }
 
 /* blocks of 2 r + 1 numbers, the last of which is the status: rank 0 has nothing to share */
@@ -152,30 +151,81 @@ static void shares(void **state) {
     free(x);
 }
 
-static void keys(void **state) {
+/* What a call is given is compared, whatever else is the same, and the first thing that differs is named; a rank that
+   fails is told of before that. */
+static void arguments(void **state) {
     (void)state;
-    int same = 0;
-    uint64_t big = UINT64_MAX - 3;
-    assert_int_equal(spari_comm_same(ranks, big, &same), SPAR_OK);
-    assert_int_equal(same, 1);
-    assert_int_equal(spari_comm_same(ranks, rank == 0 ? big : big - 1, &same), SPAR_OK);
-    assert_int_equal(same, size == 1);
+    for (int bad = 0; bad < 4; bad++) {
+        int here = rank == size - 1;
+        const spari_alike alike[] = {
+            spari_real("dt", here && bad == 0 ? nextafter(0.1, 1) : 0.1),
+            spari_whole("steps", here && bad == 1 ? INT64_MIN : INT64_MAX),
+            spari_given("solve", here && bad == 2 ? 0 : 1),
+            spari_hash("settings", here && bad <= 3 ? UINT64_MAX : 1),
+        };
+        static const char *const name[] = {"dt (here 0.1", "steps (here ", "solve (here ", "settings; give"};
+        char text[SPARI_MESSAGE_SIZE] = "";
+        int status = spari_comm_enter(ranks, "call", alike, 4, SPAR_OK, text, sizeof text);
+        assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_COMM);
+        assert_true(size == 1 || strstr(text, name[bad]));
+        (void)snprintf(text, sizeof text, "wings fell off at %d", rank);
+        status = spari_comm_enter(ranks, "call", alike, 4, rank == 0 ? SPAR_ERR_NUMERIC : SPAR_OK, text, sizeof text);
+        check_told(0, status, text);
+        text[0] = '\0';
+        assert_int_equal(spari_comm_enter(ranks, "call", alike, 0, SPAR_OK, text, sizeof text), SPAR_OK);
+    }
+    const spari_alike zero = spari_real("zero", rank == 0 ? 0.0 : -0.0);
+    char text[64];
+    assert_int_equal(spari_comm_enter(ranks, "call", &zero, 1, SPAR_OK, text, sizeof text), SPAR_OK);
+}
+
+/* A rank that cannot make its part has the others told, and nobody gets a communicator. */
+static void refused_on_one_rank(void **state) {
+    (void)state;
+    for (int failing = 0; failing < size; failing++) {
+        spari_comm *c = NULL;
+        char text[SPARI_MESSAGE_SIZE] = "";
+        (void)snprintf(text, sizeof text, "wings fell off at %d", rank);
+        int status = spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_WORLD), &c,
+                                               rank == failing ? SPAR_ERR_NUMERIC : SPAR_OK, text, sizeof text);
+        check_told(failing, status, text);
+        assert_null(c);
+    }
+}
+
+/* A rank that has gone is not waited for, and does not wait: the others are told in whatever call they are. */
+static void gone(void **state) {
+    (void)state;
+    for (int leaving = 0; leaving < size && size > 1; leaving++) {
+        spari_comm *c = NULL;
+        char text[SPARI_MESSAGE_SIZE] = "";
+        assert_int_equal(spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_WORLD), &c, SPAR_OK, text, sizeof text),
+                         SPAR_OK);
+        for (int k = 0; k < 3 && rank != leaving; k++) {
+            double x[2] = {1, 0};
+            int status = k == 1 ? spari_comm_sum(c, x, 1, SPAR_OK, text, sizeof text)
+                                : spari_comm_enter(c, "call", NULL, 0, SPAR_OK, text, sizeof text);
+            assert_int_equal(status, SPAR_ERR_COMM);
+            assert_non_null(strstr(text, "has destroyed this session"));
+        }
+        spari_comm_destroy(&c);
+    }
 }
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(identity), cmocka_unit_test(refused_communicators),
-        cmocka_unit_test(sums),     cmocka_unit_test(same_bits),
-        cmocka_unit_test(failures), cmocka_unit_test(all_fail),
-        cmocka_unit_test(shares),   cmocka_unit_test(different_calls),
-        cmocka_unit_test(keys),
+        cmocka_unit_test(identity),  cmocka_unit_test(refused_communicators),
+        cmocka_unit_test(sums),      cmocka_unit_test(same_bits),
+        cmocka_unit_test(failures),  cmocka_unit_test(all_fail),
+        cmocka_unit_test(shares),    cmocka_unit_test(different_calls),
+        cmocka_unit_test(arguments), cmocka_unit_test(refused_on_one_rank),
+        cmocka_unit_test(gone),
     };
-    const char *why = "";
     char text[SPARI_MESSAGE_SIZE] = "";
     int failed, worst = 0;
     MPI_Init(&argc, &argv);
-    if (spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_WORLD), &ranks, &why) != SPAR_OK) {
-        fprintf(stderr, "%s\n", why);
+    if (spari_comm_create_fortran((int)MPI_Comm_c2f(MPI_COMM_WORLD), &ranks, SPAR_OK, text, sizeof text) != SPAR_OK) {
+        fprintf(stderr, "%s\n", text);
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
     rank = spari_comm_rank(ranks);

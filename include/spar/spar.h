@@ -43,9 +43,16 @@
    host's except a callback and its context. Handles made by create are released by destroy; destroy takes NULL or a
    handle that is NULL already, and sets the handle to NULL. create writes the handle only when it succeeds.
 
-   Ranks. "Collective" means: called on every rank of the session, in the same order. Members are described on every
-   rank with the same arguments; each rank's fluids are its own, and a rank may have none. "Local" calls send and wait
-   for nothing.
+   Ranks. "Collective" means: called on every rank of the session, in the same order and with the same arguments, but
+   for outputs, contexts, the fluid solver of spar_step and the paths of save and load. Members are
+   described on every rank with the same arguments, and settings made alike; each rank's fluids are its own, and a rank
+   may have none. A collective call compares, before it does anything, which call it is, its arguments and, between
+   steps, all settings but the options fluid.far and fluid.audit: where the ranks differ it is SPAR_ERR_COMM on all of
+   them, and the message names the first thing that does. "Local" calls send and wait for nothing. One that fails is
+   known to its rank alone, and a NULL handle leads to no communicator: given to a collective call it is refused there
+   while the others wait in theirs. So the ranks agree on how their creates have ended (MPI_Allreduce of the statuses,
+   say) before the next collective call; or the rank that failed makes another one, such as spar_session_destroy, and
+   the others get SPAR_ERR_COMM where they are. Once a rank has destroyed the session, the others can only do the same.
 
    Errors. Every function answers a status (SPAR_OK is 0) except the destroys and the getters of text; nothing aborts,
    exits or prints. spar_session_message says what went wrong, where, and the cure; where there is no session to ask
@@ -133,16 +140,19 @@ enum {
 /* A session of this process alone. session: out. Local. */
 SPAR_API int spar_session_create(spar_session **session);
 /* A session over a communicator, which is duplicated and stays the caller's. comm: in, the Fortran integer of it (C:
-   see spar_mpi.h). Every build has this call; one without MPI answers SPAR_ERR_UNSUPPORTED. MPI must be initialised
-   and not yet finalised. Collective over comm. SPAR_ERR_COMM: not a communicator, or MPI failed. */
+   see spar_mpi.h), the same on all ranks of it. Every build has this call; one without MPI answers
+   SPAR_ERR_UNSUPPORTED. Collective over comm: all ranks get a session, or none. SPAR_ERR_ARGUMENT: not a communicator;
+   SPAR_ERR_COMM: MPI is not initialised, or finalised already, or failed. */
 SPAR_API int spar_session_create_fcomm(int comm, spar_session **session);
-/* Releases the session with its members and fluids; their handles are dead then. Collective: before MPI_Finalize. */
+/* Releases the session with its members and fluids; their handles are dead then. Collective: before MPI_Finalize; it
+   waits for the others to make a collective call of this session, and whichever that is it ends there. */
 SPAR_API void spar_session_destroy(spar_session **session);
 /* What went wrong last in this session, where, and the cure; "" if nothing ever did. Stands until the next failure;
    the text belongs to the session. NULL: the last failure in this thread that had no session. Local. */
 SPAR_API const char *spar_session_message(const spar_session *session);
 
-/* The setters below are local, made alike on every rank, and allowed between steps only (SPAR_ERR_STATE during one). */
+/* The setters below are local, made alike on every rank (see "Ranks"), and allowed between steps only (SPAR_ERR_STATE
+   during one). */
 
 /* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
@@ -534,17 +544,19 @@ SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
    success; anything else ends the step with SPAR_ERR_USER. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
-/* The whole step. dt: in, s; solve: in, NULL: no fluid; context: in, handed to solve; iterations: out, how many it
-   took, NULL: not wanted. Accepts, or after a failure of any part rejects and answers that part's status. */
+/* The whole step. dt: in, s; solve: in, NULL: no fluid (on this rank: others may have one); context: in, handed to
+   solve; iterations: out, how many it took, NULL: not wanted. Accepts, or after a failure of any part rejects and
+   answers that part's status. */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
    fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. path: in;
-   rank 0 writes and reads. The file is written under path.new, flushed and renamed: there is always a whole one. load:
-   into a session with the same members, committed, and the same fluids, mapped, by name, no step under way, on any
-   number of ranks: nodes may be spread over the ranks otherwise, node forces find them by their reference places. What
-   the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut off or damaged or cannot be
-   read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it was. Collective. */
+   rank 0 writes and reads, the others' paths are not looked at but for being there. The file is written under path.new,
+   flushed and renamed: there is always a whole one. load: into a session with the same members, committed, and the same
+   fluids, mapped, by name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise,
+   node forces find them by their reference places. What the host sets (gravity, integrator, tolerances) it sets as
+   before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT;
+   the session is then as it was. Collective. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 
@@ -556,9 +568,10 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    at t^n). Both must be repeatable: the same motion and time give the same loads, whatever ran before, and nothing else
    of the host's is changed for good. They may use members and fluids in all ways, but not create, destroy or map them;
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
-   accelerations from the balance of forces. All calls here are collective, between steps; SPAR_ERR_STATE within a
-   trial. steps: in, a multiple of 8, as runs are compared at 8 times, evenly spread. What a run costs is the processor
-   time of its steps, the fluid's included, on all ranks. */
+   accelerations from the balance of forces. All calls here are collective, between steps; before and
+   solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are
+   compared at 8 times, evenly spread. What a run costs is the processor time of its steps, the fluid's included, on all
+   ranks. */
 
 /* t, dt: the step goes from t to t + dt. Answer 0 for success; anything else ends the trial with SPAR_ERR_USER. */
 typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);

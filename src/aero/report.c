@@ -115,7 +115,7 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     spari_run t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
-    SPARI_TRY(spari_comm_enter(s->comm, call, check(s, aero, &t, table, call), s->message, sizeof s->message));
+    SPARI_TRY(spari_trial_enter(s, call, &t, 0, 0, check(s, aero, &t, table, call)));
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(fill_table(s, aero, &t, made));
     memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */

@@ -13,6 +13,7 @@ typedef struct mpi_comm {
     spari_comm base;
     MPI_Comm handle; /* our own duplicate, with MPI_ERRORS_RETURN */
     int *counts, *offsets;
+    int gone; /* another rank has destroyed its session: there is nobody to talk to any more */
 } mpi_comm;
 
 /* ---- failures of MPI itself ---- */
@@ -39,24 +40,19 @@ static int mpi_is_up(void) {
     return MPI_Initialized(&up) == MPI_SUCCESS && up && MPI_Finalized(&down) == MPI_SUCCESS && !down;
 }
 
-static int check_up(char *message, size_t size) {
+static int check_up(const mpi_comm *c, char *message, size_t size) {
     if (!mpi_is_up()) {
         (void)snprintf(message, size, "MPI has been finalized; destroy the session before MPI_Finalize");
+        return SPAR_ERR_COMM;
+    }
+    if (c->gone) {
+        (void)snprintf(message, size, "another rank has destroyed this session; destroy it on this one too");
         return SPAR_ERR_COMM;
     }
     return SPAR_OK;
 }
 
 /* ---- the table ---- */
-
-static void mpi_destroy(spari_comm *comm) {
-    mpi_comm *c = (mpi_comm *)comm;
-    if (mpi_is_up()) {
-        (void)MPI_Comm_free(&c->handle);
-    }
-    free(c->counts);
-    free(c->offsets);
-}
 
 /* The text of rank `from`, the lowest that failed, for those that did not fail themselves. */
 static int tell(mpi_comm *c, int from, int status, char *message, size_t size) {
@@ -72,33 +68,140 @@ static int tell(mpi_comm *c, int from, int status, char *message, size_t size) {
     return SPAR_ERR_PEER;
 }
 
-/* A call's name as a number: FNV-1a. */
-static int64_t hash_of(const char *call) {
-    uint32_t hash = 2166136261U;
-    for (; call && *call; call++) {
-        hash = (hash ^ (unsigned char)*call) * 16777619U;
+/* What a collective call begins with, reduced to the least of all ranks. A hash stands twice, the second time
+   complemented, so that its greatest is known as well: all ranks gave the same if the two fit. */
+enum {
+    FAILED,         /* the lowest rank that failed; NOBODY; LEAVING on a rank that destroys its session */
+    NAME,           /* of the call */
+    KEY = NAME + 2, /* of what must be alike */
+    WORDS = KEY + 2
+};
+enum { NOBODY = INT_MAX, LEAVING = -1 };
+
+static void put_pair(int64_t *pair, int64_t value) {
+    pair[0] = value;
+    pair[1] = ~value;
+}
+
+static int is_same(const int64_t *pair) {
+    return pair[0] == ~pair[1];
+}
+
+/* FNV-1a, which may begin with a hash and go on. */
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t n) {
+    const unsigned char *byte = data;
+    for (size_t i = 0; i < n; i++) {
+        hash = (hash ^ byte[i]) * UINT64_C(1099511628211);
     }
     return hash;
 }
 
-static int mpi_agree(spari_comm *comm, const char *call, int status, char *message, size_t size) {
-    mpi_comm *c = (mpi_comm *)comm;
-    SPARI_TRY(check_up(message, size));
-    /* the lowest rank that failed; the calls' least and greatest name */
-    int64_t name = hash_of(call), mine[3] = {status == SPAR_OK ? INT_MAX : comm->rank, name, -name}, all[3];
-    TRY_MPI(MPI_Allreduce(mine, all, 3, MPI_INT64_T, MPI_MIN, c->handle));
-    if (all[1] != -all[2]) {
+static const uint64_t hash_of_nothing = UINT64_C(14695981039346656037);
+
+static int64_t as_word(const spari_alike *a) {
+    int64_t word = a->whole;
+    if (a->kind == SPARI_REAL) {
+        memcpy(&word, &a->real, sizeof word);
+    }
+    return word;
+}
+
+static int64_t key_of(const spari_alike *alike, int count) {
+    uint64_t hash = hash_of_nothing;
+    for (int i = 0; i < count; i++) {
+        int64_t word = as_word(alike + i);
+        hash = hash_bytes(hash, &word, sizeof word);
+    }
+    return (int64_t)hash;
+}
+
+static void tell_own(const spari_alike *a, char *text, size_t size) {
+    switch (a->kind) {
+    case SPARI_REAL:
+        (void)snprintf(text, size, " (here %.17g)", a->real);
+        break;
+    case SPARI_WHOLE:
+        (void)snprintf(text, size, " (here %lld)", (long long)a->whole);
+        break;
+    case SPARI_GIVEN:
+        (void)snprintf(text, size, a->whole ? " (here given, elsewhere NULL)" : " (here NULL, elsewhere given)");
+        break;
+    case SPARI_HASH:
+        text[0] = '\0';
+        break;
+    }
+}
+
+/* The keys differ, on all ranks alike: looks for the first thing that does. */
+static int tell_difference(mpi_comm *c, const char *call, const spari_alike *alike, int count, char *message,
+                           size_t size) {
+    int64_t mine[2 * SPARI_MOST_ALIKE], all[2 * SPARI_MOST_ALIKE];
+    char own[64] = "";
+    int first = 0;
+    for (int i = 0; i < count; i++) {
+        put_pair(mine + 2 * i, as_word(alike + i));
+    }
+    TRY_MPI(MPI_Allreduce(mine, all, 2 * count, MPI_INT64_T, MPI_MIN, c->handle));
+    while (first < count - 1 && is_same(all + 2 * first)) {
+        first++;
+    }
+    tell_own(alike + first, own, sizeof own);
+    (void)snprintf(message, size, "%s: the ranks have different %s%s; give the same on every rank", call,
+                   alike[first].name, own);
+    return SPAR_ERR_COMM;
+}
+
+/* call NULL: within a call that all ranks are known to be in. */
+static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int count, int status, char *message,
+                size_t size) {
+    int64_t mine[WORDS], all[WORDS];
+    SPARI_TRY(check_up(c, message, size));
+    mine[FAILED] = status == SPAR_OK ? NOBODY : c->base.rank;
+    put_pair(mine + NAME, call ? (int64_t)hash_bytes(hash_of_nothing, call, strlen(call)) : 0);
+    put_pair(mine + KEY, key_of(alike, count));
+    TRY_MPI(MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle));
+    if (all[FAILED] == LEAVING) {
+        c->gone = 1;
+        return check_up(c, message, size);
+    }
+    if (!is_same(all + NAME)) {
         (void)snprintf(message, size,
                        "%s: other ranks are in another call; all ranks make the collective calls in the same order",
                        call ? call : "spar");
         return SPAR_ERR_COMM;
     }
-    return all[0] == INT_MAX ? SPAR_OK : tell(c, (int)all[0], status, message, size);
+    if (all[FAILED] != NOBODY) {
+        return tell(c, (int)all[FAILED], status, message, size);
+    }
+    return !alike || is_same(all + KEY) ? SPAR_OK : tell_difference(c, call, alike, count, message, size);
+}
+
+static int mpi_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
+                     size_t size) {
+    return meet((mpi_comm *)comm, call, alike, count, status, message, size);
+}
+
+static int mpi_agree(spari_comm *comm, int status, char *message, size_t size) {
+    return meet((mpi_comm *)comm, NULL, NULL, 0, status, message, size);
+}
+
+/* The others may wait in another call for this rank, which will not come any more. */
+static void mpi_destroy(spari_comm *comm) {
+    mpi_comm *c = (mpi_comm *)comm;
+    if (mpi_is_up()) {
+        int64_t mine[WORDS] = {LEAVING}, all[WORDS];
+        if (!c->gone) {
+            (void)MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle);
+        }
+        (void)MPI_Comm_free(&c->handle);
+    }
+    free(c->counts);
+    free(c->offsets);
 }
 
 static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
-    SPARI_TRY(check_up(message, size));
+    SPARI_TRY(check_up(c, message, size));
     if (status != SPAR_OK) {
         memset(x, 0, (size_t)n * sizeof *x);
     }
@@ -110,12 +213,12 @@ static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
         TRY_MPI(MPI_Reduce(comm->rank == 0 ? MPI_IN_PLACE : p, p, part, MPI_DOUBLE, MPI_SUM, 0, c->handle));
         TRY_MPI(MPI_Bcast(p, part, MPI_DOUBLE, 0, c->handle));
     }
-    return x[n] == 0 ? SPAR_OK : mpi_agree(comm, NULL, status, message, size);
+    return x[n] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
 }
 
 static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
-    SPARI_TRY(check_up(message, size));
+    SPARI_TRY(check_up(c, message, size));
     if (first[comm->size] > INT_MAX) { /* the same on all ranks */
         (void)snprintf(message, size, "%lld numbers are more than MPI moves in one call; make the members smaller",
                        (long long)first[comm->size]);
@@ -137,7 +240,7 @@ static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int stat
 
 static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
-    SPARI_TRY(check_up(message, size));
+    SPARI_TRY(check_up(c, message, size));
     for (int64_t at = 0; at < bytes; at += INT_MAX) {
         int part = (int)(bytes - at < INT_MAX ? bytes - at : INT_MAX);
         TRY_MPI(MPI_Bcast((char *)data + at, part, MPI_BYTE, 0, c->handle));
@@ -145,26 +248,9 @@ static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *mess
     return SPAR_OK;
 }
 
-static int mpi_same(spari_comm *comm, uint64_t key, int *same) {
-    mpi_comm *c = (mpi_comm *)comm;
-    uint64_t mine[2] = {key, ~key}, all[2];
-    if (!mpi_is_up() || MPI_Allreduce(mine, all, 2, MPI_UINT64_T, MPI_MAX, c->handle) != MPI_SUCCESS) {
-        *same = 0;
-        return SPAR_ERR_COMM;
-    }
-    *same = all[0] == ~all[1];
-    return SPAR_OK;
-}
-
-static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree, mpi_sum, mpi_share, mpi_broadcast, mpi_same};
+static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree, mpi_enter, mpi_sum, mpi_share, mpi_broadcast};
 
 /* ---- create ---- */
-
-/* A rank without memory must not leave the others with a communicator they believe in. */
-static int agree_on_memory(mpi_comm *c) {
-    int mine = c->counts && c->offsets, all = 0;
-    return MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, c->handle) == MPI_SUCCESS && all;
-}
 
 static int duplicate_quietly(MPI_Comm theirs, MPI_Comm *ours, const char **why) {
     int inter = 0;
@@ -198,39 +284,41 @@ static int duplicate(MPI_Comm theirs, MPI_Comm *ours, const char **why) {
     return status;
 }
 
-int spari_comm_create_fortran(int handle, spari_comm **comm, const char **why) {
-    if (!mpi_is_up()) {
-        *why = "MPI is not running; call it after MPI_Init and before MPI_Finalize, or use spar_session_create";
-        return SPAR_ERR_COMM;
-    }
-    mpi_comm *c = spari_zalloc(1, sizeof *c);
-    if (!c) {
-        *why = "no memory for the communicator";
+/* Where this rank stands in the duplicate, and memory: what may fail here alone. status: of this rank before. */
+static int set_up(mpi_comm *c, int status, mpi_comm **made, char *message, size_t size) {
+    TRY_MPI(MPI_Comm_set_errhandler(c->handle, MPI_ERRORS_RETURN));
+    TRY_MPI(MPI_Comm_rank(c->handle, &c->base.rank));
+    TRY_MPI(MPI_Comm_size(c->handle, &c->base.size));
+    SPARI_TRY(status);
+    c->counts = spari_zalloc(c->base.size, sizeof *c->counts);
+    c->offsets = spari_zalloc(c->base.size, sizeof *c->offsets);
+    *made = c->counts && c->offsets ? spari_zalloc(1, sizeof **made) : NULL;
+    if (!*made) {
+        (void)snprintf(message, size, "no memory for the communicator");
         return SPAR_ERR_MEMORY;
     }
-    int status = duplicate(MPI_Comm_f2c((MPI_Fint)handle), &c->handle, why);
-    if (status != SPAR_OK) {
-        free(c);
+    return SPAR_OK;
+}
+
+int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *message, size_t size) {
+    const char *why = "MPI is not running; call it after MPI_Init and before MPI_Finalize, or use spar_session_create";
+    mpi_comm c = {.base.ops = &mpi_ops}, *made = NULL;
+    int found = mpi_is_up() ? duplicate(MPI_Comm_f2c((MPI_Fint)handle), &c.handle, &why) : SPAR_ERR_COMM;
+    if (found != SPAR_OK) {
+        (void)snprintf(message, size, "%s", why);
+        return found;
+    }
+    status = set_up(&c, status, &made, message, size);
+    status = meet(&c, "spar_session_create_fcomm", NULL, 0, status, message, size);
+    if (status != SPAR_OK || !made) {
+        (void)MPI_Comm_free(&c.handle);
+        free(c.counts);
+        free(c.offsets);
+        free(made);
         return status;
     }
-    c->base.ops = &mpi_ops;
-    spari_comm *made = &c->base;
-    int ok = MPI_Comm_set_errhandler(c->handle, MPI_ERRORS_RETURN) == MPI_SUCCESS &&
-             MPI_Comm_rank(c->handle, &made->rank) == MPI_SUCCESS &&
-             MPI_Comm_size(c->handle, &made->size) == MPI_SUCCESS;
-    if (!ok) {
-        spari_comm_destroy(&made);
-        *why = "MPI did not set up the communicator";
-        return SPAR_ERR_COMM;
-    }
-    c->counts = spari_zalloc(made->size, sizeof *c->counts);
-    c->offsets = spari_zalloc(made->size, sizeof *c->offsets);
-    if (!agree_on_memory(c)) {
-        spari_comm_destroy(&made);
-        *why = "no memory for the communicator on one of the ranks";
-        return SPAR_ERR_MEMORY;
-    }
-    *comm = made;
+    *made = c;
+    *comm = &made->base;
     return SPAR_OK;
 }
 

@@ -6,11 +6,12 @@
 
 typedef struct spari_comm_ops {
     void (*destroy)(spari_comm *comm);
-    int (*agree)(spari_comm *comm, const char *call, int status, char *message, size_t size);
+    int (*agree)(spari_comm *comm, int status, char *message, size_t size);
+    int (*enter)(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
+                 size_t size);
     int (*sum)(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
     int (*share)(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
     int (*broadcast)(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
-    int (*same)(spari_comm *comm, uint64_t key, int *same);
 } spari_comm_ops;
 
 struct spari_comm {

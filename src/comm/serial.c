@@ -1,6 +1,7 @@
 /* One process alone, and the way to the ranks' table. */
 #include "ranks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 int spari_comm_create_self(spari_comm **comm) {
@@ -14,10 +15,12 @@ int spari_comm_create_self(spari_comm **comm) {
 }
 
 #ifndef SPARI_HAVE_MPI
-int spari_comm_create_fortran(int handle, spari_comm **comm, const char **why) {
+int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *message, size_t size) {
     (void)handle;
     (void)comm;
-    *why = "this build of spar has no MPI; configure with -DSPAR_MPI=ON, or use spar_session_create";
+    (void)status;
+    (void)snprintf(message, size,
+                   "this build of spar has no MPI; configure with -DSPAR_MPI=ON, or use spar_session_create");
     return SPAR_ERR_UNSUPPORTED;
 }
 #endif
@@ -42,11 +45,12 @@ int spari_comm_size(const spari_comm *comm) {
 }
 
 int(spari_comm_agree)(spari_comm *comm, int status, char *message, size_t size) {
-    return comm->ops ? comm->ops->agree(comm, NULL, status, message, size) : status;
+    return comm->ops ? comm->ops->agree(comm, status, message, size) : status;
 }
 
-int spari_comm_enter(spari_comm *comm, const char *call, int status, char *message, size_t size) {
-    return comm->ops ? comm->ops->agree(comm, call, status, message, size) : status;
+int spari_comm_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
+                     size_t size) {
+    return comm->ops ? comm->ops->enter(comm, call, alike, count, status, message, size) : status;
 }
 
 int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size) {
@@ -59,9 +63,4 @@ int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int stat
 
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
     return comm->ops ? comm->ops->broadcast(comm, data, bytes, message, size) : SPAR_OK;
-}
-
-int spari_comm_same(spari_comm *comm, uint64_t key, int *same) {
-    *same = 1;
-    return comm->ops ? comm->ops->same(comm, key, same) : SPAR_OK;
 }

@@ -283,6 +283,15 @@ void spari_member_gravity(spar_member *m) {
     }
 }
 
+/* Loads and motions of all members are stacked in the order of their creation. */
+static int place_of(const spar_member *member) {
+    int place = 0;
+    for (const spar_member *m = member->session->members; m && m != member; m = m->next) {
+        place++;
+    }
+    return place;
+}
+
 int spar_member_commit(spar_member *member) {
     SPARI_TRY(spari_need_member(member, "spar_member_commit"));
     spar_session *s = member->session;
@@ -299,17 +308,10 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    int agreed = spari_session_enter(member, "spar_member_commit", status), same = 1;
-    if (agreed == SPAR_OK) {
-        agreed = spari_comm_same(s->comm, spari_member_hash(member) ^ (uint64_t)(member->owner + 1), &same);
-        if (agreed == SPAR_OK && !same) {
-            agreed = spari_fail(s, SPAR_ERR_COMM,
-                                "spar_member_commit: the ranks describe '%s' differently; make the calls that describe "
-                                "a member with the same "
-                                "arguments on every rank",
-                                member->name);
-        }
-    }
+    const spari_alike alike[] = {spari_whole("places of it in the order of creation", place_of(member)),
+                                 spari_whole("owners of it", member->owner),
+                                 spari_hash("descriptions of it", spari_member_hash(member))};
+    int agreed = spari_member_enter(member, "spar_member_commit", alike, 3, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
             spari_member_release(member);

@@ -215,7 +215,11 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
             status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, beam->name);
         }
     }
-    status = spari_session_enter(beam, CALL, status);
+    int given = mode && ratio;
+    const spari_alike alike[] = {
+        spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
+        spari_real("ratio[0]", given ? ratio[0] : 0), spari_real("ratio[1]", given ? ratio[1] : 0)};
+    status = spari_member_enter(beam, CALL, alike, 4, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
         return status;

@@ -412,8 +412,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     spar_session *s = session;
     spari_advisor d = {.session = s, .run = {dt, steps, before, solve, context}, .tolerance = tolerance};
     spari_outcome now = {0}, best = {.seconds = INFINITY, .error = INFINITY};
-    SPARI_TRY(
-        spari_comm_enter(s->comm, SPARI_ADVISE, check(s, tolerance, &d.run, advice), s->message, sizeof s->message));
+    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check(s, tolerance, &d.run, advice)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     int status = spari_comm_agree(s->comm, spari_plan_groups(&d), s->message, sizeof s->message);

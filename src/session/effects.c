@@ -26,7 +26,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     } else if (status == SPAR_OK && compare && !s->kept) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: there is no run to compare with; try with compare = 0 first", call);
     }
-    status = spari_comm_enter(s->comm, call, status, s->message, sizeof s->message);
+    status = spari_trial_enter(s, call, &run, 0, compare, status);
     status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
     if (status == SPAR_OK) {
         (void)spari_trial_run(s, &run, &wish, &record);
@@ -331,7 +331,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     if (status == SPAR_OK && !table) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: table is NULL", call);
     }
-    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_trial_enter(s, call, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(fill_table(s, &run, made));

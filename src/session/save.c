@@ -304,7 +304,7 @@ int spar_session_save(const spar_session *session, const char *path) {
         status = spari_fail(s, SPAR_ERR_STATE,
                             "%s: a push was refused in this step; push again, or reject the step first", call);
     }
-    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_session_enter_alike(s, call, NULL, 0, status));
     status = put_own(&own, s);
     status = agree(s, status == SPAR_OK && own.failed ? no_memory(s, call) : status);
     if (status == SPAR_OK) {
@@ -639,7 +639,7 @@ int spar_session_load(spar_session *session, const char *path) {
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", call);
     }
-    SPARI_TRY(spari_comm_enter(s->comm, call, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_session_enter_alike(s, call, NULL, 0, status));
     status = fetch(s, &l, path);
     if (status == SPAR_OK) {
         status = agree(s, check_image(s, &l));

@@ -6,6 +6,7 @@
 #include "../solve/solver.h"
 #include "trial.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,14 +18,12 @@
  */
 static const double default_atol = 1e-15, default_rtol = 1e-12;
 
-static int session_create(spari_comm *comm, spar_session **session) {
+static spar_session *session_new(void) {
     spar_session *s = spari_zalloc(1, sizeof *s);
     if (!s) {
-        spari_comm_destroy(&comm);
-        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_session_create: no memory for the session");
+        return NULL;
     }
     spari_gsl_quiet();
-    s->comm = comm;
     s->rho_inf = 0.9;
     s->substeps = 1;
     s->newton_atol = default_atol;
@@ -41,25 +40,40 @@ static int session_create(spari_comm *comm, spar_session **session) {
     s->coupling_filter = 1e-4;
     s->coupling_target = 0.01;
     s->coupling_stale = 1;
+    return s;
+}
+
+int spar_session_create(spar_session **session) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create: no place for the new session (NULL)");
+    spar_session *s = session_new();
+    int status = s ? spari_comm_create_self(&s->comm) : SPAR_ERR_MEMORY;
+    if (!s || status != SPAR_OK) {
+        free(s);
+        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_session_create: no memory for the session");
+    }
     *session = s;
     return SPAR_OK;
 }
 
-int spar_session_create(spar_session **session) {
-    spari_comm *comm = NULL;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create: no place for the new session (NULL)");
-    SPARI_REQUIRE(NULL, spari_comm_create_self(&comm) == SPAR_OK, SPAR_ERR_MEMORY,
-                  "spar_session_create: no memory for the session");
-    return session_create(comm, session);
-}
-
+/* All ranks get a session or none: what can fail on one of them is agreed on over the communicator. */
 int spar_session_create_fcomm(int comm, spar_session **session) {
+    const char *call = "spar_session_create_fcomm";
+    char why[SPARI_MESSAGE_SIZE / 2] = "no memory for the session";
     spari_comm *ranks = NULL;
-    const char *why = "";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create_fcomm: no place for the new session (NULL)");
-    int status = spari_comm_create_fortran(comm, &ranks, &why);
-    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "spar_session_create_fcomm: %s", why);
-    return session_create(ranks, session);
+    spar_session *s = session ? session_new() : NULL;
+    int status = s ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (!session) {
+        status = SPAR_ERR_ARGUMENT;
+        (void)snprintf(why, sizeof why, "no place for the new session (NULL)");
+    }
+    status = spari_comm_create_fortran(comm, &ranks, status, why, sizeof why);
+    if (status != SPAR_OK || !s) {
+        free(s);
+        return spari_fail(NULL, status, "%s: %s", call, why);
+    }
+    s->comm = ranks;
+    *session = s;
+    return SPAR_OK;
 }
 
 void spar_session_destroy(spar_session **session) {
@@ -280,18 +294,48 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
                       value);
 }
 
-uint64_t spari_session_hash(const spar_session *s) {
-    const double numbers[] = {s->gravity[0],     s->gravity[1],      s->gravity[2],         s->rho_inf,
-                              s->substeps,       s->newton_atol,     s->newton_rtol,        s->newton_max,
-                              s->predictor,      s->scheme,          s->coupling_atol,      s->coupling_rtol,
-                              s->coupling_max,   s->relaxation,      s->accept_unconverged, s->coupling_columns,
-                              s->coupling_reuse, s->coupling_filter, s->coupling_target,    s->motion_atol,
-                              s->motion_rtol,    s->coupling_stale,  s->member_count};
-    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
-    for (size_t i = 0; i < sizeof numbers; i++) {
-        h = (h ^ ((const unsigned char *)numbers)[i]) * UINT64_C(1099511628211);
-    }
-    return h;
+/* What all ranks set alike. Not here: fluid.far and fluid.audit, which concern a rank's own nodes and nothing else. */
+typedef struct setting {
+    const char *name;
+    size_t field;
+    int whole; /* an int, else a double */
+} setting;
+
+static const setting settings[] = {
+    {"gravity (x)", offsetof(spar_session, gravity), 0},
+    {"gravity (y)", offsetof(spar_session, gravity) + sizeof(double), 0},
+    {"gravity (z)", offsetof(spar_session, gravity) + 2 * sizeof(double), 0},
+    {"rho_inf of spar_session_set_integrator", offsetof(spar_session, rho_inf), 0},
+    {"substeps of spar_session_set_integrator", offsetof(spar_session, substeps), 1},
+    {"atol of spar_session_set_newton", offsetof(spar_session, newton_atol), 0},
+    {"rtol of spar_session_set_newton", offsetof(spar_session, newton_rtol), 0},
+    {"max_iterations of spar_session_set_newton", offsetof(spar_session, newton_max), 1},
+    {"order of spar_session_set_predictor", offsetof(spar_session, predictor), 1},
+    {"scheme of spar_session_set_coupling", offsetof(spar_session, scheme), 1},
+    {"atol of spar_session_set_coupling", offsetof(spar_session, coupling_atol), 0},
+    {"rtol of spar_session_set_coupling", offsetof(spar_session, coupling_rtol), 0},
+    {"max_iterations of spar_session_set_coupling", offsetof(spar_session, coupling_max), 1},
+    {"omega of spar_session_set_relaxation", offsetof(spar_session, relaxation), 0},
+    {"option coupling.unconverged (1: accept)", offsetof(spar_session, accept_unconverged), 1},
+    {"option coupling.columns", offsetof(spar_session, coupling_columns), 1},
+    {"option coupling.reuse", offsetof(spar_session, coupling_reuse), 1},
+    {"option coupling.filter", offsetof(spar_session, coupling_filter), 0},
+    {"option coupling.target", offsetof(spar_session, coupling_target), 0},
+    {"option coupling.motion_atol", offsetof(spar_session, motion_atol), 0},
+    {"option coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0},
+    {"option fluid.theta (1: group)", offsetof(spar_session, theta_on_group), 1},
+    {"option advise.dt (1: keep)", offsetof(spar_session, keep_dt), 1},
+    {"option advise.nodes (1: keep)", offsetof(spar_session, keep_nodes), 1},
+    {"option advise.fidelity (1: keep)", offsetof(spar_session, keep_fidelity), 1},
+    {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
+    {"option advise.horizon", offsetof(spar_session, horizon), 0},
+    {"numbers of members", offsetof(spar_session, member_count), 1},
+};
+enum { SETTINGS = sizeof settings / sizeof *settings };
+
+static spari_alike alike_of(const spar_session *s, const setting *of) {
+    const void *field = (const char *)s + of->field;
+    return of->whole ? spari_whole(of->name, *(const int *)field) : spari_real(of->name, *(const double *)field);
 }
 
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
@@ -422,11 +466,39 @@ int spari_session_share_motion(spar_session *s, int status) {
     return SPAR_OK;
 }
 
-int spari_session_enter(const spar_member *member, const char *call, int status) {
+static int enter(spar_session *s, const char *call, const spari_alike *alike, int count, int status) {
+    int answer = spari_comm_enter(s->comm, call, alike, count, status, s->message, sizeof s->message);
+    if (answer == SPAR_ERR_COMM) {
+        s->parted = 1;
+        (void)spari_fail(s, answer, "%s", s->message); /* for the log */
+    }
+    return answer;
+}
+
+int spari_session_enter(spar_session *s, const char *call, int status) {
+    return enter(s, call, NULL, 0, status);
+}
+
+int spari_session_enter_alike(spar_session *s, const char *call, const spari_alike *alike, int count, int status) {
+    spari_alike all[SPARI_MOST_ALIKE];
+    int n = 0;
+    if (spari_comm_size(s->comm) == 1) {
+        return status;
+    }
+    assert(count + SETTINGS <= SPARI_MOST_ALIKE);
+    for (; n < count; n++) {
+        all[n] = alike[n];
+    }
+    for (int i = 0; i < SETTINGS; i++) {
+        all[n++] = alike_of(s, settings + i);
+    }
+    return enter(s, call, all, n, status);
+}
+
+int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status) {
     char what[SPARI_MESSAGE_SIZE / 2];
-    spar_session *s = member->session;
     (void)snprintf(what, sizeof what, "%s: member '%s'", call, member->name);
-    return spari_comm_enter(s->comm, what, status, s->message, sizeof s->message);
+    return spari_session_enter_alike(member->session, what, alike, count, status);
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
@@ -451,7 +523,8 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
         status =
             spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
     }
-    SPARI_TRY(spari_session_enter(member, call, status));
+    const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
+    SPARI_TRY(spari_member_enter(member, call, alike, 1, status));
     SPARI_TRY(spari_session_seal(s, SPAR_OK));
     if (!s->started) {
         SPARI_TRY(spari_session_exchange_loads(s, s->refused));

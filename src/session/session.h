@@ -59,12 +59,15 @@ struct spar_session {
     spari_coupling *coupling; /* from the first step on */
     int coupling_stale;       /* settings have changed since it was made */
     double *motion;           /* several ranks: motion of all solved members, by owner */
+    int parted;               /* the ranks were found to be at different things: nothing more is to be agreed on */
 };
 
-/* What all ranks must have set alike before a step, as one number. */
-uint64_t spari_session_hash(const spar_session *session);
-/* Entry of a collective call on one member: agrees on a status, the call and the member. */
-int spari_session_enter(const spar_member *member, const char *call, int status);
+/* Entry of a collective call: agrees on a status and on what is called. */
+int spari_session_enter(spar_session *session, const char *call, int status);
+/* The same where arguments have to be alike, alike[count], and all that is set for the session. */
+int spari_session_enter_alike(spar_session *session, const char *call, const spari_alike *alike, int count, int status);
+/* The same of a call on one member. */
+int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
 /* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
 int spari_session_exchange_loads(spar_session *session, int status);
 /* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.

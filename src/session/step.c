@@ -13,12 +13,6 @@
 static const char *const phase_name[] = {"no step is under way", "the step has begun and is not solved",
                                          "the step is solved and not checked", "the step is checked"};
 
-/* Every call of the step agrees, before anything else, on a status and on which call it is: ranks that are in different
-   ones would wait for each other. */
-static int enter(spar_session *s, const char *call, int status) {
-    return spari_comm_enter(s->comm, call, status, s->message, sizeof s->message);
-}
-
 static int wrong_phase(spar_session *s, const char *call, const char *cure) {
     return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->phase], cure);
 }
@@ -61,28 +55,13 @@ static void hold_root(spar_member *m) {
     }
 }
 
-/* The same dt and the same settings everywhere: else the ranks would part ways. */
-static int check_same(spar_session *s, double dt) {
-    uint64_t key;
-    int same = 1;
-    memcpy(&key, &dt, sizeof key);
-    SPARI_TRY(spari_comm_same(s->comm, key, &same));
-    SPARI_REQUIRE(s, same, SPAR_ERR_COMM,
-                  "spar_step_begin: the ranks give different dt (here %g); give the same on every rank", dt);
-    SPARI_TRY(spari_comm_same(s->comm, spari_session_hash(s), &same));
-    SPARI_REQUIRE(s, same, SPAR_ERR_COMM,
-                  "spar_step_begin: the ranks have different settings; make the spar_session_set_ calls with the same "
-                  "arguments on every rank");
-    return SPAR_OK;
-}
-
 int spar_step_begin(spar_session *session, double dt) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(enter(s, "spar_step_begin", check_begin(s, dt)));
-    SPARI_TRY(check_same(s, dt));
+    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", s->coupling_stale)};
+    SPARI_TRY(spari_session_enter_alike(s, "spar_step_begin", alike, 2, check_begin(s, dt)));
     if (s->coupling_stale) {
-        SPARI_TRY(enter(s, "coupling", spari_coupling_prepare(s)));
+        SPARI_TRY(spari_session_enter(s, "coupling", spari_coupling_prepare(s)));
         s->coupling_stale = 0;
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
@@ -132,7 +111,7 @@ int spar_step_solve(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
-    SPARI_TRY(enter(s, "spar_step_solve", status));
+    SPARI_TRY(spari_session_enter(s, "spar_step_solve", status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
     }
@@ -165,7 +144,7 @@ static int check(spar_session *s, int status, int *done) {
     } else if (status == SPAR_OK) {
         status = s->refused; /* a push of this rank was refused; its message stands */
     }
-    SPARI_TRY(enter(s, "spar_step_check", status));
+    SPARI_TRY(spari_session_enter(s, "spar_step_check", status));
     SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
     s->iteration++;
     s->phase = SPARI_CHECKED;
@@ -197,7 +176,7 @@ int spar_step_accept(spar_session *session) {
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, "spar_step_accept", "begin and solve a step first");
     }
-    SPARI_TRY(enter(s, "spar_step_accept", status));
+    SPARI_TRY(spari_session_enter(s, "spar_step_accept", status));
     spari_coupling_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
@@ -216,11 +195,8 @@ int spar_step_accept(spar_session *session) {
     return SPAR_OK;
 }
 
-int spar_step_reject(spar_session *session) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
-    spar_session *s = session;
-    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
-    SPARI_TRY(enter(s, "spar_step_reject", status));
+/* Local: what all ranks do where the step is to end on all of them. */
+static void reject(spar_session *s) {
     spari_coupling_reject(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
@@ -232,6 +208,14 @@ int spar_step_reject(spar_session *session) {
     s->refused = SPAR_OK;
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
+}
+
+int spar_step_reject(spar_session *session) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
+    spar_session *s = session;
+    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
+    SPARI_TRY(spari_session_enter(s, "spar_step_reject", status));
+    reject(s);
     return SPAR_OK;
 }
 
@@ -244,7 +228,11 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
         int status = SPAR_OK;
         if (solve) {
             s->message[0] = '\0';
+            s->parted = 0;
             int answer = solve(s, s->time, s->dt, s->iteration, context);
+            if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+                return SPAR_ERR_COMM;
+            }
             if (answer != 0) {
                 char why[256];
                 memcpy(why, s->message, sizeof why - 1);
@@ -263,6 +251,10 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
     int status = iterate(session, solve, context);
     if (iterations) {
         *iterations = session->iteration;
+    }
+    if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
+        reject(session);
+        return status;
     }
     if (status != SPAR_OK) { /* the message of the failure stands: rejecting a step under way cannot fail */
         (void)spar_step_reject(session);

@@ -259,7 +259,11 @@ static int prepare_step(spar_session *s, const spari_run *run) {
         return SPAR_OK;
     }
     s->message[0] = '\0';
+    s->parted = 0;
     int answer = run->before(s, s->time, run->dt, run->context), status = SPAR_OK;
+    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+        return SPAR_ERR_COMM;
+    }
     if (answer != 0 && !s->message[0]) {
         status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step answered %d", answer);
     } else if (answer != 0) {
@@ -370,6 +374,17 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
     go_back(s, &t);
     record->own = status;
     return share_failure(s, status);
+}
+
+int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, double tolerance, int compare,
+                      int status) {
+    const spari_alike alike[] = {spari_real("dt", run->dt),
+                                 spari_whole("steps", run->steps),
+                                 spari_given("before", run->before != NULL),
+                                 spari_given("solve", run->solve != NULL),
+                                 spari_real("tolerance", tolerance),
+                                 spari_whole("compare", compare != 0)};
+    return spari_session_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {

@@ -47,6 +47,10 @@ struct spari_record {
 
 /* Refuses what cannot be tried: a step under way, a trial under way, members not committed, bad numbers. Local. */
 int spari_trial_check(spar_session *session, const char *call, const spari_run *run);
+/* Entry of a call that makes trials, with status of the check: all ranks try the same. tolerance, compare: of the calls
+   that have them, else 0. Collective. */
+int spari_trial_enter(spar_session *session, const char *call, const spari_run *run, double tolerance, int compare,
+                      int status);
 /* The session as it is. Frees: spari_wish_free. Collective. */
 int spari_wish_create(spar_session *session, spari_wish *wish);
 void spari_wish_free(spari_wish *wish);
