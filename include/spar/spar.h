@@ -552,11 +552,14 @@ SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
    fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. path: in;
    rank 0 writes and reads, the others' paths are not looked at but for being there. The file is written under path.new,
-   flushed and renamed: there is always a whole one. load: into a session with the same members, committed, and the same
-   fluids, mapped, by name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise,
-   node forces find them by their reference places. What the host sets (gravity, integrator, tolerances) it sets as
-   before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT;
-   the session is then as it was. Collective. */
+   flushed and renamed: there is always a whole one, and what a killed process has left at path.new goes with the next
+   save. Where path is a symbolic link, all this happens where it leads, and the link stays; a file with hard links
+   parts from its other names; mode and owner stay as far as the system allows. What is no file (a pipe, a device, a
+   folder) is SPAR_ERR_IO and stays; so is a file that another process is writing. load: into a session with the same
+   members, committed, and the same fluids, mapped, by name, no step under way, on any number of ranks: nodes may be
+   spread over the ranks otherwise, node forces find them by their reference places. What the host sets (gravity,
+   integrator, tolerances) it sets as before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of
+   another session: SPAR_ERR_ARGUMENT; the session is then as it was. Collective. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 

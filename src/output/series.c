@@ -1,4 +1,5 @@
 /* The index of a series of VTK files (.pvd): what ParaView opens to show them in time. */
+#include "../base/file.h"
 #include "../session/status.h"
 #include <errno.h>
 #include <spar/spar_output.h>
@@ -27,48 +28,65 @@ static void put_text(FILE *file, const char *text) {
     }
 }
 
-/* Leaves the file where the next entry goes: before the foot. Returns 0 when it does not end as an index does. */
-static int find_end(FILE *file) {
-    char text[sizeof foot] = "";
-    long back = (long)(sizeof foot - 1);
-    if (fseek(file, 0, SEEK_END) != 0) {
-        return 0;
-    }
-    if (ftell(file) == 0) {
-        fputs(head, file);
+/* What the index says so far goes into the new one, but for its foot. 0: it does not end as an index does. */
+static int copy(FILE *from, FILE *to) {
+    char block[1 << 12], end[sizeof foot] = "";
+    long length = fseek(from, 0, SEEK_END) == 0 ? ftell(from) : -1, left = length - (long)(sizeof foot - 1);
+    if (length == 0) {
+        fputs(head, to);
         return 1;
     }
-    if (fseek(file, -back, SEEK_END) != 0 || fread(text, 1, (size_t)back, file) != (size_t)back ||
-        strcmp(text, foot) != 0) {
+    if (left < 0 || fseek(from, left, SEEK_SET) != 0 || fread(end, 1, sizeof foot - 1, from) != sizeof foot - 1 ||
+        strcmp(end, foot) != 0 || fseek(from, 0, SEEK_SET) != 0) {
         return 0;
     }
-    return fseek(file, -back, SEEK_END) == 0;
+    while (left > 0) {
+        size_t want = left < (long)sizeof block ? (size_t)left : sizeof block;
+        if (fread(block, 1, want, from) != want) {
+            return 0;
+        }
+        (void)fwrite(block, 1, want, to);
+        left -= (long)want;
+    }
+    return 1;
+}
+
+/* old: NULL: there is none yet. */
+static int put_index(FILE *old, FILE *to, double time, int part, const char *file) {
+    if (!old) {
+        fputs(head, to);
+    } else if (!copy(old, to)) {
+        return 0;
+    }
+    fprintf(to, "<DataSet timestep=\"%.17g\" part=\"%d\" file=\"", time, part);
+    put_text(to, file);
+    fprintf(to, "\"/>\n%s", foot);
+    return 1;
 }
 
 int spar_vtk_series_add(const char *path, double time, int part, const char *file) {
     const char *call = "spar_vtk_series_add";
+    char why[SPARI_MESSAGE_SIZE / 2];
+    spari_file index;
     SPARI_REQUIRE(NULL, path && path[0] && file && file[0], SPAR_ERR_ARGUMENT,
                   "%s: the path of the index or the name of the file is missing", call);
     SPARI_REQUIRE(NULL, spari_first_nonfinite(&time, 1) < 0 && part >= 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': time %g, part %d; give a finite time and a part counted from 0", call, file, time, part);
-    errno = 0;
-    FILE *index = fopen(path, "r+b");
-    if (!index) {
-        errno = 0;
-        index = fopen(path, "w+b");
+    int status = spari_file_begin(&index, path, ".part", why, sizeof why);
+    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", call, why);
+    FILE *old = fopen(index.place, "rb"); /* a file, if it is there at all */
+    if (!old && errno != ENOENT) {
+        int reason = errno;
+        spari_file_drop(&index);
+        return spari_fail(NULL, SPAR_ERR_IO, "%s: cannot read '%s': %s", call, path, strerror(reason));
     }
-    SPARI_REQUIRE(NULL, index, SPAR_ERR_IO, "%s: '%s' cannot be opened: %s; check the folder and its rights", call,
-                  path, strerror(errno));
-    if (!find_end(index)) {
-        fclose(index);
+    int ok = put_index(old, index.stream, time, part, file);
+    (void)(old && fclose(old));
+    if (!ok) {
+        spari_file_drop(&index);
         return spari_fail(NULL, SPAR_ERR_IO, "%s: '%s' is no index of a series; remove it or name another", call, path);
     }
-    fprintf(index, "<DataSet timestep=\"%.17g\" part=\"%d\" file=\"", time, part);
-    put_text(index, file);
-    fprintf(index, "\"/>\n%s", foot);
-    int bad = ferror(index);
-    bad = fclose(index) != 0 || bad;
-    SPARI_REQUIRE(NULL, !bad, SPAR_ERR_IO, "%s: '%s' cannot be written: %s; check the disk's room", call, path,
-                  strerror(errno));
+    status = spari_file_end(&index, 0, why, sizeof why);
+    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", call, why);
     return SPAR_OK;
 }

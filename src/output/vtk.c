@@ -1,7 +1,8 @@
 #include "vtk.h"
-#include <errno.h>
+
+#include "../base/file.h"
+
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- base64 (RFC 4648) of a stream of bytes ---- */
@@ -187,40 +188,16 @@ static int ends_with(const char *text, const char *end) {
     return n >= k && strcmp(text + n - k, end) == 0;
 }
 
-/* Returns errno of the first thing that failed, 0 when all is well. */
-static int write_file(const char *path, const char *temporary, const spari_vtk_picture *p) {
-    errno = 0;
-    FILE *file = fopen(temporary, "wb");
-    if (!file) {
-        return errno ? errno : EIO;
-    }
-    put_picture(file, p, ends_with(path, ".vtu"));
-    int why = ferror(file) ? (errno ? errno : EIO) : 0;
-    if (fclose(file) != 0 && why == 0) {
-        why = errno ? errno : EIO;
-    }
-    if (why == 0 && rename(temporary, path) != 0) {
-        why = errno ? errno : EIO;
-    }
-    if (why != 0) {
-        remove(temporary);
-    }
-    return why;
-}
-
 int spari_vtk_write(spar_session *session, const char *call, const char *path, const spari_vtk_picture *picture) {
-    static const char suffix[] = ".part";
+    char why[SPARI_MESSAGE_SIZE / 2];
+    spari_file file;
     SPARI_REQUIRE(session, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is %s; name a file ending in .vtp or .vtu",
                   call, path ? "empty" : "NULL");
-    size_t size = strlen(path);
-    char *temporary = malloc(size + sizeof suffix);
-    SPARI_REQUIRE(session, temporary, SPAR_ERR_MEMORY, "%s: no memory", call);
-    memcpy(temporary, path, size);
-    memcpy(temporary + size, suffix, sizeof suffix);
-    int why = write_file(path, temporary, picture);
-    free(temporary);
-    SPARI_REQUIRE(session, why == 0, SPAR_ERR_IO,
-                  "%s: '%s' cannot be written: %s; check the folder, its rights and the disk's room", call, path,
-                  strerror(why));
+    int status = spari_file_begin(&file, path, ".part", why, sizeof why);
+    if (status == SPAR_OK) {
+        put_picture(file.stream, picture, ends_with(path, ".vtu"));
+        status = spari_file_end(&file, 0, why, sizeof why);
+    }
+    SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: %s", call, why);
     return SPAR_OK;
 }

@@ -1,5 +1,6 @@
 #include "image.h"
 
+#include "../base/file.h"
 #include "status.h"
 
 #include <errno.h>
@@ -7,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { VERSION = 1, HEAD_BYTES = 24, CHECK_BYTES = 8 };
@@ -113,132 +115,108 @@ static int io_failure(char *why, size_t size, const char *what, const char *path
     return SPAR_ERR_IO;
 }
 
-/* The name of a file is safe when its folder is on the disc. Where folders cannot be opened that is left to the system.
- */
-static void sync_folder(const char *path) {
-    char folder[4096] = ".";
-    const char *slash = strrchr(path, '/');
-    if (slash && (size_t)(slash - path) + 1 < sizeof folder) {
-        memcpy(folder, path, (size_t)(slash - path) + 1);
-        folder[slash - path + 1] = '\0';
-    }
-    int fd = open(folder, O_RDONLY);
-    if (fd >= 0) {
-        (void)fsync(fd);
-        (void)close(fd);
-    }
-}
-
-static int write_bytes(const char *temporary, const char *path, const unsigned char *bytes, size_t n, char *why,
-                       size_t size) {
-    FILE *f = fopen(temporary, "wb");
-    if (!f) {
-        return io_failure(why, size, "cannot write", temporary);
-    }
-    int ok = fwrite(bytes, 1, n, f) == n && fflush(f) == 0 && fsync(fileno(f)) == 0;
-    int reason = errno;
-    if (fclose(f) != 0 && ok) {
-        ok = 0;
-        reason = errno;
-    }
-    if (ok && rename(temporary, path) == 0) {
-        sync_folder(path);
-        return SPAR_OK;
-    }
-    errno = ok ? errno : reason;
-    int status = io_failure(why, size, ok ? "cannot rename to" : "cannot write", ok ? path : temporary);
-    (void)remove(temporary);
-    return status;
-}
-
 int spari_image_write(const spari_image *image, const char *path, char *why, size_t size) {
-    size_t n = HEAD_BYTES + 8 * (size_t)image->count, length = strlen(path);
+    size_t n = HEAD_BYTES + 8 * (size_t)image->count;
     unsigned char *bytes = malloc(n + CHECK_BYTES);
-    char *temporary = malloc(length + 5);
-    int status = SPAR_ERR_MEMORY;
-    if (bytes && temporary) {
-        memcpy(bytes, magic, sizeof magic);
-        put_bytes(bytes + 8, VERSION);
-        put_bytes(bytes + 16, (uint64_t)image->count);
-        for (int64_t i = 0; i < image->count; i++) {
-            put_bytes(bytes + HEAD_BYTES + 8 * i, image->word[i]);
-        }
-        put_bytes(bytes + n, crc64(bytes, n));
-        memcpy(temporary, path, length);
-        memcpy(temporary + length, ".new", 5);
-        status = write_bytes(temporary, path, bytes, n + CHECK_BYTES, why, size);
-    } else {
+    spari_file file;
+    if (!bytes) {
         (void)snprintf(why, size, "no memory for what goes into '%s'", path);
+        return SPAR_ERR_MEMORY;
+    }
+    memcpy(bytes, magic, sizeof magic);
+    put_bytes(bytes + 8, VERSION);
+    put_bytes(bytes + 16, (uint64_t)image->count);
+    for (int64_t i = 0; i < image->count; i++) {
+        put_bytes(bytes + HEAD_BYTES + 8 * i, image->word[i]);
+    }
+    put_bytes(bytes + n, crc64(bytes, n));
+    int status = spari_file_begin(&file, path, ".new", why, size);
+    if (status == SPAR_OK) {
+        (void)fwrite(bytes, 1, n + CHECK_BYTES, file.stream); /* how that went is asked at the end */
+        status = spari_file_end(&file, 1, why, size);
     }
     free(bytes);
-    free(temporary);
     return status;
 }
 
-/* All of a file in memory; n: its size. */
-static int slurp(const char *path, unsigned char **bytes, size_t *n, char *why, size_t size) {
-    FILE *f = fopen(path, "rb");
-    if (!f) {
-        return io_failure(why, size, "cannot read", path);
-    }
-    size_t room = 1 << 16;
-    int status = SPAR_OK;
-    *n = 0;
-    *bytes = malloc(room);
-    while (*bytes) {
-        size_t got = fread(*bytes + *n, 1, room - *n, f);
-        *n += got;
-        if (*n < room) {
-            status = ferror(f) ? io_failure(why, size, "cannot read", path) : SPAR_OK;
-            break;
-        }
-        unsigned char *more = realloc(*bytes, 2 * room);
-        if (!more) {
-            free(*bytes);
-        }
-        *bytes = more;
-        room *= 2;
-    }
-    if (!*bytes) {
-        (void)snprintf(why, size, "no memory to read '%s'", path);
-        status = SPAR_ERR_MEMORY;
-    }
-    (void)fclose(f);
-    return status;
-}
-
-/* What is wrong with the bytes of a file, or NULL. */
-static int check_bytes(const char *path, const unsigned char *bytes, size_t n, char *why, size_t size) {
-    uint64_t words = n >= HEAD_BYTES ? get_bytes(bytes + 16) : 0;
-    if (n < sizeof magic || memcmp(bytes, magic, sizeof magic) != 0) {
+/* got: of the head, so many bytes; n: of the file. */
+static int check_head(const char *path, const unsigned char *head, size_t got, uint64_t n, char *why, size_t size) {
+    uint64_t words = got == HEAD_BYTES ? get_bytes(head + 16) : 0;
+    if (got < sizeof magic || memcmp(head, magic, sizeof magic) != 0) {
         (void)snprintf(why, size, "'%s' is no saved session", path);
-    } else if (n < HEAD_BYTES + CHECK_BYTES) {
-        (void)snprintf(why, size, "'%s' is cut off after %zu bytes; take an older file", path, n);
-    } else if (get_bytes(bytes + 8) != VERSION) {
+    } else if (got < HEAD_BYTES || n < HEAD_BYTES + CHECK_BYTES) {
+        (void)snprintf(why, size, "'%s' is cut off after %llu bytes; take an older file", path, (unsigned long long)n);
+    } else if (get_bytes(head + 8) != VERSION) {
         (void)snprintf(
             why, size,
             "'%s' has version %llu of the format, this library reads %d; load it with the spar that wrote it", path,
-            (unsigned long long)get_bytes(bytes + 8), VERSION);
-    } else if (words != (n - HEAD_BYTES - CHECK_BYTES) / 8 || (n - HEAD_BYTES) % 8 != 0) {
+            (unsigned long long)get_bytes(head + 8), VERSION);
+    } else if (words != (n - HEAD_BYTES - CHECK_BYTES) / 8 || n % 8 != 0) {
         (void)snprintf(why, size,
-                       "'%s' is cut off or has grown: it has %zu bytes and should have %llu; take an older file", path,
-                       n, (unsigned long long)(HEAD_BYTES + CHECK_BYTES + 8 * words));
-    } else if (get_bytes(bytes + n - CHECK_BYTES) != crc64(bytes, n - CHECK_BYTES)) {
-        (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
+                       "'%s' is cut off or has grown: it has %llu bytes and should have %llu; take an older file", path,
+                       (unsigned long long)n, (unsigned long long)(HEAD_BYTES + CHECK_BYTES + 8 * words));
     } else {
         return SPAR_OK;
     }
     return SPAR_ERR_IO;
 }
 
+/* How many bytes the file has. What is none could go on for ever, or wait. */
+static int measure(FILE *f, const char *path, uint64_t *n, char *why, size_t size) {
+    struct stat there;
+    if (fstat(fileno(f), &there) != 0) {
+        return io_failure(why, size, "cannot read", path);
+    }
+    const char *kind = spari_file_kind(there.st_mode);
+    if (kind) {
+        (void)snprintf(why, size, "cannot read '%s': it is %s; name a file", path, kind);
+        return SPAR_ERR_IO;
+    }
+    *n = (uint64_t)there.st_size;
+    return SPAR_OK;
+}
+
+/* All of a file in memory, whose heading must be right and fit its size; n: its size. */
+static int slurp(FILE *f, const char *path, unsigned char **bytes, size_t *n, char *why, size_t size) {
+    unsigned char head[HEAD_BYTES];
+    uint64_t there = 0;
+    SPARI_TRY(measure(f, path, &there, why, size));
+    size_t got = fread(head, 1, sizeof head, f);
+    if (ferror(f)) {
+        return io_failure(why, size, "cannot read", path);
+    }
+    SPARI_TRY(check_head(path, head, got, there, why, size));
+    *n = (size_t)there;
+    *bytes = malloc(*n);
+    if (!*bytes) {
+        (void)snprintf(why, size, "no memory to read '%s'", path);
+        return SPAR_ERR_MEMORY;
+    }
+    memcpy(*bytes, head, sizeof head);
+    got = fread(*bytes + sizeof head, 1, *n - sizeof head, f);
+    if (got != *n - sizeof head) {
+        errno = ferror(f) ? errno : EIO; /* it has become shorter meanwhile */
+        return io_failure(why, size, "cannot read", path);
+    }
+    if (get_bytes(*bytes + *n - CHECK_BYTES) != crc64(*bytes, *n - CHECK_BYTES)) {
+        (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
+        return SPAR_ERR_IO;
+    }
+    return SPAR_OK;
+}
+
 int spari_image_read(spari_image *image, const char *path, char *why, size_t size) {
     unsigned char *bytes = NULL;
     size_t n = 0;
     *image = (spari_image){0};
-    int status = slurp(path, &bytes, &n, why, size);
-    if (status == SPAR_OK) {
-        status = check_bytes(path, bytes, n, why, size);
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would wait for somebody to write */
+    FILE *f = fd >= 0 ? fdopen(fd, "rb") : NULL;
+    if (!f) {
+        int status = io_failure(why, size, "cannot read", path);
+        (void)(fd >= 0 && close(fd));
+        return status;
     }
+    int status = slurp(f, path, &bytes, &n, why, size);
     if (status == SPAR_OK) {
         image->room = image->count = (int64_t)get_bytes(bytes + 16);
         image->word = spari_zalloc(image->count, sizeof *image->word);
@@ -250,6 +228,7 @@ int spari_image_read(spari_image *image, const char *path, char *why, size_t siz
             status = SPAR_ERR_MEMORY;
         }
     }
+    (void)fclose(f);
     free(bytes);
     return status;
 }
