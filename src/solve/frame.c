@@ -5,13 +5,12 @@
 #include "../member/body.h"
 #include "../member/rung.h"
 #include "../session/session.h"
+#include "eigen.h"
 #include "solver.h"
 #include "turn.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -305,8 +304,7 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
     size_t n = (size_t)(6 * f->nodes - 6);
     gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = gsl_matrix_alloc(n, n);
     gsl_vector *mu = gsl_vector_alloc(n);
-    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(n);
-    int status = K && M && z && mu && w ? SPAR_OK : SPAR_ERR_MEMORY;
+    int status = K && M && z && mu ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         double *x = work, *image = work + 6 * f->nodes;
         assemble(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
@@ -316,10 +314,9 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
             gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
             gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
         }
-        status = gsl_eigen_gensymmv(M, K, mu, z, w) == GSL_SUCCESS ? SPAR_OK : SPAR_ERR_NUMERIC;
+        status = spari_eigen(M, K, mu, z);
     }
     if (status == SPAR_OK) {
-        gsl_eigen_gensymmv_sort(mu, z, GSL_EIGEN_SORT_VAL_DESC);
         for (int k = 6; k < cols; k++) {
             int massive = gsl_vector_get(mu, (size_t)(k - 6)) > DBL_EPSILON * gsl_vector_get(mu, 0);
             status = massive ? status : SPAR_ERR_NUMERIC;
@@ -332,9 +329,6 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
     gsl_matrix_free(M);
     gsl_matrix_free(z);
     gsl_vector_free(mu);
-    if (w) {
-        gsl_eigen_gensymmv_free(w);
-    }
     return status;
 }
 
@@ -1089,13 +1083,18 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
         failed = m->applied && step > 1e-11 * largest(f, f->to.y) && !(it > 2 && step > 0.5 * last && step < 1e-9);
         last = step;
     }
+    if (!singular && !failed) {
+        publish(f, m, &f->to, &m->after);
+        failed = spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
+                 spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
+    }
     if (singular || failed) {
+        spari_member_reject(m);
         return spari_fail(m->session, SPAR_ERR_NUMERIC,
                           "spar_member_solve_static: '%s': the linear member has no equilibrium under these loads; the "
                           "state is as it was",
                           m->name);
     }
-    publish(f, m, &f->to, &m->after);
     publish(f, m, &f->to, &m->now);
     return SPAR_OK;
 }

@@ -8,12 +8,12 @@
 #include "../member/edge.h"
 #include "../member/rung.h"
 #include "../session/session.h"
+#include "eigen.h"
 #include "frame.h"
 #include "solver.h"
 #include "turn.h"
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -124,17 +124,6 @@ static double find_shift(const modal *p) {
     return largest == 0 && shifted(p, 1) ? 1 : -1; /* a rigid body that nothing holds */
 }
 
-/* Fills x (columns) and lambda = mu, descending. */
-static int solve(modal *p) {
-    gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(p->size);
-    gsl_matrix_memcpy(p->A, p->M);
-    int status = w ? gsl_eigen_gensymmv(p->A, p->B, p->lambda, p->x, w) : GSL_ENOMEM;
-    if (w) {
-        gsl_eigen_gensymmv_free(w);
-    }
-    return status == GSL_SUCCESS ? gsl_eigen_gensymmv_sort(p->lambda, p->x, GSL_EIGEN_SORT_VAL_DESC) : status;
-}
-
 static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
     gsl_vector_view x = gsl_matrix_column(p->x, k);
     double norm;
@@ -179,18 +168,29 @@ static int64_t unknowns(const spar_member *m, int *end) {
     return 6 * (m->rung && m->rung->core ? 1 : (int64_t)m->body->unique) - *end;
 }
 
+static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
+    return spari_first_nonfinite(A->data, (int64_t)(A->size1 * A->size2)) < 0;
+}
+
 static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
     const char *call = "spar_member_get_modes";
     SPARI_REQUIRE(m->session, modal_alloc(m, p), SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
     SPARI_REQUIRE(m->session, form_problem(m, p) == SPAR_OK, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
+    SPARI_REQUIRE(m->session, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
+                  "%s: '%s': its stiffness in the present state is beyond the range of numbers; look at its loads and "
+                  "sections, or at their units",
+                  call, m->name);
     double sigma = find_shift(p);
     SPARI_REQUIRE(m->session, sigma >= 0, SPAR_ERR_NUMERIC,
                   "%s: '%s': no shift makes its stiffness positive definite in the present state: it can move where it "
                   "has neither mass nor stiffness",
                   call, m->name);
-    int status = solve(p);
-    SPARI_REQUIRE(m->session, status == GSL_SUCCESS, SPAR_ERR_NUMERIC, "%s: '%s': the eigenvalue solver failed (%s)",
-                  call, m->name, gsl_strerror(status));
+    gsl_matrix_memcpy(p->A, p->M);
+    int status = spari_eigen(p->A, p->B, p->lambda, p->x);
+    SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "%s: no memory for '%s'", call, m->name);
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status,
+                  "%s: '%s': stiffness and mass lie too far apart for the range of numbers; look at its sections", call,
+                  m->name);
     for (int64_t k = 0; k < n; k++) {
         double mu = gsl_vector_get(p->lambda, (size_t)k), square = mu > 0 ? 1 / mu - sigma : INFINITY;
         frequency[k] = copysign(sqrt(fabs(square)), square) / 6.283185307179586;

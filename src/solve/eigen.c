@@ -1,0 +1,68 @@
+/* Symmetric generalised eigenvalue problems, by Cholesky's factor and GSL's symmetric solver. That solver never ends
+   where an entry is no finite number or its square is none: all it is given is brought to the size of 1 first. */
+#include "eigen.h"
+
+#include "../session/status.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+
+/* Divides A by a power of 4 near its largest entry, which changes no digit of what roots and quotients give; *exponent:
+   of 2. Returns 0 if an entry is not finite. */
+static int bring_to_one(gsl_matrix *A, int *exponent) {
+    double largest = 0;
+    for (size_t i = 0; i < A->size1; i++) {
+        for (size_t j = 0; j < A->size2; j++) {
+            double size = fabs(gsl_matrix_get(A, i, j));
+            if (!isfinite(size)) {
+                return 0;
+            }
+            largest = fmax(largest, size);
+        }
+    }
+    *exponent = 0;
+    if (largest > 0) {
+        (void)frexp(largest, exponent);
+        *exponent &= ~1;
+    }
+    for (size_t i = 0; i < A->size1 && *exponent != 0; i++) {
+        for (size_t j = 0; j < A->size2; j++) {
+            gsl_matrix_set(A, i, j, ldexp(gsl_matrix_get(A, i, j), -*exponent));
+        }
+    }
+    return 1;
+}
+
+static void unit_columns(gsl_matrix *x) {
+    for (size_t k = 0; k < x->size2; k++) {
+        gsl_vector_view column = gsl_matrix_column(x, k);
+        gsl_vector_scale(&column.vector, 1 / gsl_blas_dnrm2(&column.vector));
+    }
+}
+
+int spari_eigen(gsl_matrix *A, gsl_matrix *B, gsl_vector *mu, gsl_matrix *x) {
+    int of_A, of_B, of_C;
+    if (!bring_to_one(A, &of_A) || !bring_to_one(B, &of_B) || gsl_linalg_cholesky_decomp1(B) != GSL_SUCCESS ||
+        gsl_eigen_gensymm_standardize(A, B) != GSL_SUCCESS || !bring_to_one(A, &of_C)) {
+        return SPAR_ERR_NUMERIC;
+    }
+    gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(A->size1);
+    if (!w) {
+        return SPAR_ERR_MEMORY;
+    }
+    int status = gsl_eigen_symmv(A, mu, x, w);
+    gsl_eigen_symmv_free(w);
+    if (status != GSL_SUCCESS) {
+        return SPAR_ERR_NUMERIC;
+    }
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, B, x);
+    unit_columns(x);
+    for (size_t k = 0; k < mu->size; k++) {
+        gsl_vector_set(mu, k, ldexp(gsl_vector_get(mu, k), of_A + of_C - of_B));
+    }
+    (void)gsl_eigen_symmv_sort(mu, x, GSL_EIGEN_SORT_VAL_DESC);
+    return SPAR_OK;
+}
