@@ -12,6 +12,7 @@
 #include "turn.h"
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,13 +193,54 @@ static double follow(spar_member *member, loading *l, int load_steps, outcome *w
     return done;
 }
 
+/* Largest turn of a node of the state q against the next one, rad. */
+static double largest_bend(const spari_solver *s, const double *q) {
+    double largest = 0;
+    for (int i = 1; i < s->n; i++) {
+        double back[4], turn[4], psi[3];
+        spari_quat_conj(q + 7 * i - 4, back);
+        spari_quat_mul(back, q + 7 * i + 3, turn);
+        spari_quat_log(turn, psi);
+        largest = fmax(largest, spari_norm(psi));
+    }
+    return largest;
+}
+
+/* Nodes that are turned by more against each other do not hold the shape between them: a circle of 5 turns on 24 nodes
+   (2.1 rad) is right to 5e-4, one of 7 (3 rad) is another curve. Where Newton failed, 1 rad is suspicion enough: 10
+   nodes of an element fail at 1.7. */
+static const double most_bend = 2.2, suspect_bend = 1;
+
 static int refuse(const spar_member *member, double done, outcome why) {
+    double bend = largest_bend(member->solver, member->solver->best);
+    char text[200] = "a limit point, or a member that nothing holds";
+    if (why == LOST) {
+        (void)snprintf(text, sizeof text, "a limit or branching point: the stiffness is no longer positive there");
+    } else if (bend > suspect_bend) {
+        (void)snprintf(text, sizeof text,
+                       "neighbouring nodes are turned by %.2g rad against each other there, more than they can follow: "
+                       "give the beam more nodes or elements",
+                       bend);
+    }
     return spari_fail(member->session, SPAR_ERR_NUMERIC,
                       "spar_member_solve_static: '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state "
                       "is as it was. Ask for less than that, or go on in time steps",
-                      member->name, why == LOST ? "stable " : "", done,
-                      why == LOST ? "a limit or branching point: the stiffness is no longer positive there"
-                                  : "a limit point, or a member that nothing holds");
+                      member->name, why == LOST ? "stable " : "", done, text);
+}
+
+/* An equilibrium of the nodes that is none of the beam. */
+static void warn_of_bend(const spar_member *m) {
+    const spar_session *s = m->session;
+    char text[SPARI_MESSAGE_SIZE];
+    if (!s->log || largest_bend(m->solver, m->solver->best) <= most_bend) {
+        return;
+    }
+    (void)snprintf(
+        text, sizeof text,
+        "spar_member_solve_static: '%s': neighbouring nodes are turned by %.2g rad against each other, more "
+        "than they can follow: the equilibrium found may be none of the beam; give it more nodes or elements",
+        m->name, largest_bend(m->solver, m->solver->best));
+    s->log(s, SPAR_LOG_WARNING, text, s->log_context);
 }
 
 int spari_solver_static(spar_member *member, int load_steps) {
@@ -226,6 +268,7 @@ int spari_solver_static(spar_member *member, int load_steps) {
         memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);
         return refuse(member, done, why);
     }
+    warn_of_bend(member);
     memcpy(s->begin.q, s->best, (size_t)(7 * n) * sizeof *s->best);
     memset(s->begin.v, 0, (size_t)(18 * n) * sizeof(double)); /* at rest, or turning steadily */
     if (l.turning) {
