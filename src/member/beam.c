@@ -516,6 +516,7 @@ int spari_beam_build(spar_member *member, spari_body **body) {
     int damped = beam->damped && (member->effects & SPAR_EFFECT_DAMPING),
         massive = beam->mass && (member->effects & SPAR_EFFECT_INERTIA);
     massive = massive || (beam->mass && (member->effects & SPAR_EFFECT_GRAVITY));
+    massive = massive || member->fidelity == SPAR_FIDELITY_MODAL; /* there are no modes without */
     spari_body *b = spari_body_create(E, P, points, 1, damped, massive);
     double *xi = spari_zalloc(most, sizeof *xi), *w = spari_zalloc(most, sizeof *w),
            *x = spari_zalloc(3 * member->nodes, sizeof *x);

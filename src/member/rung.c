@@ -153,7 +153,9 @@ static int core_create(spar_member *m) {
     c->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     c->body->length = m->body->length;
     memcpy(c->body->place, m->xr, 3 * sizeof(double));
-    whole_mass(m->body, m->xr, c->body->mass);
+    if (m->body->mass) { /* else neither inertia nor weight is in force */
+        whole_mass(m->body, m->xr, c->body->mass);
+    }
     c->solver = spari_solver_create(c);
     return c->solver ? SPAR_OK : SPAR_ERR_MEMORY;
 }
