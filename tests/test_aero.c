@@ -1,5 +1,6 @@
 /* The blade-element fluid through the whole library: the NREL 5-MW rotor against AeroDyn, invariance, bad input. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -435,6 +436,29 @@ static void test_refused(void **state) {
     end(&s);
 }
 
+/* A fluid mapped anew with more sections than the object was made for, or with none: refused, and so is a step begun
+   on it; nothing is read beyond what there is. */
+static void test_mapped_anew(void **state) {
+    (void)state;
+    static const int64_t count[] = {40 * N, 0};
+    for (int k = 0; k < 2; k++) {
+        scene s;
+        int done;
+        double *xi = calloc((size_t)count[k] + 1, sizeof *xi);
+        begin(&s, 8.0, 9.16);
+        build(&s, 0, 1);
+        OK(spar_fluid_set_sections(s.fluid[0], count[k], xi, NULL));
+        OK(spar_fluid_map(s.fluid[0]));
+        OK(spar_step_begin(s.session, 0.05));
+        OK(spar_step_solve(s.session));
+        REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), "make a new one");
+        REFUSED(SPAR_ERR_STATE, spar_step_check(s.session, &done), "make a new one");
+        OK(spar_step_reject(s.session));
+        free(xi);
+        end(&s);
+    }
+}
+
 /* A wing in steady flow, no rotor: closed form of lift and of the lumped shares. Straight along x from 0 to 4 m, chord
    1 m, flow (0, 20, 0) across it from the leading edge; z = x cross y is the pressure side, so lift points along -z.
    Constant cl 0.8, three sections 1 m and 3 m apart: per length f = rho/2 V^2 c cl; shares f/2, f/2 + 3f/2, 3f/2
@@ -504,9 +528,10 @@ static void test_wing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam), cmocka_unit_test(test_reader),
-        cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),       cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),      cmocka_unit_test(test_wing)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
+                                       cmocka_unit_test(test_reader),        cmocka_unit_test(test_effects),
+                                       cmocka_unit_test(test_turned),        cmocka_unit_test(test_spread),
+                                       cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),
+                                       cmocka_unit_test(test_mapped_anew),   cmocka_unit_test(test_wing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

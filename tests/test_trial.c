@@ -426,6 +426,7 @@ static void test_nothing_to_try(void **state) {
     OK(s, spar_point_create(s, "p", NULL, NULL, &p));
     OK(s, spar_member_commit(p));
     OK(s, spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, table));
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report));
     OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 1, report));
     assert_true(report[SPAR_TRY_MOTION] == 0);
     spar_session_destroy(&s);

@@ -197,9 +197,11 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
      advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
                             the trials, their errors count for as much more as they grow with time */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
-/* The coupling of the step under way, or else of the last one; the same on all ranks. iterations: out. residual, size:
-   out, by iteration, room for max_iterations of spar_session_set_coupling (1 if explicit): the change of the loads and
-   the loads, [N], root of the sum of squares over all nodes of forces, and of moments divided by the member's length.
+/* The coupling of the step under way, or else of the last one; the same on all ranks. residual, size: out, by
+   iteration, room for max_iterations of spar_session_set_coupling as it is set now (1 if explicit): the change of the
+   loads and the loads, [N], root of the sum of squares over all nodes of forces, and of moments divided by the member's
+   length. iterations: out, how many entries there are: those of the step, or, where the limit has been lowered since,
+   the first that have room.
    report: out, [SPAR_REPORT_COUNT]. Each NULL: not wanted. Local. */
 SPAR_API int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
                                        double report[SPAR_REPORT_COUNT]);
@@ -397,8 +399,9 @@ SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
    with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
    accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
    result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
-   refused. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
-   reached, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
+   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log
+   is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
+   reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
    it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
@@ -537,7 +540,8 @@ SPAR_API int spar_step_solve(spar_session *session);
 /* Step 8: gathers the loads pushed on all ranks, forms the residual and the next loads. done: out, 1: accept, 0:
    solve again. SPAR_ERR_NUMERIC: no convergence in max_iterations. */
 SPAR_API int spar_step_check(spar_session *session, int *done);
-/* The clock moves to t^{n+1}. */
+/* The clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed: its loads and the motion do not belong together
+   (to accept what has not converged, see the option coupling.unconverged). */
 SPAR_API int spar_step_accept(spar_session *session);
 /* Back to t^n, as if the step had not begun. */
 SPAR_API int spar_step_reject(spar_session *session);

@@ -1,7 +1,6 @@
 /* The blade-element fluid: public calls. Everything between the session and the sections goes through spar.h. */
 #include "aero.h"
 #include "../math/rotation.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -343,24 +342,11 @@ static int solve(spar_aero *aero, double density, const double *inflow, double t
     return SPAR_OK;
 }
 
-/* A solve that fails pushes nothing, and the step under way must not go on as if it had: a push that is refused tells
-   the session, whose next check then fails on all ranks. The message stays the solve's own. */
-static void refuse_step(spar_aero *aero, int status) {
-    char text[SPARI_MESSAGE_SIZE];
-    double *nothing = aero->v; /* pulled anew before every use */
-    snprintf(text, sizeof text, "%s", spar_session_message(aero->session));
-    for (int64_t i = 0; i < 3 * aero->n; i++) {
-        nothing[i] = NAN;
-    }
-    spar_fluid_push_forces(aero->fluid[0], nothing, NULL);
-    spari_fail(aero->session, status, "%s", text);
-}
-
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     REQUIRE_HANDLE(aero);
     int status = solve(aero, density, inflow, theta);
-    if (status != SPAR_OK && aero->blades > 0) {
-        refuse_step(aero, status);
+    if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
+        return spari_fluid_refuse_push(aero->fluid[0], status);
     }
     return status;
 }

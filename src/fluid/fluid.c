@@ -98,6 +98,7 @@ void spari_fluid_free(spar_fluid *fluid) {
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }
+    free(fluid->why);
     free(fluid->name);
     free(fluid);
 }
@@ -169,8 +170,8 @@ static double *copy_of(const double *x, int64_t n) {
 
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(check_idle(fluid, caller));
-    if (n < 0 || (n > 0 && !x)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%lld nodes%s; give n >= 0 and n x 3 places",
+    if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%lld nodes%s; give 0 to 2^40, and n x 3 places",
                                   (long long)n, x ? "" : " without places");
     }
     SPARI_TRY(
@@ -204,8 +205,8 @@ int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
 int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n >= 0 && (n == 0 || xi), SPAR_ERR_ARGUMENT,
-                        "%lld sections%s; give n >= 0 and n coordinates", (long long)n,
+    SPARI_FLUID_REQUIRE(fluid, n >= 0 && n <= SPARI_MOST && (n == 0 || xi), SPAR_ERR_ARGUMENT,
+                        "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
                         xi ? "" : " without coordinates");
     for (int64_t j = 0; j < n; j++) {
         SPARI_FLUID_REQUIRE(fluid, xi[j] >= -1 && xi[j] <= 1, SPAR_ERR_ARGUMENT,

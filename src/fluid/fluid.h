@@ -11,6 +11,12 @@ void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids
    that keep node forces (SPAR_EFFECT_FLUID_HISTORY) have work to do. ratio = dt^{n+1}/dt^n; order 0, 1 or 2 as in force
    at this step. */
+/* Status of the last push of this step (before the first step: of the last one), and the message of a refusal. */
+int spari_fluid_refused(const spar_fluid *fluid, const char **why);
+/* The loads of this fluid are not to be had, for the reason in the session's message: as a push that is refused. Gives
+   back status. */
+int spari_fluid_refuse_push(spar_fluid *fluid, int status);
+void spari_fluid_forget_refusal(spar_fluid *fluid);
 /* Past node forces for a predictor of this order, if they are kept. SPAR_ERR_MEMORY: all is as before. */
 int spari_fluid_keep(spar_fluid *fluid, int order);
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]);

@@ -353,6 +353,8 @@ static int check_convention(const spar_fluid *fluid, int convention, const char 
 int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
+    SPARI_FLUID_REQUIRE(fluid, matrix || spari_fluid_set(fluid, SPAR_NODES_MOTION)->n == 0, SPAR_ERR_ARGUMENT,
+                        "the place for the matrices is NULL");
     wanted w = {.matrix.d = matrix, .convention = convention};
     return pull_motion(fluid, theta, &w, __func__);
 }

@@ -153,6 +153,33 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     return SPAR_OK;
 }
 
+/* Between steps nobody waits for loads: there is nothing that could go on without them. */
+int spari_fluid_refuse_push(spar_fluid *fluid, int status) {
+    const spar_session *session = fluid->member->session;
+    spari_fluid_forget_refusal(fluid);
+    if (session->phase == SPARI_IDLE && session->started) {
+        return status;
+    }
+    size_t size = strlen(session->message) + 1;
+    fluid->why = malloc(size);
+    if (fluid->why) {
+        memcpy(fluid->why, session->message, size);
+    }
+    fluid->refused = status;
+    return status;
+}
+
+void spari_fluid_forget_refusal(spar_fluid *fluid) {
+    free(fluid->why);
+    fluid->why = NULL;
+    fluid->refused = SPAR_OK;
+}
+
+int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
+    *why = fluid->why ? fluid->why : "no memory to say why";
+    return fluid->refused;
+}
+
 static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
     spar_session *session = fluid->member->session;
     if (session->phase == SPARI_IDLE && session->started) {
@@ -166,14 +193,11 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
     if (!s) {
         return SPAR_OK;
     }
-    fluid->refused = push(fluid, s, force, moment, caller);
-    session->refused = fluid->refused;
-    if (fluid->refused != SPAR_OK) {
-        return fluid->refused;
+    int status = push(fluid, s, force, moment, caller);
+    if (status != SPAR_OK) {
+        return spari_fluid_refuse_push(fluid, status);
     }
-    for (const spar_fluid *f = session->fluids; f && session->refused == SPAR_OK; f = f->next) {
-        session->refused = f->refused; /* a good push mends its own fluid's, not another's */
-    }
+    spari_fluid_forget_refusal(fluid);
     fluid->pushes++;
     int before_start = session->phase == SPARI_IDLE;
     if (before_start) {
@@ -282,7 +306,7 @@ int spari_fluid_keep(spar_fluid *fluid, int order) {
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]) {
     spari_history *h = fluid->history;
     double w[3];
-    fluid->refused = SPAR_OK;
+    spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
     if (!h) {
         return;
@@ -299,7 +323,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
 
 void spari_fluid_accept(spar_fluid *fluid) {
     spari_history *h = fluid->history;
-    fluid->refused = SPAR_OK;
+    spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
@@ -316,7 +340,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
 
 void spari_fluid_reject(spar_fluid *fluid) {
     spari_history *h = fluid->history;
-    fluid->refused = SPAR_OK;
+    spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);

@@ -96,6 +96,7 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     *old = copy;
     *copy = *fluid;
     fluid->asked = 0;
+    fluid->why = NULL;   /* stays with the copy */
     if (!fluid->modal) { /* never mapped: nothing there but what the host has said */
         return SPAR_OK;
     }
@@ -146,6 +147,7 @@ void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
     if (f->history != old->history) {
         spari_history_free(f->history);
     }
+    free(f->why);
     *f = *old;
     free(old);
 }

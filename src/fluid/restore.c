@@ -196,7 +196,7 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
     size_t loads = fluid->load ? 6 * (size_t)fluid->member->nodes : 0;
     int kept = 0, taken = 0;
     fluid->pushes = 0;
-    fluid->refused = SPAR_OK;
+    spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
     if (fluid->history_next) {
         spari_history_free(fluid->history);

@@ -37,6 +37,7 @@ struct spar_fluid {
     spari_node_set set[2];
     int64_t pushes;
     int refused; /* status of the last push of this step */
+    char *why;   /* its message; NULL: not refused, or no memory for it */
 
     /* allocated by the map */
     double *modal;     /* [P][P] */

@@ -546,7 +546,8 @@ static int check_line_load(const spar_member *m, int64_t n, const double *eta, c
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
     SPARI_REQUIRE(s, kind == SPAR_LOAD_DEAD || kind == SPAR_LOAD_FOLLOWER, SPAR_ERR_ARGUMENT,
                   "%s: '%s': there is no kind of load %d; see SPAR_LOAD_*", call, m->name, kind);
-    SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations", call, m->name, (long long)n);
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations; give 0 to 2^40", call,
+                  m->name, (long long)n);
     SPARI_REQUIRE(s, n == 0 || (eta && load), SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, m->name,
                   eta ? "load" : "eta");
     int64_t bad = spari_first_nonfinite(eta, n);

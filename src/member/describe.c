@@ -133,8 +133,8 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
     const char *call = "spar_beam_set_axis";
     SPARI_TRY(spari_need_beam(beam, call));
     spar_session *session = beam->session;
-    SPARI_REQUIRE(session, n >= 2, SPAR_ERR_ARGUMENT, "%s: '%s': %lld axis points; give at least 2", call, beam->name,
-                  (long long)n);
+    SPARI_REQUIRE(session, n >= 2 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld axis points; give at least 2, at most 2^40", call, beam->name, (long long)n);
     SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
     SPARI_REQUIRE(session, fabs(eta[0]) < 1e-9 && fabs(eta[n - 1] - 1) < 1e-9, SPAR_ERR_ARGUMENT,
                   "%s: '%s': eta runs from %g to %g; the first point is eta 0 and the last eta 1", call, beam->name,
@@ -223,8 +223,8 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
     const char *call = "spar_beam_set_sections";
     SPARI_TRY(spari_need_beam(beam, call));
     spar_session *session = beam->session;
-    SPARI_REQUIRE(session, n >= 1, SPAR_ERR_ARGUMENT, "%s: '%s': %lld sections; give at least 1", call, beam->name,
-                  (long long)n);
+    SPARI_REQUIRE(session, n >= 1 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld sections; give at least 1, at most 2^40", call, beam->name, (long long)n);
     SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
     SPARI_TRY(spari_need_finite(session, call, beam->name, "stiffness", 36 * n, stiffness));
     if (mass) {

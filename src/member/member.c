@@ -14,7 +14,7 @@
 
 /* ---- the motion at t^0 and the steps ---- */
 
-static void rigid_field(spar_member *m) {
+static int rigid_field(spar_member *m) {
     const double *x0 = m->velocity[0], *v0 = m->velocity[1], *w = m->velocity[2];
     for (int64_t i = 0; i < m->nodes; i++) {
         double r[3], *v = m->now.v + 6 * i, *a = m->now.a + 6 * i;
@@ -31,6 +31,13 @@ static void rigid_field(spar_member *m) {
             a[3 + c] = 0;
         }
     }
+    int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
+    SPARI_REQUIRE(
+        m->session, finite, SPAR_ERR_ARGUMENT,
+        "member '%s': its initial velocities are beyond the range of numbers; look at spar_member_set_velocity "
+        "and its units",
+        m->name);
+    return SPAR_OK;
 }
 
 static void copy_motion(const spar_member *m, const spari_motion *from, spari_motion *to) {
@@ -114,14 +121,21 @@ int spar_member_set_velocity(spar_member *member, const double x0[3], const doub
     for (int k = 0; k < 3; k++) {
         SPARI_TRY(spari_need_finite(member->session, call, member->name, what[k], 3, in[k]));
     }
+    double old[3][3];
+    memcpy(old, member->velocity, sizeof old);
     for (int k = 0; k < 3; k++) {
         memcpy(member->velocity[k], in[k], 3 * sizeof(double));
     }
-    member->velocity_given = 1;
     if (member->committed) {
-        rigid_field(member);
+        int status = rigid_field(member);
+        if (status != SPAR_OK) {
+            memcpy(member->velocity, old, sizeof old);
+            copy_motion(member, &member->after, &member->now);
+            return status;
+        }
         spari_member_restart(member);
     }
+    member->velocity_given = 1;
     return SPAR_OK;
 }
 
@@ -185,6 +199,7 @@ static const struct {
     {offsetof(spar_member, dead), 6, 0},
     {offsetof(spar_member, load_used), 6, 0},
     {offsetof(spar_member, load_pushed), 6, 0},
+    {offsetof(spar_member, load_before), 6, 0},
     {offsetof(spar_member, load_history[0]), 6, 0},
     {offsetof(spar_member, load_history[1]), 6, 1},
     {offsetof(spar_member, load_history[2]), 6, 2},
@@ -251,7 +266,7 @@ int spari_member_build(spar_member *m) {
         m->now.q[7 * i + 3] = 1;
     }
     if (m->velocity_given) {
-        rigid_field(m);
+        SPARI_TRY(rigid_field(m));
     }
     if (spari_member_is_solved(m)) {
         SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, &m->body) : spari_rigid_build(m, &m->body));

@@ -54,6 +54,7 @@ struct spar_member {
     int64_t pack_at;             /* where its loads begin in the vector that the ranks sum */
     double *load_used;           /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
     double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
+    double *load_before;     /* the same before the first step: what it goes back to when it is given up */
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
     double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */

@@ -119,14 +119,21 @@ static void carry_state(const spar_member *old, spar_member *m) {
     const double *loads[] = {old->dead,
                              old->load_used,
                              old->load_pushed,
+                             old->load_before,
                              old->load_history[0],
                              old->load_history[1],
                              old->load_history[2],
                              old->load_solved[0],
                              old->load_solved[1]};
-    double *to[] = {
-        m->dead,           m->load_used,     m->load_pushed, m->load_history[0], m->load_history[1], m->load_history[2],
-        m->load_solved[0], m->load_solved[1]};
+    double *to[] = {m->dead,
+                    m->load_used,
+                    m->load_pushed,
+                    m->load_before,
+                    m->load_history[0],
+                    m->load_history[1],
+                    m->load_history[2],
+                    m->load_solved[0],
+                    m->load_solved[1]};
     int E = m->elements, P = old->per_element, n = m->per_element;
     interpolate(E, P, n, 7, 3, old->now.q, m->now.q);
     interpolate(E, P, n, 6, -1, old->now.v, m->now.v);

@@ -167,8 +167,9 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
                   beam->name);
     SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
                   "%s: member '%s' is not committed; call spar_member_commit first", call, beam->name);
-    SPARI_REQUIRE(session, n >= 0 && (eta || n == 0), SPAR_ERR_ARGUMENT, "%s: '%s': %s", call, beam->name,
-                  n < 0 ? "n is negative" : "eta is NULL");
+    SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", call, beam->name, (long long)n,
+                  eta ? "" : " without eta");
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s' has no sections, its forces are not known", call, beam->name);
     for (int64_t i = 0; i < n; i++) {

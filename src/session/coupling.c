@@ -50,11 +50,25 @@ void spari_coupling_settings(const spar_session *s, double settings[SPARI_COUPLI
     memcpy(settings, all, sizeof all);
 }
 
+/* Six unknowns for every node of every member. */
+static int64_t count_unknowns(const spar_session *s) {
+    int64_t n = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        n += 6 * m->nodes;
+    }
+    return n;
+}
+
+int spari_coupling_fits(const spar_session *s) {
+    const spari_coupling *c = s->coupling;
+    return c && !s->coupling_stale && c->members == s->member_count && c->n == count_unknowns(s);
+}
+
 int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
     spari_coupling *c = spari_zalloc(1, sizeof *c);
-    for (const spar_member *m = s->members; m && c; m = m->next) {
-        c->n += 6 * m->nodes;
-        c->members++;
+    if (c) {
+        c->n = count_unknowns(s);
+        c->members = s->member_count;
     }
     if (!c || !allocate(s, c)) {
         spari_coupling_free(&c);
@@ -314,7 +328,8 @@ int spar_session_get_coupling(const spar_session *session, int *iterations, doub
                               double report[SPAR_REPORT_COUNT]) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
     const spari_coupling *c = session->coupling;
-    int n = c ? c->iterations : 0;
+    int room = session->scheme == SPAR_COUPLING_EXPLICIT ? 1 : session->coupling_max; /* the host's arrays */
+    int n = !c ? 0 : c->iterations < room ? c->iterations : room;
     if (iterations) {
         *iterations = n;
     }

@@ -30,6 +30,8 @@ typedef struct spari_coupling {
 int spari_coupling_create(spar_session *session, spari_coupling **coupling);
 /* The same into the session; what there was goes. */
 int spari_coupling_prepare(spar_session *session);
+/* Whether the session's is of the settings in force and of the members there are now. Local, the same on every rank. */
+int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
 /* After the loads have been exchanged: whether they agree with those used, else the next ones. */

@@ -23,8 +23,9 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     int status = spari_trial_check(s, call, &run);
     if (status == SPAR_OK && !report) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", call);
-    } else if (status == SPAR_OK && compare && !s->kept) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: there is no run to compare with; try with compare = 0 first", call);
+    } else if (status == SPAR_OK && compare && (!s->kept || s->kept->members != s->member_count)) {
+        status = spari_fail(s, SPAR_ERR_STATE,
+                            "%s: there is no run of these members to compare with; try with compare = 0 first", call);
     }
     status = spari_trial_enter(s, call, &run, 0, compare, status);
     status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;

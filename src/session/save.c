@@ -48,6 +48,7 @@ static void pass_clock(stream *t, spar_session *s) {
     pass(t, &s->step, 1);
     pass_int(t, &s->iteration);
     pass_int(t, &s->iterating);
+    pass_int(t, &s->failed);
     pass_int(t, &s->order);
     pass_int(t, &s->past);
     pass_int(t, &s->started);
@@ -76,9 +77,15 @@ static void pass_member(stream *t, spar_member *m) {
     int64_t n = m->nodes;
     double *motions[] = {m->now.q, m->now.v, m->now.a, m->after.q, m->after.v, m->after.a};
     static const int width[] = {7, 6, 6, 7, 6, 6};
-    double *loads[] = {
-        m->dead,           m->load_used,     m->load_pushed, m->load_history[0], m->load_history[1], m->load_history[2],
-        m->load_solved[0], m->load_solved[1]};
+    double *loads[] = {m->dead,
+                       m->load_used,
+                       m->load_pushed,
+                       m->load_before,
+                       m->load_history[0],
+                       m->load_history[1],
+                       m->load_history[2],
+                       m->load_solved[0],
+                       m->load_solved[1]};
     for (int k = 0; k < 6; k++) {
         pass(t, motions[k], width[k] * n);
     }
@@ -136,7 +143,7 @@ static void put_coupling(spari_image *image, spar_session *s) {
     double settings[SPARI_COUPLING_SETTINGS];
     int64_t at = image->count;
     spari_image_put_int(image, 0);
-    if (s->coupling && !s->coupling_stale) {
+    if (spari_coupling_fits(s)) {
         stream t = {image, WRITE};
         spari_coupling_settings(s, settings);
         spari_image_put(image, settings, SPARI_COUPLING_SETTINGS);
@@ -300,10 +307,7 @@ int spar_session_save(const spar_session *session, const char *path) {
     double *all = NULL;
     int64_t *first = NULL;
     int status = check_call(s, call, path);
-    if (status == SPAR_OK && s->refused != SPAR_OK) {
-        status = spari_fail(s, SPAR_ERR_STATE,
-                            "%s: a push was refused in this step; push again, or reject the step first", call);
-    }
+    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
     SPARI_TRY(spari_session_enter_alike(s, call, NULL, 0, status));
     status = put_own(&own, s);
     status = agree(s, status == SPAR_OK && own.failed ? no_memory(s, call) : status);
@@ -602,7 +606,6 @@ static void apply(spar_session *s, loading *l) {
         spari_fluid_load(f, l->state_count[k], l->states + at, l->takes_loads[k]);
         at += l->state_count[k];
     }
-    s->refused = SPAR_OK;
     s->coupling_stale = !l->coupling;
     if (l->coupling) {
         spari_coupling_free(&s->coupling);

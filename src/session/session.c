@@ -399,25 +399,32 @@ int spari_session_seal(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-int spari_session_exchange_loads(spar_session *s, int status) {
+int spari_session_pushes(spar_session *s, const char *call) {
+    const char *why;
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        int status = spari_fluid_refused(f, &why);
+        SPARI_REQUIRE(s, status == SPAR_OK, status, "%s: a push was refused, push again (%.800s)", call, why);
+    }
+    return SPAR_OK;
+}
+
+int spari_session_exchange_loads(spar_session *s) {
     memset(s->pack, 0, (size_t)(s->pack_count + 1) * sizeof *s->pack);
     int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         m->pack_at = at;
         at += m->committed ? 6 * m->nodes : 0;
     }
-    for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
             spari_fluid_add_loads(f, s->pack + spari_fluid_member(f)->pack_at);
         }
     }
-    SPARI_TRY(spari_comm_sum(s->comm, s->pack, s->pack_count, status, s->message, sizeof s->message));
-    for (spar_member *m = s->members; m; m = m->next) {
-        if (m->committed) {
-            memcpy(m->load_pushed, s->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *s->pack);
-        }
-    }
-    return SPAR_OK;
+    return spari_comm_sum(s->comm, s->pack, s->pack_count, SPAR_OK, s->message, sizeof s->message);
+}
+
+void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
+    memcpy(load, s->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
 }
 
 /* One member's block: unknowns' q, v, a; dissipation. */
@@ -523,18 +530,27 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
         status =
             spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
     }
+    if (status == SPAR_OK && !s->started) {
+        status = spari_session_pushes(s, call);
+    }
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_member_enter(member, call, alike, 1, status));
     SPARI_TRY(spari_session_seal(s, SPAR_OK));
+    memcpy(member->load_before, member->load_pushed, (size_t)(6 * member->nodes) * sizeof(double));
     if (!s->started) {
-        SPARI_TRY(spari_session_exchange_loads(s, s->refused));
+        SPARI_TRY(spari_session_exchange_loads(s));
+        spari_session_take_loads(s, member, member->load_pushed);
     }
     if (member->rung) {
         status = spari_rung_static(member);
     } else if (member->solver) {
         status = spari_solver_static(member, load_steps);
     }
-    SPARI_TRY(spari_session_share_motion(s, status));
+    status = spari_session_share_motion(s, status);
+    if (status != SPAR_OK) {
+        memcpy(member->load_pushed, member->load_before, (size_t)(6 * member->nodes) * sizeof(double));
+        return status;
+    }
     member->dissipated_step = 0;
     spari_member_solved(member, member->load_pushed);
     spari_member_settle(member);

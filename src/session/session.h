@@ -15,6 +15,7 @@ typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED 
 struct spar_session {
     spari_comm *comm;
     char message[SPARI_MESSAGE_SIZE];
+    int64_t failures; /* messages written so far: tells whether a callback has left one */
     spar_log log;
     void *log_context;
     spar_member *members; /* list, in order of creation */
@@ -50,7 +51,7 @@ struct spar_session {
     int order;          /* of the predictor in the step under way */
     int iterating;      /* the last check asked for another iteration */
     int started;        /* the clock has run */
-    int refused;        /* status of a push refused since the last check */
+    int failed;         /* the last check of the step under way failed */
     int trial;          /* a trial run is under way (trial.h) */
     spari_record *kept; /* of a trial that others are compared with; NULL: none */
     double *pack;       /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
@@ -68,8 +69,13 @@ int spari_session_enter(spar_session *session, const char *call, int status);
 int spari_session_enter_alike(spar_session *session, const char *call, const spari_alike *alike, int count, int status);
 /* The same of a call on one member. */
 int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
-/* The sum over all ranks of what the fluids pushed, into load_pushed of each member. Collective. */
-int spari_session_exchange_loads(spar_session *session, int status);
+/* Whether this rank's fluids have loads to go on with: the status of a push that was refused, with the call in front of
+   its message. Local. */
+int spari_session_pushes(spar_session *session, const char *call);
+/* The sum over all ranks of what the fluids pushed; then the part of one member, into load [nodes][6]. The first is
+   collective. */
+int spari_session_exchange_loads(spar_session *session);
+void spari_session_take_loads(const spar_session *session, const spar_member *member, double *load);
 /* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.
  * Collective. */
 int spari_session_share_motion(spar_session *session, int status);

@@ -83,6 +83,9 @@ int(spari_fail)(spar_session *session, int status, const char *format, ...) {
     }
     va_end(arguments);
     memcpy(session ? session->message : thread_message, text, sizeof text);
+    if (session) {
+        session->failures++;
+    }
     if (session && session->log) {
         session->log(session, SPAR_LOG_ERROR, session->message, session->log_context);
     }

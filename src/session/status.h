@@ -13,6 +13,10 @@
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
 
+/* More entries than any memory holds: a host's count beyond it is a mistake, and below it a count times what an entry
+   takes fits 64 bits. */
+#define SPARI_MOST (INT64_C(1) << 40)
+
 /* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
    thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
 int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);

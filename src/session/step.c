@@ -30,7 +30,7 @@ static int check_begin(spar_session *s, double dt) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    return SPAR_OK;
+    return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
 /* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. With order 1 the spec's
@@ -58,17 +58,19 @@ static void hold_root(spar_member *m) {
 int spar_step_begin(spar_session *session, double dt) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
     spar_session *s = session;
-    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", s->coupling_stale)};
+    int anew = !spari_coupling_fits(s);
+    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
     SPARI_TRY(spari_session_enter_alike(s, "spar_step_begin", alike, 2, check_begin(s, dt)));
-    if (s->coupling_stale) {
+    if (anew) {
         SPARI_TRY(spari_session_enter(s, "coupling", spari_coupling_prepare(s)));
         s->coupling_stale = 0;
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
         SPARI_TRY(spari_session_seal(s, SPAR_OK));
-        SPARI_TRY(spari_session_exchange_loads(s, s->refused));
+        SPARI_TRY(spari_session_exchange_loads(s));
         for (spar_member *m = s->members; m; m = m->next) {
-            memcpy(m->load_history[0], m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+            spari_session_take_loads(s, m, m->load_history[0]);
+            memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
         }
     }
     int order = s->past;
@@ -83,8 +85,8 @@ int spar_step_begin(spar_session *session, double dt) {
     s->order = order;
     s->iteration = 0;
     s->iterating = 0;
+    s->failed = 0;
     spari_coupling_begin(s);
-    s->refused = SPAR_OK;
     s->phase = SPARI_BEGUN;
     s->started = 1;
     return SPAR_OK;
@@ -107,6 +109,28 @@ static int solve_member(spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+/* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
+static int check_motion(const spar_member *m) {
+    const spari_motion *x = &m->after;
+    const struct {
+        const double *value;
+        int width;
+    } all[] = {{x->q, 7}, {x->v, 6}, {x->a, 6}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        int64_t bad = spari_first_nonfinite(all[k].value, all[k].width * m->nodes);
+        SPARI_REQUIRE(
+            m->session, bad < 0, SPAR_ERR_NUMERIC,
+            "member '%s': the motion of node %lld is beyond the range of numbers in the step from t = %g; look "
+            "at its loads, gravity and the motion of its root, or at their units",
+            m->name, (long long)(bad / all[k].width), m->session->time);
+    }
+    return SPAR_OK;
+}
+
+static int is_moved(const spar_member *m) {
+    return m->body || m->rung;
+}
+
 int spar_step_solve(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
@@ -114,11 +138,12 @@ int spar_step_solve(spar_session *session) {
     SPARI_TRY(spari_session_enter(s, "spar_step_solve", status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
+        status = status == SPAR_OK && is_moved(m) ? check_motion(m) : status;
     }
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
         for (spar_member *m = s->members; m; m = m->next) {
-            if (m->body) {
+            if (is_moved(m)) {
                 spari_member_reject(m);
             }
         }
@@ -128,6 +153,7 @@ int spar_step_solve(spar_session *session) {
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
     }
+    s->failed = 0;
     s->phase = SPARI_SOLVED;
     return SPAR_OK;
 }
@@ -136,19 +162,28 @@ int spar_step_solve(spar_session *session) {
 
 /* status: of what this rank's host has done since the solution */
 static int check(spar_session *s, int status, int *done) {
-    int ended = 0;
+    int ended = 0, solved = s->phase == SPARI_SOLVED;
     if (s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
     } else if (!done) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "spar_step_check: done is NULL");
     } else if (status == SPAR_OK) {
-        status = s->refused; /* a push of this rank was refused; its message stands */
+        status = spari_session_pushes(s, "spar_step_check");
     }
-    SPARI_TRY(spari_session_enter(s, "spar_step_check", status));
-    SPARI_TRY(spari_session_exchange_loads(s, SPAR_OK));
+    status = spari_session_enter(s, "spar_step_check", status);
+    if (status != SPAR_OK) {
+        s->failed = s->failed || (solved && status != SPAR_ERR_COMM); /* alike on all ranks: they were in this call */
+        return status;
+    }
+    s->failed = 1; /* until all below has gone well */
+    SPARI_TRY(spari_session_exchange_loads(s));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_session_take_loads(s, m, m->load_pushed);
+    }
     s->iteration++;
     s->phase = SPARI_CHECKED;
     SPARI_TRY(spari_coupling_check(s, &ended));
+    s->failed = 0;
     s->iterating = !ended;
     *done = ended;
     return SPAR_OK;
@@ -171,12 +206,21 @@ static void shift_history(spar_session *s, spar_member *m) {
 
 int spar_step_accept(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
+    const char *call = "spar_step_accept";
     spar_session *s = session;
     int status = SPAR_OK;
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
-        status = wrong_phase(s, "spar_step_accept", "begin and solve a step first");
+        status = wrong_phase(s, call, "begin and solve a step first");
+    } else if (s->failed) {
+        status =
+            spari_fail(s, SPAR_ERR_STATE,
+                       "%s: the last spar_step_check failed, its loads and motion do not belong together; push and "
+                       "check again where a push was refused, else solve again or reject the step",
+                       call);
+    } else if (s->phase == SPARI_SOLVED) {
+        status = spari_session_pushes(s, call);
     }
-    SPARI_TRY(spari_session_enter(s, "spar_step_accept", status));
+    SPARI_TRY(spari_session_enter(s, call, status));
     spari_coupling_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
@@ -190,7 +234,6 @@ int spar_step_accept(spar_session *session) {
     s->step++;
     s->dt_last[1] = s->dt_last[0];
     s->dt_last[0] = s->dt;
-    s->refused = SPAR_OK;
     s->phase = SPARI_IDLE;
     return SPAR_OK;
 }
@@ -200,12 +243,12 @@ static void reject(spar_session *s) {
     spari_coupling_reject(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
-        memcpy(m->load_pushed, m->load_history[0], (size_t)(6 * m->nodes) * sizeof(double));
+        memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
+               (size_t)(6 * m->nodes) * sizeof(double));
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
     }
-    s->refused = SPAR_OK;
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
 }
@@ -227,18 +270,16 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
         SPARI_TRY(spar_step_solve(s));
         int status = SPAR_OK;
         if (solve) {
-            s->message[0] = '\0';
+            int64_t failures = s->failures;
             s->parted = 0;
             int answer = solve(s, s->time, s->dt, s->iteration, context);
             if (s->parted) { /* this rank alone called the others from here: they met it, and know */
                 return SPAR_ERR_COMM;
             }
             if (answer != 0) {
-                char why[256];
-                memcpy(why, s->message, sizeof why - 1);
-                why[sizeof why - 1] = '\0';
-                status = spari_fail(s, SPAR_ERR_USER, "spar_step: the fluid solver answered %d in iteration %d%s%s",
-                                    answer, s->iteration, why[0] ? ": " : "", why);
+                int told = s->failures != failures; /* what went wrong there */
+                status = spari_fail(s, SPAR_ERR_USER, "spar_step: the fluid solver answered %d in iteration %d%s%.800s",
+                                    answer, s->iteration, told ? ": " : "", told ? s->message : "");
             }
         }
         SPARI_TRY(check(s, status, &done));

@@ -258,13 +258,13 @@ static int prepare_step(spar_session *s, const spari_run *run) {
     if (!run->before) {
         return SPAR_OK;
     }
-    s->message[0] = '\0';
+    int64_t failures = s->failures;
     s->parted = 0;
     int answer = run->before(s, s->time, run->dt, run->context), status = SPAR_OK;
     if (s->parted) { /* this rank alone called the others from here: they met it, and know */
         return SPAR_ERR_COMM;
     }
-    if (answer != 0 && !s->message[0]) {
+    if (answer != 0 && s->failures == failures) {
         status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step answered %d", answer);
     } else if (answer != 0) {
         status = SPAR_ERR_USER;
