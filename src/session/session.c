@@ -330,6 +330,9 @@ static const setting settings[] = {
     {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
     {"option advise.horizon", offsetof(spar_session, horizon), 0},
     {"numbers of members", offsetof(spar_session, member_count), 1},
+    /* what a setter has done, though the setting is as it was */
+    {"calls that set the coupling", offsetof(spar_session, coupling_stale), 1},
+    {"calls of spar_session_set_predictor", offsetof(spar_session, past), 1},
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
@@ -493,11 +496,11 @@ int spari_session_enter_alike(spar_session *s, const char *call, const spari_ali
         return status;
     }
     assert(count + SETTINGS <= SPARI_MOST_ALIKE);
-    for (; n < count; n++) {
-        all[n] = alike[n];
+    for (; n < SETTINGS; n++) {
+        all[n] = alike_of(s, settings + n);
     }
-    for (int i = 0; i < SETTINGS; i++) {
-        all[n++] = alike_of(s, settings + i);
+    for (int i = 0; i < count; i++) {
+        all[n++] = alike[i];
     }
     return enter(s, call, all, n, status);
 }

@@ -293,13 +293,12 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
     if (iterations) {
         *iterations = session->iteration;
     }
+    if (status != SPAR_OK && status != SPAR_ERR_COMM) {
+        (void)spar_step_reject(session); /* the message stands: rejecting a step under way cannot fail */
+    }
+    status = status == SPAR_OK ? spar_step_accept(session) : status;
     if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
         reject(session);
-        return status;
     }
-    if (status != SPAR_OK) { /* the message of the failure stands: rejecting a step under way cannot fail */
-        (void)spar_step_reject(session);
-        return status;
-    }
-    return spar_step_accept(session);
+    return status;
 }
