@@ -158,8 +158,10 @@ SPAR_API const char *spar_session_message(const spar_session *session);
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 /* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). rho_inf: in, spectral radius at infinite
    frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9; an exact beam that spins at Omega without a driven
-   root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. substeps: in, structural steps per
-   coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1}; default 1. */
+   root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. dt may grow or shrink by any
+   factor from step to step: what a longer step does not resolve is damped by rho_inf a step and feeds nothing.
+   substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
+   default 1. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
    rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
@@ -399,10 +401,10 @@ SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
    with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
    accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
    result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
-   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log
-   is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
-   reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for
-   it. */
+   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a
+   log is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
+   reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar
+   does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'

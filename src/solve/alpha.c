@@ -4,6 +4,7 @@
 #include "../member/applied.h"
 #include "../member/rung.h"
 #include "../session/session.h"
+#include "leap.h"
 #include "solver.h"
 
 #include <float.h>
@@ -632,6 +633,26 @@ static void swap(spari_state *a, spari_state *b) {
     *b = t;
 }
 
+/* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
+   stands in the root's axes. */
+static int begin_leap(spar_member *member, const scheme *c, ends *e, const spari_state *from) {
+    double *b = e->from.b;
+    int n6 = 6 * member->solver->n, turned = e->root != NULL;
+    double root[19];
+    root_of(from, root);
+    for (int i = 0; i < n6 && turned; i += 3) {
+        spari_rotate(root + 3, b + i, b + i);
+    }
+    int singular = spari_leap(member, from, c->cm, c->cv, b);
+    for (int i = 0; i < n6 && turned; i += 3) {
+        spari_rotate_back(root + 3, b + i, b + i);
+    }
+    SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
+                  "member '%s': found a singular tangent at t = %g, the beginning of a longer step; take a smaller dt",
+                  member->name, member->session->time);
+    return SPAR_OK;
+}
+
 int spari_solver_advance(spar_member *member, double dt) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
@@ -650,6 +671,7 @@ int spari_solver_advance(spar_member *member, double dt) {
     }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     double ratio = stretch_for(s, c.h);
+    int leaps = !c.still && spari_is_leap(s->h_begin, c.h);
     s->h_solved = c.h;
     memcpy(before, member->drive[0], sizeof before);
     double power = s->power_begin;
@@ -669,6 +691,9 @@ int spari_solver_advance(spar_member *member, double dt) {
             spari_quat_mul(root + 3, conj, turn);
         }
         ends e = ends_of(member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
+        if (k == 1 && leaps) {
+            SPARI_TRY(begin_leap(member, &c, &e, &s->from));
+        }
         int status = newton(member, &c, root, turn, &e, s->increment);
         if (status != SPAR_OK) {
             s->factored = 0;

@@ -6,6 +6,7 @@
 #include "../member/rung.h"
 #include "../session/session.h"
 #include "eigen.h"
+#include "leap.h"
 #include "solver.h"
 #include "turn.h"
 
@@ -886,11 +887,33 @@ static void lose_jump(const spari_frame *f, const spar_member *m, double h, spar
     }
 }
 
+/* As spari_leap, with the matrix of the step itself, which is kept for it. */
+static int leap(spari_frame *f, const scheme *c, spari_frame_state *from) {
+    double *y = f->increment;
+    if (!f->factored && factor(f, c)) {
+        return 1;
+    }
+    memcpy(y, from->b, (size_t)f->n * sizeof *y);
+    memset(y, 0, (size_t)f->held * sizeof *y);
+    for (int pass = 0; pass < SPARI_LEAP_PASSES; pass++) {
+        memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+        multiply(f, f->M, y, 1, f->r);
+        memset(f->r, 0, (size_t)f->held * sizeof *f->r);
+        if (spari_linear_solve(f->linear, f->r)) {
+            return 1;
+        }
+        cblas_daxpy(f->n, -c->cm, f->r, 1, y, 1);
+    }
+    cblas_daxpy(f->n, -1, y, 1, from->b, 1);
+    return 0;
+}
+
 enum { MOST_ITERATIONS = 30 };
 
 /* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
    other turn, or with loads that follow, the corrections shrink until they are rounding. */
-static int substep(spari_frame *f, spar_member *m, const scheme *c, spari_frame_state *from, spari_frame_state *to) {
+static int substep(spari_frame *f, spar_member *m, const scheme *c, int leaps, spari_frame_state *from,
+                   spari_frame_state *to) {
     double omega[3], last = 0, to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
     spari_rotate_back(to->root + 3, to->root + 10, omega);
     combine(f, omega);
@@ -898,6 +921,9 @@ static int substep(spari_frame *f, spar_member *m, const scheme *c, spari_frame_
     f->factored = same;
     if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
         lose_jump(f, m, c->h, from, to);
+    }
+    if (leaps && leap(f, c, from)) {
+        return 1;
     }
     predict(f, c, from, to);
     double *fixed = f->increment;
@@ -1004,6 +1030,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
             f->to.b[i] = f->to.a[i] + ratio * (f->to.b[i] - f->to.a[i]);
         }
     }
+    int leaps = !c.still && spari_is_leap(f->h_begin, c.h);
     f->h_solved = c.h;
     m->dissipated_step = 0;
     double power = damped_power(f, &f->begin);
@@ -1014,7 +1041,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
             f->load[i] = (1 - s) * f->load0[i] + s * f->load1[i];
         }
         root_at(f, m, s, dt);
-        failed = substep(f, m, &c, &f->from, &f->to);
+        failed = substep(f, m, &c, k == 1 && leaps, &f->from, &f->to);
         double before = power;
         power = damped_power(f, &f->to);
         m->dissipated_step += 0.5 * c.h * (before + power);

@@ -1,0 +1,139 @@
+/* The acceleration that a longer step begins with: see leap.h. */
+#include "leap.h"
+
+#include "../math/rotation.h"
+
+#include <string.h>
+
+/* The rigid motion of a member: place and angular velocity of its middle, accelerations there. */
+typedef struct rigid {
+    double middle[3], omega[3], a[3], alpha[3];
+} rigid;
+
+/* Place of a node now, from the middle. */
+static void arm_of(const spar_member *m, const double *q, int i, const double middle[3], double r[3]) {
+    int P = m->per_element, element = P > 1 && i > 0 ? (i - 1) / (P - 1) : 0; /* joints stand twice there */
+    for (int k = 0; k < 3; k++) {
+        r[k] = m->xr[3 * (i + element) + k] + q[7 * i + k] - middle[k];
+    }
+}
+
+/* What the turn of the whole gives a node, omega x (omega x r). */
+static void centripetal(const rigid *g, const double r[3], double c[3]) {
+    double t[3];
+    spari_cross(g->omega, r, t);
+    spari_cross(g->omega, t, c);
+}
+
+/* x := A^-1 x for a symmetric positive definite A [3][3], by Cramer's rule */
+static void solve3(const double A[9], double x[3]) {
+    double c0[3], c1[3], c2[3];
+    spari_cross(A + 3, A + 6, c0);
+    spari_cross(A + 6, A, c1);
+    spari_cross(A, A + 3, c2);
+    double det = spari_dot(A, c0), y[3] = {x[0], x[1], x[2]};
+    for (int k = 0; k < 3; k++) {
+        x[k] = (c0[k] * y[0] + c1[k] * y[1] + c2[k] * y[2]) / det;
+    }
+}
+
+static void means(const spar_member *m, const double *q, const double *v, const double *b, rigid *g) {
+    int n = m->solver->n;
+    const double zero[3] = {0};
+    memset(g, 0, sizeof *g);
+    for (int i = 0; i < n; i++) {
+        double x[3];
+        arm_of(m, q, i, zero, x);
+        for (int k = 0; k < 3; k++) {
+            g->middle[k] += x[k] / n;
+            g->omega[k] += v[6 * i + 3 + k] / n;
+            g->a[k] += b[6 * i + k] / n;
+        }
+    }
+}
+
+/* The rigid motion whose accelerations are nearest to b by least squares over the nodes, turns times the length. The
+   arms sum up to nothing, so that the mean acceleration stands by itself. */
+static void fit(const spar_member *m, const double *q, const double *v, const double *b, rigid *g) {
+    int n = m->solver->n;
+    double L2 = m->body->length * m->body->length, A[9] = {0}, right[3] = {0};
+    means(m, q, v, b, g);
+    for (int i = 0; i < n; i++) {
+        double r[3], c[3], t[3];
+        arm_of(m, q, i, g->middle, r);
+        centripetal(g, r, c);
+        for (int k = 0; k < 3; k++) {
+            c[k] = b[6 * i + k] - c[k];
+        }
+        spari_cross(r, c, t);
+        for (int k = 0; k < 3; k++) {
+            right[k] += t[k] + L2 * b[6 * i + 3 + k];
+            A[4 * k] += spari_dot(r, r) + L2;
+            for (int j = 0; j < 3; j++) {
+                A[3 * k + j] -= r[k] * r[j];
+            }
+        }
+    }
+    solve3(A, right);
+    memcpy(g->alpha, right, sizeof right);
+}
+
+/* b less the accelerations of a rigid motion */
+static void subtract(const spar_member *m, const double *q, const rigid *g, const double *b, double *y) {
+    for (int i = 0; i < m->solver->n; i++) {
+        double r[3], c[3], t[3];
+        arm_of(m, q, i, g->middle, r);
+        centripetal(g, r, c);
+        spari_cross(g->alpha, r, t);
+        for (int k = 0; k < 3; k++) {
+            y[6 * i + k] = b[6 * i + k] - g->a[k] - c[k] - t[k];
+            y[6 * i + 3 + k] = b[6 * i + 3 + k] - g->alpha[k];
+        }
+    }
+}
+
+/* r := M y: the forces that accelerations take beyond those at rest. Two arrays of the solver that are not in use
+   during a step serve as room. */
+static void times_mass(const spar_member *m, const double *q, const double *y, double *r) {
+    spari_solver *s = m->solver;
+    double *rest = s->tinv, *still = s->best;
+    int n6 = 6 * s->n;
+    memset(still, 0, (size_t)n6 * sizeof *still);
+    spari_body_residual(m->body, q, still, still, 0, rest, NULL);
+    spari_body_residual(m->body, q, still, y, 0, r, NULL);
+    for (int i = 0; i < n6; i++) {
+        r[i] -= rest[i];
+    }
+}
+
+int spari_leap(spar_member *m, const spari_state *at, double cm, double cv, double *b) {
+    const double *q = at->q;
+    spari_solver *s = m->solver;
+    int first, end, n6 = 6 * s->n, held = spari_member_root_is_given(m);
+    double *y = s->increment; /* the next step begins with its own */
+    spari_solver_fixed(m, &first, &end);
+    memcpy(y, b, (size_t)n6 * sizeof *y);
+    if (!held) {
+        rigid g;
+        fit(m, q, at->v, b, &g);
+        subtract(m, q, &g, b, y);
+    }
+    memset(y + first, 0, (size_t)(end - first) * sizeof *y);
+    for (int i = 0; i < n6; i++) { /* what is not rigid goes out, and comes back as far as it passes */
+        b[i] -= y[i];
+    }
+    memcpy(s->dx, y, (size_t)n6 * sizeof *y);
+    int singular = spari_solver_factor(m, at->q, at->v, at->a, 1, cm, cv, NULL);
+    for (int pass = 0; pass < SPARI_LEAP_PASSES && !singular; pass++) {
+        times_mass(m, q, y, s->r);
+        memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
+        singular = spari_linear_solve(s->linear, s->r);
+        for (int i = 0; i < n6; i++) {
+            y[i] -= cm * s->r[i];
+        }
+    }
+    for (int i = 0; i < n6 && !singular; i++) {
+        b[i] += s->dx[i] - y[i];
+    }
+    return singular;
+}
