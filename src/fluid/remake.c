@@ -76,8 +76,8 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         }
     } else {
         f->modal = f->reference = f->work = f->field[0] = f->field[1] = NULL;
+        f->set[0] = f->set[1] = (spari_node_set){0}; /* both, before anything can fail: what is shared is not freed */
         for (int which = 0; which < 2; which++) {
-            f->set[which] = (spari_node_set){0};
             SPARI_TRY(unmap(old, which, &f->set[which]));
         }
         SPARI_TRY(spar_fluid_map(f));

@@ -6,6 +6,7 @@
 #include "body.h"
 #include "edge.h"
 #include "remake.h"
+#include "rung.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@ typedef struct line_load {
 struct spari_applied {
     double *follower;  /* [nodes][6], global axes at the reference; NULL: none */
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
+    double *room;      /* [nodes][6] of a rigid member; NULL: of another */
 };
 
 static void line_free(line_load *line) {
@@ -34,8 +36,23 @@ void spari_applied_free(spari_applied *a) {
         free(a->follower);
         line_free(&a->line[0]);
         line_free(&a->line[1]);
+        free(a->room);
         free(a);
     }
+}
+
+/* Without loads; NULL when there is no memory. */
+static spari_applied *applied_create(const spar_member *m) {
+    spari_applied *a = spari_zalloc(1, sizeof *a);
+    if (a && m->rung && m->rung->core && !(a->room = spari_zalloc(6 * m->nodes, sizeof *a->room))) {
+        free(a);
+        a = NULL;
+    }
+    return a;
+}
+
+double *spari_applied_room(const spari_applied *a) {
+    return a->room;
 }
 
 /* ---- forces ---- */
@@ -327,6 +344,7 @@ static double *take(spari_image *image, int64_t n) {
     if (x && n > 0) {
         memcpy(x, from, (size_t)n * sizeof *x);
     }
+    image->no_memory |= from && !x;
     image->failed |= !x;
     return x;
 }
@@ -337,6 +355,7 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
         return;
     }
     line->first = spari_zalloc(m->elements + 1, sizeof *line->first);
+    image->no_memory |= !line->first;
     image->failed |= !line->first || points > INT32_MAX;
     for (int e = 0; e < m->elements && !image->failed; e++) {
         int64_t next = spari_image_get_int(image);
@@ -355,9 +374,9 @@ void spari_applied_check(spar_member *m, spari_image *image) {
     if (spari_image_get_int(image) == 0 || image->failed) {
         return;
     }
-    spari_applied *a = m->applied_next = spari_zalloc(1, sizeof *a);
+    spari_applied *a = m->applied_next = applied_create(m);
     if (!a) {
-        image->failed = 1;
+        image->failed = image->no_memory = 1;
         return;
     }
     a->follower = spari_image_get_int(image) ? take(image, 6 * m->nodes) : NULL;
@@ -403,7 +422,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
     if (!a) {
         return SPAR_OK;
     }
-    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
+    spari_applied *b = m->applied = applied_create(m);
     int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && a->follower) {
         b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
@@ -424,7 +443,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
 static int need_applied(spar_member *member, const char *call) {
     SPARI_TRY(spari_need_committed(member, call));
     if (!member->applied) {
-        member->applied = spari_zalloc(1, sizeof *member->applied);
+        member->applied = applied_create(member);
     }
     SPARI_REQUIRE(member->session, member->applied, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call,
                   member->name);

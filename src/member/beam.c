@@ -4,8 +4,8 @@
 #include "../math/rotation.h"
 #include "../session/session.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_multifit.h>
 #include <gsl/gsl_spline.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,11 +50,53 @@ static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
     }
 }
 
+/* What a fit works with: each row's weight and basis [rows][1 + P]; the matrix, later its factors; the right side and
+   what is left of it, the factors' scales and the solution. */
+typedef struct fit {
+    size_t rows, inner;
+    int P;
+    double *basis;
+    gsl_matrix *A;
+    gsl_vector *b, *c;
+} fit;
+
+static int fit_create(fit *f) {
+    f->basis = spari_zalloc((int64_t)f->rows * (1 + f->P), sizeof *f->basis);
+    f->A = gsl_matrix_alloc(f->rows, f->inner);
+    f->b = gsl_vector_alloc(2 * f->rows);
+    f->c = gsl_vector_alloc(2 * f->inner);
+    return f->basis && f->A && f->b && f->c ? 0 : 1;
+}
+
+static void fit_free(fit *f) {
+    free(f->basis);
+    gsl_matrix_free(f->A);
+    gsl_vector_free(f->b);
+    gsl_vector_free(f->c);
+}
+
+/* Coordinate d of the inner nodes into x [P][3], from the values of all rows. Their QR needs no memory of its own, as
+   GSL's SVD does, without looking whether it got any. */
+static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
+    gsl_vector_view b = gsl_vector_subvector(f->b, 0, f->rows), left = gsl_vector_subvector(f->b, f->rows, f->rows),
+                    c = gsl_vector_subvector(f->c, f->inner, f->inner);
+    for (size_t i = 0; i < f->rows; i++) {
+        const double *row = f->basis + i * (size_t)(1 + f->P);
+        double ends = row[1] * x[d] + row[f->P] * x[3 * (f->P - 1) + d];
+        gsl_vector_set(&b.vector, i, row[0] * (gsl_vector_get(&b.vector, i) - ends));
+    }
+    int bad = gsl_linalg_QR_lssolve(f->A, tau, &b.vector, &c.vector, &left.vector) != GSL_SUCCESS;
+    for (size_t j = 0; j < f->inner && !bad; j++) {
+        x[3 * (j + 1) + (size_t)d] = gsl_vector_get(&c.vector, j);
+    }
+    return bad;
+}
+
 /* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
    points counts so little (1e-7) that it decides only what the points leave open. */
 static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
                        const double *spline, double *x) {
-    double e0 = (double)e / elements, e1 = (double)(e + 1) / elements, phi[SPARI_MAX_NODES];
+    double e0 = (double)e / elements, e1 = (double)(e + 1) / elements;
     int64_t first = 0, last = beam->axis_count - 1;
     while (first < last && beam->eta[first] < e0) {
         first++;
@@ -64,38 +106,32 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
     }
     size_t inner = (size_t)(P - 2),
            points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (size_t)(last - first + 1) : 0;
-    size_t rows = points + inner;
-    gsl_matrix *A = gsl_matrix_alloc(rows, inner), *cov = gsl_matrix_alloc(inner, inner);
-    gsl_vector *b = gsl_vector_alloc(rows), *c = gsl_vector_alloc(inner);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, inner);
-    int ok = A && cov && b && c && work;
-    for (int d = 0; d < 3 && ok; d++) {
-        for (size_t i = 0; i < rows; i++) {
-            int data = i < points;
-            double w = data ? 1 : 1e-7,
-                   xi = data ? 2 * (beam->eta[first + (int64_t)i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
-            double value = data ? beam->xyz[3 * (first + (int64_t)i) + d] : spline[3 * (1 + i - points) + (size_t)d];
-            spari_lagrange(P, gll, bary, xi, phi, NULL);
-            gsl_vector_set(b, i, w * (value - phi[0] * x[d] - phi[P - 1] * x[3 * (P - 1) + d]));
-            for (size_t j = 0; j < inner; j++) {
-                gsl_matrix_set(A, i, j, w * phi[1 + j]);
-            }
-        }
-        double chisq;
-        size_t rank;
-        ok = gsl_multifit_linear_tsvd(A, b, 1e-14, c, cov, &chisq, &rank, work) == GSL_SUCCESS;
-        for (size_t j = 0; j < inner && ok; j++) {
-            x[3 * (j + 1) + (size_t)d] = gsl_vector_get(c, j);
+    fit f = {.rows = points + inner, .inner = inner, .P = P};
+    int bad = fit_create(&f);
+    for (size_t i = 0; i < f.rows && !bad; i++) {
+        double *row = f.basis + i * (size_t)(1 + P);
+        double xi = i < points ? 2 * (beam->eta[first + (int64_t)i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
+        row[0] = i < points ? 1 : 1e-7;
+        spari_lagrange(P, gll, bary, xi, row + 1, NULL);
+        for (size_t j = 0; j < inner; j++) {
+            gsl_matrix_set(f.A, i, j, row[0] * row[2 + j]);
         }
     }
-    gsl_matrix_free(A);
-    gsl_matrix_free(cov);
-    gsl_vector_free(b);
-    gsl_vector_free(c);
-    if (work) {
-        gsl_multifit_linear_free(work);
+    gsl_vector_view tau = {{0}};
+    if (!bad) {
+        tau = gsl_vector_subvector(f.c, 0, inner);
+        bad = gsl_linalg_QR_decomp(f.A, &tau.vector) != GSL_SUCCESS;
     }
-    return ok ? 0 : 1;
+    for (int d = 0; d < 3 && !bad; d++) {
+        for (size_t i = 0; i < f.rows; i++) {
+            double data =
+                i < points ? beam->xyz[3 * (first + (int64_t)i) + d] : spline[3 * (1 + i - points) + (size_t)d];
+            gsl_vector_set(f.b, i, data);
+        }
+        bad = fit_solve(&f, d, &tau.vector, x);
+    }
+    fit_free(&f);
+    return bad;
 }
 
 /* x [elements * P][3] from the axis points; ends exact, joints on the spline (or on the axis point that is there). */
@@ -111,8 +147,8 @@ static int fit_axis(spar_member *member, const double *gll, const double *bary, 
         for (size_t i = 0; i < n; i++) {
             column[i] = beam->xyz[3 * i + (size_t)d];
         }
-        gsl_spline_init(spline, beam->eta, column, n);
-        for (int64_t i = 0; i < member->nodes; i++) {
+        bad = gsl_spline_init(spline, beam->eta, column, n) != GSL_SUCCESS; /* it solves for the curvatures in memory */
+        for (int64_t i = 0; i < member->nodes && !bad; i++) {
             double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
             spline_x[3 * i + d] = gsl_spline_eval(spline, fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]), NULL);
         }

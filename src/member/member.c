@@ -507,20 +507,24 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
     }
 }
 
-int spari_member_reaction(const spar_member *m, double load[6]) {
+int64_t spari_member_reaction_room(const spar_member *m) {
+    return m->rung ? spari_rung_reaction_room(m) : m->body ? 25 * (int64_t)m->body->unique : 0;
+}
+
+void spari_member_reaction_in(const spar_member *m, double *room, double load[6]) {
     if (m->rung) {
-        return spari_rung_reaction(m, load);
+        spari_rung_reaction(m, room, load);
+        return;
     }
     memset(load, 0, 6 * sizeof *load);
     const spari_body *b = m->body;
     int held = m->root == SPAR_ROOT_FREE ? 0 : m->root == SPAR_ROOT_PINNED ? 3 : 6;
     if (!b || held == 0) {
-        return SPAR_OK;
+        return;
     }
     int64_t n = b->unique;
     int still = !(m->effects & SPAR_EFFECT_INERTIA);
-    double *q = spari_zalloc(25 * n, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
-    SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
     spari_member_to_unique(m, 7, m->after.q, q);
     spari_member_to_unique(m, 6, m->after.v, v);
     spari_member_to_unique(m, 6, m->after.a, a);
@@ -531,7 +535,13 @@ int spari_member_reaction(const spar_member *m, double load[6]) {
     for (int i = 0; i < held; i++) { /* the root is node 0, which no joint repeats */
         load[i] = r[i] - m->load_solved[1][i];
     }
-    free(q);
+}
+
+int spari_member_reaction(const spar_member *m, double load[6]) {
+    double *room = spari_zalloc(spari_member_reaction_room(m), sizeof *room);
+    SPARI_REQUIRE(m->session, room, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    spari_member_reaction_in(m, room, load);
+    free(room);
     return SPAR_OK;
 }
 

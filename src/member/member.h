@@ -82,6 +82,9 @@ void spari_member_solved(spar_member *member, const double *fluid);
 /* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.
  * Returns SPAR_ERR_MEMORY or 0. */
 int spari_member_reaction(const spar_member *member, double load[6]);
+/* The same with memory given beforehand: so many doubles. */
+int64_t spari_member_reaction_room(const spar_member *member);
+void spari_member_reaction_in(const spar_member *member, double *room, double load[6]);
 /* The latest iterate becomes the motion the clock stands at, as after a static solution. */
 void spari_member_settle(spar_member *member);
 /* The step under way is accepted, or given up. */

@@ -66,7 +66,9 @@ static int open_file(reader *r, const char *path) {
     r->number = 0;
     r->file = fopen(path, "r");
     if (!r->file) {
-        return FAIL(r, SPAR_ERR_IO, "'%s': cannot open %s: %s", r->beam, path, strerror(errno));
+        int reason = errno;
+        return FAIL(r, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "'%s': cannot open %s: %s", r->beam, path,
+                    reason == ENOMEM ? "no memory" : strerror(reason));
     }
     return SPAR_OK;
 }
@@ -348,7 +350,9 @@ static int member_axis(const blade *b, int first, int count, int each, gsl_splin
             z[i] = b->key[4 * (int64_t)(first + i) + 2];
             y[i] = b->key[4 * (int64_t)(first + i) + k];
         }
-        gsl_spline_init(s[k], z, y, (size_t)count);
+        if (gsl_spline_init(s[k], z, y, (size_t)count)) {
+            return 1;
+        }
     }
     for (int i = 0; i < count - 1; i++) {
         for (int j = 0; j < each; j++) {

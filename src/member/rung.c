@@ -213,8 +213,7 @@ enum { PASSES = 20 };
 
 static int core_advance(spar_member *m, double dt) {
     spar_member *c = m->rung->core;
-    double *extra = m->applied ? spari_zalloc(6 * m->nodes, sizeof *extra) : NULL, before[7];
-    SPARI_REQUIRE(m->session, extra || !m->applied, SPAR_ERR_MEMORY, "spar_step_solve: no memory for '%s'", m->name);
+    double *extra = m->applied ? spari_applied_room(m->applied) : NULL, before[7];
     int status = SPAR_OK;
     memcpy(c->drive, m->drive, sizeof c->drive);
     memcpy(c->body->gravity, m->body->gravity, sizeof c->body->gravity);
@@ -252,7 +251,6 @@ static int core_advance(spar_member *m, double dt) {
             break;
         }
     }
-    free(extra);
     if (status == SPAR_OK) {
         follow(m, c->after.q, c->after.v, c->after.a, &m->after);
     }
@@ -429,13 +427,16 @@ void spari_rung_load(spar_member *m, const double *state) {
     }
 }
 
-int spari_rung_reaction(const spar_member *m, double load[6]) {
-    int64_t n = m->body ? m->body->unique : m->nodes, wide = m->nodes > n ? m->nodes : n;
+int64_t spari_rung_reaction_room(const spar_member *m) {
+    return (m->body ? 25 * (int64_t)m->body->unique : 0) + 6 * m->nodes * (m->applied ? 2 : 1);
+}
+
+void spari_rung_reaction(const spar_member *m, double *room, double load[6]) {
+    int64_t n = m->body ? m->body->unique : 0;
     int still = !(m->effects & SPAR_EFFECT_INERTIA);
-    double *q = spari_zalloc(25 * n + 6 * wide, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n,
-           *sum = r + 6 * n;
+    double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n, *sum = r + 6 * n, *extra = sum + 6 * m->nodes;
     memset(load, 0, 6 * sizeof *load);
-    SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    memset(room, 0, (size_t)spari_rung_reaction_room(m) * sizeof *room);
     int standing = m->rung->frame && m->root != SPAR_ROOT_DRIVEN;
     if (m->body) {
         for (int64_t i = 0; i < n; i++) {
@@ -453,16 +454,10 @@ int spari_rung_reaction(const spar_member *m, double load[6]) {
         }
     }
     if (m->applied) {
-        double *extra = spari_zalloc(6 * m->nodes, sizeof *extra);
-        if (!extra) {
-            free(q);
-            return spari_fail(m->session, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
-        }
         spari_applied_nodal(m, m->after.q, extra);
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             sum[i] -= extra[i];
         }
-        free(extra);
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         double r_i[3], moment[3], f[6];
@@ -478,10 +473,8 @@ int spari_rung_reaction(const spar_member *m, double load[6]) {
             load[3 + k] += f[3 + k] + moment[k];
         }
     }
-    free(q);
     int held = m->root == SPAR_ROOT_FREE ? 0 : m->root == SPAR_ROOT_PINNED ? 3 : 6;
     memset(load + held, 0, (size_t)(6 - held) * sizeof *load);
-    return SPAR_OK;
 }
 
 int spari_rung_energy(const spar_member *m, double energy[4]) {

@@ -50,8 +50,9 @@ int spari_rung_is_state(const spar_member *member, const double *state, int64_t 
 void spari_rung_load(spar_member *member, const double *state);
 /* What the root gives the member in the motion after, from the balance of the whole: inertia less weight less loads,
    each where its node is; in linear theory about axes that stand, where its node is in the reference. Internal forces
-   have no part in it. */
-int spari_rung_reaction(const spar_member *member, double load[6]);
+   have no part in it. room: so many doubles. */
+int64_t spari_rung_reaction_room(const spar_member *member);
+void spari_rung_reaction(const spar_member *member, double *room, double load[6]);
 /* Puts what a rung's own equations say in place of the energies of the exact member. 0, or SPAR_ERR_MEMORY. */
 int spari_rung_energy(const spar_member *member, double energy[4]);
 /* Place, orientation and velocity of the frame that a linear or modal member is seen from: those of its root where they

@@ -14,12 +14,14 @@ struct spari_work {
     double reaction[6]; /* at t^n, of a driven root */
     double *fluid;      /* [nodes][6] fluid loads at t^n */
     double *load;       /* [nodes][6] scratch */
+    double *room;       /* for the reaction */
 };
 
 void spari_work_free(spari_work *work) {
     if (work) {
         free(work->fluid);
         free(work->load);
+        free(work->room);
         free(work);
     }
 }
@@ -75,7 +77,8 @@ void spari_work_step(spar_member *m) {
         w->sum[0] += dot6(kept, d);
         w->sum[1] += dot6(fluid, d);
     }
-    if (m->root == SPAR_ROOT_DRIVEN && spari_member_reaction(m, reaction) == SPAR_OK) {
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        spari_member_reaction_in(m, w->room, reaction);
         increment(m, 0, d);
         w->sum[2] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
@@ -86,9 +89,7 @@ void spari_work_restart(spar_member *m) {
     spari_work *w = m->work;
     memset(w->sum, 0, sizeof w->sum);
     memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
-    if (spari_member_reaction(m, w->reaction) != SPAR_OK) {
-        memset(w->reaction, 0, sizeof w->reaction);
-    }
+    spari_member_reaction_in(m, w->room, w->reaction);
 }
 
 int spar_member_get_work(spar_member *member, double work[3]) {
@@ -99,9 +100,10 @@ int spar_member_get_work(spar_member *member, double work[3]) {
     if (!member->work) {
         SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
                       "%s: '%s': the account begins with the first call; make it between steps", call, member->name);
-        spari_work *w = spari_zalloc(1, sizeof *w);
+        spari_work *w = spari_zalloc(1, sizeof *w); /* loads along the line may come later: room for them too */
         int ok = w && (w->fluid = spari_zalloc(6 * member->nodes, sizeof *w->fluid)) &&
-                 (w->load = spari_zalloc(6 * member->nodes, sizeof *w->load));
+                 (w->load = spari_zalloc(6 * member->nodes, sizeof *w->load)) &&
+                 (w->room = spari_zalloc(spari_member_reaction_room(member) + 6 * member->nodes, sizeof *w->room));
         if (!ok) {
             spari_work_free(w);
             return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, member->name);

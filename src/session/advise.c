@@ -368,15 +368,30 @@ static int search(spari_advisor *d, const spari_plan *present, spari_outcome *no
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 
-static int hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, double *advice) {
+/* Memory for the advice of members that have none yet, before the work begins: [members], else NULL. */
+static int make_room(const spari_advisor *d, spari_remake ***room) {
+    spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof *all);
+    int k = 0, ok = all != NULL;
+    for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
+        ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));
+    }
+    return ok ? SPAR_OK : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
+}
+
+static void free_room(const spari_advisor *d, spari_remake **room) {
+    for (int k = 0; room && k < d->session->member_count; k++) {
+        free(room[k]);
+    }
+    free(room);
+}
+
+static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_remake **room,
+                      double *advice) {
     const spari_plan *p = &best->plan;
     int k = 0;
-    for (spar_member *m = d->session->members; m; m = m->next) {
-        if (!m->advice && !(m->advice = spari_zalloc(1, sizeof *m->advice))) {
-            return spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
-        }
-    }
     for (spar_member *m = d->session->members; m; m = m->next, k++) {
+        m->advice = m->advice ? m->advice : room[k];
+        room[k] = room[k] == m->advice ? NULL : room[k];
         *m->advice = spari_remake_of(m);
         if (d->group[k] >= 0) {
             const spari_shape *b = &p->group[d->group[k]];
@@ -393,7 +408,6 @@ static int hand_over(spari_advisor *d, const spari_outcome *now, const spari_out
     advice[SPAR_ADVICE_COST] = isfinite(now->seconds) && now->seconds > 0 ? best->seconds / now->seconds : -1;
     advice[SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1;
     advice[SPAR_ADVICE_TRIALS] = d->trials;
-    return SPAR_OK;
 }
 
 static int check(spar_session *s, double tolerance, const spari_run *run, const double *advice) {
@@ -415,15 +429,19 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check(s, tolerance, &d.run, advice)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    int status = spari_comm_agree(s->comm, spari_plan_groups(&d), s->message, sizeof s->message);
+    spari_remake **room = NULL;
+    int status = spari_plan_groups(&d);
+    status = status == SPAR_OK ? make_room(&d, &room) : status;
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
         status = search(&d, &present, &now, &best);
     }
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
-        status = spari_comm_agree(s->comm, hand_over(&d, &now, &best, advice), s->message, sizeof s->message);
+        hand_over(&d, &now, &best, room, advice);
     }
+    free_room(&d, room);
     free(d.group);
     free(d.known);
     spari_record_free(&d.reference);

@@ -111,8 +111,9 @@ static uint64_t crc64(const unsigned char *data, size_t n) {
 /* ---- files ---- */
 
 static int io_failure(char *why, size_t size, const char *what, const char *path) {
-    (void)snprintf(why, size, "%s '%s': %s", what, path, strerror(errno));
-    return SPAR_ERR_IO;
+    int reason = errno;
+    (void)snprintf(why, size, "%s '%s': %s", what, path, reason == ENOMEM ? "no memory" : strerror(reason));
+    return reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO;
 }
 
 int spari_image_write(const spari_image *image, const char *path, char *why, size_t size) {

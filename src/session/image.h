@@ -10,8 +10,9 @@
 typedef struct spari_image {
     uint64_t *word;
     int64_t count, room;
-    int64_t at; /* reading: next word */
-    int failed; /* no memory to write, or nothing left to read */
+    int64_t at;    /* reading: next word */
+    int failed;    /* no memory to write, or nothing left to read */
+    int no_memory; /* for what was read: failed, but by no fault of the file */
 } spari_image;
 
 void spari_image_free(spari_image *image);

@@ -93,6 +93,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
     spar_session *s = d->session;
     spari_wish wish;
     spari_run run = d->run;
+    *record = (spari_record){0};
     SPARI_TRY(spari_wish_create(s, &wish));
     wish.substeps = p->substeps, wish.scheme = p->scheme, wish.predictor = p->predictor;
     wish.coupling_rtol = p->rtol;

@@ -54,7 +54,8 @@ int spari_plan_grid(const spari_advisor *advisor, int64_t steps);
 /* Whether a status says that the settings will not do, and nothing worse. */
 int spari_plan_fails(int status);
 
-/* All below are collective. A run over `longer` times what the host asked for. */
+/* All below are collective. A run over `longer` times what the host asked for; the record is to be freed also after a
+   failure. */
 int spari_plan_run(spari_advisor *advisor, const spari_plan *plan, int longer, spari_record *record);
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
 int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, spari_outcome *out);

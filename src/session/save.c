@@ -485,6 +485,9 @@ static int check_image(spar_session *s, loading *l) {
     int phase = (int)l->image.word[l->image.at - 1];
     for (spar_member *m = s->members; m; m = m->next) {
         pass_member(&t, m);
+        if (l->image.no_memory) {
+            return no_memory(s, "spar_session_load");
+        }
     }
     SPARI_TRY(check_coupling(s, l, phase));
     return check_own(s, l);

@@ -44,6 +44,7 @@ typedef struct stash {
     int fluid_count, fluids_made;
 } stash;
 
+/* Where it fails the session is as it was: there is nothing to go back to. */
 static int stash_create(spar_session *s, stash *t) {
     *t = (stash){.session = *s};
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
@@ -51,7 +52,11 @@ static int stash_create(spar_session *s, stash *t) {
     }
     t->members = spari_zalloc(s->member_count, sizeof *t->members);
     t->fluids = spari_zalloc(t->fluid_count, sizeof(spar_fluid *));
-    SPARI_REQUIRE(s, t->members && t->fluids, SPAR_ERR_MEMORY, "no memory for a trial run");
+    if (!t->members || !t->fluids) {
+        free(t->members);
+        free(t->fluids);
+        return spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
+    }
     s->coupling = NULL;
     s->coupling_stale = 1;
     s->pack = s->motion = NULL;
@@ -184,14 +189,13 @@ static void look(const spar_session *s, const double *start, double *motion, dou
     }
 }
 
-static int look_at_reactions(const spar_session *s, double *reaction) {
+static void look_at_reactions(const spar_session *s, double *room, double *reaction) {
     for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
-        SPARI_TRY(spari_member_reaction(m, reaction));
+        spari_member_reaction_in(m, room, reaction);
         for (int c = 3; c < 6; c++) {
             reaction[c] /= spari_member_length(m);
         }
     }
-    return SPAR_OK;
 }
 
 static void look_at_loads(const spar_session *s, double *load) {
@@ -211,19 +215,29 @@ static void look_at_loads(const spar_session *s, double *load) {
 
 /* ---- the run ---- */
 
-static int record_create(spar_session *s, spari_record *r, double **start) {
+/* Memory that a run needs beside its record: displacements at the beginning, and for reactions. All of it before the
+   first step: a rank that had none later would leave the others waiting. */
+typedef struct sight {
+    double *start, *room;
+} sight;
+
+static int record_create(spar_session *s, spari_record *r, sight *w) {
+    int64_t room = 0;
     *r = (spari_record){.members = s->member_count};
     for (const spar_member *m = s->members; m; m = m->next) {
+        int64_t own = spari_member_reaction_room(m);
         r->stations += stations_of(m);
+        room = room > own ? room : own;
     }
     r->motion = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->motion);
     r->beyond = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->beyond);
     r->reaction = spari_zalloc(6 * SPARI_SAMPLES * (int64_t)r->members, sizeof *r->reaction);
     r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
     r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
-    *start = spari_zalloc(3 * r->stations, sizeof **start);
-    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && r->trail && *start, SPAR_ERR_MEMORY,
-                  "no memory for the record of a trial run");
+    w->start = spari_zalloc(3 * r->stations, sizeof *w->start);
+    w->room = spari_zalloc(room, sizeof *w->room);
+    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && r->trail && w->start && w->room,
+                  SPAR_ERR_MEMORY, "no memory for the record of a trial run");
     return SPAR_OK;
 }
 
@@ -238,7 +252,12 @@ void spari_record_free(spari_record *r) {
 
 int spari_trial_keep(spar_session *s, spari_record *record) {
     spari_record *kept = spari_zalloc(1, sizeof *kept);
-    SPARI_REQUIRE(s, kept, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    if (status != SPAR_OK) {
+        free(kept);
+        return status;
+    }
     spari_trial_forget(s);
     *kept = *record;
     *record = (spari_record){0};
@@ -293,7 +312,7 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     }
 }
 
-static int march(spar_session *s, const spari_run *run, const double *start, spari_record *r) {
+static int march(spar_session *s, const spari_run *run, const sight *w, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
         int iterations = 0;
@@ -306,8 +325,8 @@ static int march(spar_session *s, const spari_run *run, const double *start, spa
         watch_loads(s, i, run->steps, r, size);
         if (i * SPARI_SAMPLES % run->steps == 0) {
             int64_t k = i * SPARI_SAMPLES / run->steps - 1;
-            look(s, start, r->motion + 3 * k * r->stations, r->beyond + 3 * k * r->stations);
-            SPARI_TRY(look_at_reactions(s, r->reaction + 6 * k * r->members));
+            look(s, w->start, r->motion + 3 * k * r->stations, r->beyond + 3 * k * r->stations);
+            look_at_reactions(s, w->room, r->reaction + 6 * k * r->members);
             int64_t bad = spari_first_nonfinite(r->motion + 3 * k * r->stations, 3 * r->stations);
             SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
         }
@@ -320,12 +339,12 @@ static int march(spar_session *s, const spari_run *run, const double *start, spa
 
 /* The members and fluids there now are the trial's. */
 static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
-    double *start = NULL;
-    int status = record_create(s, r, &start);
+    sight w = {NULL, NULL};
+    int status = record_create(s, r, &w);
     status = spari_session_seal(s, status);
     if (status == SPAR_OK) {
-        look(s, start, start, NULL);
-        status = march(s, run, start, r);
+        look(s, w.start, w.start, NULL);
+        status = march(s, run, &w, r);
     }
     if (status == SPAR_OK) {
         memcpy(r->report, s->coupling->report, sizeof r->report);
@@ -336,24 +355,25 @@ static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);
     }
-    free(start);
+    free(w.start);
+    free(w.room);
     return status;
 }
 
-/* The failing rank's status, on all ranks: they decide alike whether a failure is of the run or of the machine. */
+/* The failing rank's status, on all ranks, where it is of the run: they go on alike. Of a failure of the machine, after
+   which none goes on, each keeps its own, or learns that it is a peer's. */
 static int share_failure(spar_session *s, int own) {
     enum { CODES = SPAR_ERR_USER + 1 };
-    static const int grave[] = {SPAR_ERR_MEMORY, SPAR_ERR_IO};
     double there[CODES + 1] = {0};
     if (own == SPAR_OK || own == SPAR_ERR_COMM) {
         return own; /* known to all; and there is no asking through a broken communicator */
     }
     there[own] = 1;
     SPARI_TRY(spari_comm_sum(s->comm, there, CODES, SPAR_OK, s->message, sizeof s->message));
-    for (size_t k = 0; k < sizeof grave / sizeof *grave; k++) {
-        if (there[grave[k]] > 0) {
-            return grave[k];
-        }
+    if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
+        return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
+                   ? own
+                   : spari_fail(s, SPAR_ERR_PEER, "another rank has no memory for a trial run, or no file");
     }
     int shared = SPAR_OK + 1;
     while (there[shared] == 0 || shared == SPAR_ERR_PEER) {
@@ -365,13 +385,15 @@ static int share_failure(spar_session *s, int own) {
 int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
     stash t;
     *record = (spari_record){0};
-    int status = stash_create(s, &t);
-    status = status == SPAR_OK ? make_anew(s, &t, wish) : status;
+    int status = stash_create(s, &t), away = status == SPAR_OK;
+    status = away ? make_anew(s, &t, wish) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         status = run_there(s, run, record);
     }
-    go_back(s, &t);
+    if (away) {
+        go_back(s, &t);
+    }
     record->own = status;
     return share_failure(s, status);
 }

@@ -54,12 +54,12 @@ int spari_trial_enter(spar_session *session, const char *call, const spari_run *
 /* The session as it is. Frees: spari_wish_free. Collective. */
 int spari_wish_create(spar_session *session, spari_wish *wish);
 void spari_wish_free(spari_wish *wish);
-/* Runs and goes back. The record's memory is taken here; free it with spari_record_free, also after a failure. Answers
-   the failing rank's status on all of them, so that they go on alike; record.own is what the host is to be told.
-   Collective. */
+/* Runs and goes back. The record's memory is taken here; free it with spari_record_free, also after a failure, however
+   early. Answers the failing rank's status on all of them, so that they go on alike; record.own is what the host is to
+   be told. Collective. */
 int spari_trial_run(spar_session *session, const spari_run *run, const spari_wish *wish, spari_record *record);
 void spari_record_free(spari_record *record);
-/* The session takes the record for later comparisons; *record is empty then. */
+/* The session takes the record for later comparisons; *record is empty then. Collective. */
 int spari_trial_keep(spar_session *session, spari_record *record);
 void spari_trial_forget(spar_session *session);
 /* Root of the mean square of the difference over that of b's motion beyond its root, of b's reactions, of its loads. */

@@ -2,20 +2,27 @@
 
 #include "../session/status.h"
 
+#include <gsl/gsl_cblas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
+   it got any. */
 struct spari_linear {
     int elements, block, overlap;
-    size_t n, band;         /* unknowns; half bandwidth (banded storage) */
-    gsl_matrix *A;          /* dense n x n, or banded n x (3 band + 1) as gsl_linalg_LU_band wants it */
-    gsl_permutation *p;     /* dense */
-    int swaps;              /* dense: sign of the permutation */
-    gsl_vector_uint *pivot; /* banded */
+    size_t n, band; /* unknowns; half bandwidth (banded storage) */
+    gsl_matrix *A;  /* dense n x n, column by column, or banded n x (3 band + 1) as gsl_linalg_LU_band wants it */
+    int *swap;      /* dense: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    gsl_vector_uint *band_swap; /* banded */
+    gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
 };
+
+#ifdef SPARI_HAVE_LAPACK
+extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
+#endif
 
 spari_linear *spari_linear_create(int elements, int block, int overlap) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
@@ -27,12 +34,12 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
     s->band = (size_t)block - 1;
     if (elements == 1) {
         s->A = gsl_matrix_calloc(s->n, s->n);
-        s->p = gsl_permutation_alloc(s->n);
+        s->swap = spari_zalloc((int64_t)s->n, sizeof *s->swap);
     } else {
         s->A = gsl_matrix_calloc(s->n, 3 * s->band + 1);
-        s->pivot = gsl_vector_uint_alloc(s->n);
+        s->band_swap = gsl_vector_uint_alloc(s->n);
     }
-    if (!s->A || (elements == 1 ? !s->p : !s->pivot)) {
+    if (!s->A || (elements == 1 ? !s->swap : !s->band_swap)) {
         spari_linear_free(s);
         return NULL;
     }
@@ -42,8 +49,9 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
 void spari_linear_free(spari_linear *s) {
     if (s) {
         gsl_matrix_free(s->A);
-        gsl_permutation_free(s->p);
-        gsl_vector_uint_free(s->pivot);
+        free(s->swap);
+        gsl_vector_uint_free(s->band_swap);
+        spari_linear_unwatch(s);
         free(s);
     }
 }
@@ -52,16 +60,17 @@ void spari_linear_zero(spari_linear *s) {
     gsl_matrix_set_zero(s->A);
 }
 
-/* entry (i, j): banded storage keeps column j in row j, A(i, j) at 2 band + i - j */
+/* entry (i, j): row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j there */
 static double *entry(const spari_linear *s, size_t i, size_t j) {
-    return s->elements == 1 ? s->A->data + i * s->A->tda + j : s->A->data + j * s->A->tda + (2 * s->band + i - j);
+    return s->A->data + j * s->A->tda + (s->elements == 1 ? i : 2 * s->band + i - j);
 }
 
 void spari_linear_add(spari_linear *s, int element, const double *S) {
     size_t first = (size_t)element * (size_t)(s->block - s->overlap), m = (size_t)s->block;
-    for (size_t i = 0; i < m; i++) {
-        for (size_t j = 0; j < m; j++) {
-            *entry(s, first + i, first + j) += S[m * i + j];
+    for (size_t j = 0; j < m; j++) {
+        double *column = entry(s, first, first + j);
+        for (size_t i = 0; i < m; i++) {
+            column[i] += S[m * i + j];
         }
     }
 }
@@ -78,14 +87,34 @@ void spari_linear_fix(spari_linear *s, int i) {
     *entry(s, at, at) = 1;
 }
 
-int spari_linear_factor(spari_linear *s) {
-    int status;
-    if (s->elements == 1) {
-        status = gsl_linalg_LU_decomp(s->A, s->p, &s->swaps);
-    } else {
-        status = gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->pivot);
+/* LU with row exchanges, in place; 0 or 1 */
+static int factor_dense(spari_linear *s) {
+    int n = (int)s->n, info = 0;
+#ifdef SPARI_HAVE_LAPACK
+    dgetrf_(&n, &n, s->A->data, &n, s->swap, &info);
+#else
+    for (int k = 0; k < n && !info; k++) {
+        double *at = s->A->data + (int64_t)k * n + k;
+        int p = k + (int)cblas_idamax(n - k, at, 1);
+        s->swap[k] = p + 1;
+        info = !(fabs(at[p - k]) > 0);
+        if (!info) {
+            cblas_dswap(n, s->A->data + k, n, s->A->data + p, n);
+            cblas_dscal(n - k - 1, 1 / *at, at + 1, 1);
+            cblas_dger(CblasColMajor, n - k - 1, n - k - 1, -1, at + 1, 1, at + n, n, at + n + 1, n);
+        }
     }
-    if (status != GSL_SUCCESS) {
+#endif
+    return info != 0;
+}
+
+int spari_linear_factor(spari_linear *s) {
+    /* before: a search for the largest of what are no numbers may answer anything */
+    if (spari_first_nonfinite(s->A->data, (int64_t)(s->A->size1 * s->A->tda)) >= 0) {
+        return 1;
+    }
+    if (s->elements == 1 ? factor_dense(s)
+                         : gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->band_swap) != GSL_SUCCESS) {
         return 1;
     }
     for (size_t i = 0; i < s->n; i++) {
@@ -98,14 +127,22 @@ int spari_linear_factor(spari_linear *s) {
 }
 
 int spari_linear_sign(const spari_linear *s) {
-    int sign = s->elements == 1 ? s->swaps : 1;
+    int sign = 1;
     for (size_t i = 0; i < s->n; i++) {
-        sign = *entry(s, i, i) < 0 ? -sign : sign;
-        if (s->elements > 1 && gsl_vector_uint_get(s->pivot, i) != i) {
-            sign = -sign;
-        }
+        size_t from = s->elements == 1 ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
+        sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
     return sign;
+}
+
+int spari_linear_watch(spari_linear *s) {
+    s->symmetric = s->symmetric ? s->symmetric : gsl_matrix_calloc(s->n, s->elements == 1 ? s->n : s->band + 1);
+    return s->symmetric ? 0 : 1;
+}
+
+void spari_linear_unwatch(spari_linear *s) {
+    gsl_matrix_free(s->symmetric);
+    s->symmetric = NULL;
 }
 
 int spari_linear_definite(spari_linear *s) {
@@ -123,10 +160,8 @@ int spari_linear_definite(spari_linear *s) {
             }
         }
     }
-    gsl_matrix *L = gsl_matrix_calloc(n, s->elements == 1 ? n : band + 1);
-    if (!L) {
-        return -2;
-    }
+    gsl_matrix *L = s->symmetric;
+    gsl_matrix_set_zero(L);
     for (size_t i = 0; i < n; i++) {
         for (size_t j = i; j < n && j <= i + band; j++) {
             double size = sqrt(*entry(s, i, i) * *entry(s, j, j)),
@@ -140,18 +175,24 @@ int spari_linear_definite(spari_linear *s) {
         }
     }
     int status = s->elements == 1 ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L);
-    gsl_matrix_free(L);
     return status == GSL_SUCCESS;
 }
 
 int spari_linear_solve(spari_linear *s, double *x) {
-    gsl_vector_view v = gsl_vector_view_array(x, s->n);
+    int n = (int)s->n;
     if (s->elements == 1) {
-        gsl_linalg_LU_svx(s->A, s->p, &v.vector);
+        for (int i = 0; i < n; i++) {
+            double there = x[s->swap[i] - 1];
+            x[s->swap[i] - 1] = x[i];
+            x[i] = there;
+        }
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, n, s->A->data, n, x, 1);
+        cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n, s->A->data, n, x, 1);
     } else {
-        gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->pivot, &v.vector);
+        gsl_vector_view v = gsl_vector_view_array(x, s->n);
+        gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->band_swap, &v.vector);
     }
-    return spari_first_nonfinite(x, (int64_t)s->n) < 0 ? 0 : 1;
+    return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }
 
 int64_t spari_linear_state_size(const spari_linear *s) {
@@ -163,8 +204,19 @@ void spari_linear_save(const spari_linear *s, double *state) {
         memcpy(state, s->A->data + i * s->A->tda, s->A->size2 * sizeof *state);
     }
     for (size_t i = 0; i < s->n; i++) {
-        state[i] = s->p ? (double)s->p->data[i] : (double)gsl_vector_uint_get(s->pivot, i);
+        state[i] = s->swap ? s->swap[i] : (double)gsl_vector_uint_get(s->band_swap, i);
     }
+}
+
+int spari_linear_is_state(const spari_linear *s, const double *state) {
+    double first = s->swap ? 1 : 0;
+    state += s->A->size1 * s->A->size2;
+    for (size_t i = 0; i < s->n; i++) {
+        if (!(state[i] >= first && state[i] < first + (double)s->n)) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 void spari_linear_load(spari_linear *s, const double *state) {
@@ -172,10 +224,10 @@ void spari_linear_load(spari_linear *s, const double *state) {
         memcpy(s->A->data + i * s->A->tda, state, s->A->size2 * sizeof *state);
     }
     for (size_t i = 0; i < s->n; i++) {
-        if (s->p) {
-            s->p->data[i] = (size_t)state[i];
+        if (s->swap) {
+            s->swap[i] = (int)state[i];
         } else {
-            gsl_vector_uint_set(s->pivot, i, (unsigned)state[i]);
+            gsl_vector_uint_set(s->band_swap, i, (unsigned)state[i]);
         }
     }
 }

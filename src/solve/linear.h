@@ -1,4 +1,5 @@
-/* Linear systems of a member: element matrices on a chain of elements, dense for one element, banded for more. */
+/* Linear systems of a member: element matrices on a chain of elements, dense for one element, banded for more. Nothing
+   but create and watch takes memory. */
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
@@ -18,14 +19,19 @@ void spari_linear_fix(spari_linear *system, int i);
 int spari_linear_factor(spari_linear *system);
 /* Sign of the determinant of the matrix factored last. */
 int spari_linear_sign(const spari_linear *system);
-/* Before factoring, leaves the matrix as it is. 1: symmetric and positive definite (within rounding), 0: symmetric and
- * not, -1: not symmetric, -2: no memory to tell. */
+/* Memory to tell whether the matrix is definite, until unwatch: 0, or 1 when there is none. */
+int spari_linear_watch(spari_linear *system);
+void spari_linear_unwatch(spari_linear *system);
+/* Before factoring and while watched, leaves the matrix as it is. 1: symmetric and positive definite (within rounding),
+ * 0: symmetric and not, -1: not symmetric. */
 int spari_linear_definite(spari_linear *system);
 /* x := A^-1 x; 0, or 1 when the result is not finite. */
 int spari_linear_solve(spari_linear *system, double *x);
 /* The factors as doubles, for save and load. */
 int64_t spari_linear_state_size(const spari_linear *system);
 void spari_linear_save(const spari_linear *system, double *state);
+/* Whether what was saved can be loaded: it names no rows that are not there. */
+int spari_linear_is_state(const spari_linear *system, const double *state);
 void spari_linear_load(spari_linear *system, const double *state);
 
 #endif

@@ -189,8 +189,11 @@ void spari_solver_save(const spari_solver *s, double *state) {
 }
 
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
-    return count >= STATE_HEAD && state[0] == s->n &&
-           count == STATE_HEAD + 54 * (int64_t)s->n + (state[1] != 0 ? spari_linear_state_size(s->linear) : 0);
+    int64_t own = STATE_HEAD + 54 * (int64_t)s->n, size = spari_linear_state_size(s->linear);
+    if (count < STATE_HEAD || state[0] != s->n) {
+        return 0;
+    }
+    return state[1] == 0 ? count == own : count == own + size && spari_linear_is_state(s->linear, state + own);
 }
 
 void spari_solver_load(spari_solver *s, const double *state) {

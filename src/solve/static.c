@@ -243,6 +243,10 @@ static void warn_of_bend(const spar_member *m) {
     s->log(s, SPAR_LOG_WARNING, text, s->log_context);
 }
 
+static int no_memory(const spar_member *member) {
+    return spari_fail(member->session, SPAR_ERR_MEMORY, "spar_member_solve_static: no memory for '%s'", member->name);
+}
+
 int spari_solver_static(spar_member *member, int load_steps) {
     spari_solver *s = member->solver;
     int n = s->n;
@@ -252,8 +256,9 @@ int spari_solver_static(spar_member *member, int load_steps) {
     l.v = s->to.v, l.a = s->to.a;
     if (l.turning) {
         l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
-        SPARI_REQUIRE(member->session, l.mass, SPAR_ERR_MEMORY, "spar_member_solve_static: no memory for '%s'",
-                      member->name);
+        if (!l.mass) {
+            return no_memory(member);
+        }
     }
     spari_solver_gather(member, member->dead, s->load);
     spari_solver_gather(member, member->load_pushed, s->r);
@@ -261,8 +266,13 @@ int spari_solver_static(spar_member *member, int load_steps) {
         s->load[i] += s->r[i];
     }
     l.guarded = has_path(member);
+    if (l.guarded && spari_linear_watch(s->linear)) {
+        free(l.mass);
+        return no_memory(member);
+    }
     double done = follow(member, &l, load_steps, &why);
     free(l.mass);
+    spari_linear_unwatch(s->linear);
     s->factored = 0;
     if (done < 1) {
         memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);

@@ -1,0 +1,712 @@
+#include "scenario.h"
+
+#include "alloc.h"
+#include "scene.h"
+
+#include <spar/spar_aero.h>
+#include <spar/spar_output.h>
+#include <stdio.h>
+
+#ifdef SPARI_HAVE_MPI
+#include <spar/spar_mpi.h>
+#endif
+
+/* ---- the harness ---- */
+
+enum { FUNCTIONS = 256, NODES = 12, MANY = 64 };
+
+static struct {
+    int rank, ranks, injecting, complaints;
+    const char *folder;
+    uint64_t digest;
+    const char *called[FUNCTIONS];
+    int calls;
+    spar_session *session; /* of the act */
+} run = {.ranks = 1, .folder = "."};
+
+void scenario_set(int rank, int ranks, const char *folder) {
+    run.rank = rank;
+    run.ranks = ranks;
+    run.folder = folder;
+}
+
+void scenario_injecting(int on) {
+    run.injecting = on;
+}
+
+void scenario_begin(void) {
+    run.digest = UINT64_C(1469598103934665603);
+    run.complaints = 0;
+    run.session = NULL;
+}
+
+uint64_t scenario_digest(void) {
+    return run.digest;
+}
+
+int scenario_complaints(void) {
+    return run.complaints;
+}
+
+void scenario_complain(const char *what, const char *detail) {
+    run.complaints++;
+    printf("  rank %d: %s: %s\n", run.rank, what, detail);
+    (void)fflush(stdout);
+}
+
+int scenario_has_called(const char *function) {
+    for (int i = 0; i < run.calls; i++) {
+        if (strcmp(run.called[i], function) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void called(const char *function) {
+    if (!scenario_has_called(function) && run.calls < FUNCTIONS) {
+        run.called[run.calls++] = function;
+    }
+}
+
+static void note(const void *bytes, size_t n) {
+    const unsigned char *b = bytes;
+    for (size_t i = 0; i < n; i++) {
+        run.digest = (run.digest ^ b[i]) * UINT64_C(1099511628211);
+    }
+}
+
+/* Judges what a call answered; 1: it has been refused as it may be, once, and is to be made again. */
+static int again(const char *function, int status, int hit, int attempt) {
+    char text[200];
+    if (status == SPAR_OK) {
+        return 0;
+    }
+    const char *own = spar_session_message(run.session), *of_thread = spar_session_message(NULL);
+    const char *message =
+        strncmp(function, "spar_polar", 10) == 0 || strncmp(function, "spar_vtk", 8) == 0 || !run.session ? of_thread
+                                                                                                          : own;
+    int expected = run.injecting && attempt == 0 && (hit ? status == SPAR_ERR_MEMORY : status == SPAR_ERR_PEER);
+    if (!expected) {
+        (void)snprintf(text, sizeof text, "answered %d after attempt %d, %s; message: %.120s", status, attempt,
+                       hit ? "its allocation failed" : "no allocation failed here", message);
+        scenario_complain(function, text);
+    } else if (status == SPAR_ERR_MEMORY && !strstr(message, "memory")) {
+        (void)snprintf(text, sizeof text, "no word of memory in its message: %.120s", message);
+        scenario_complain(function, text);
+    }
+    return expected;
+}
+
+/* A public call that answers a status: where it is refused for want of memory it is made again, and must succeed. */
+#define CALL(function, ...)                                                                                            \
+    do {                                                                                                               \
+        int status_, hit_, attempt_ = 0;                                                                               \
+        called(#function);                                                                                             \
+        do {                                                                                                           \
+            hit_ = alloc_hit();                                                                                        \
+            int was_ = alloc_arm(1);                                                                                   \
+            status_ = function(__VA_ARGS__);                                                                           \
+            (void)alloc_arm(was_);                                                                                     \
+        } while (again(#function, status_, alloc_hit() && !hit_, attempt_++));                                         \
+    } while (0)
+
+/* One that answers nothing, or a text. */
+#define PLAIN(function, ...)                                                                                           \
+    do {                                                                                                               \
+        called(#function);                                                                                             \
+        int was_ = alloc_arm(1);                                                                                       \
+        (void)function(__VA_ARGS__);                                                                                   \
+        (void)alloc_arm(was_);                                                                                         \
+    } while (0)
+
+#define PLAIN_0(function)                                                                                              \
+    do {                                                                                                               \
+        called(#function);                                                                                             \
+        (void)function();                                                                                              \
+    } while (0)
+
+#define NOTE(x) note(x, sizeof(x))
+
+/* ---- parts of scenes ---- */
+
+static const double unit_q[4] = {1, 0, 0, 0}, origin[3];
+
+static spar_session *begin_session(void) {
+    spar_session *s = NULL;
+    run.session = NULL;
+#ifdef SPARI_HAVE_MPI
+    if (run.ranks > 1) {
+        CALL(spar_session_create_fcomm, (int)MPI_Comm_c2f(MPI_COMM_WORLD), &s);
+    } else {
+        CALL(spar_session_create, &s);
+    }
+#else
+    CALL(spar_session_create, &s);
+#endif
+    run.session = s;
+    return s;
+}
+
+static void end_session(spar_session **s) {
+    run.session = NULL;
+    PLAIN(spar_session_destroy, s);
+}
+
+static spar_member *begin_beam(spar_session *s, const char *name, int elements, int nodes, int owner) {
+    static const double eta[3] = {0, 0.5, 1}, xyz[9] = {0, 0, 0, 5, 0, 0.1, 10, 0, 0}, twist[3] = {0.1, 0.05, 0};
+    double K[2 * 36], M[2 * 36], mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 2e-3, 3e-3};
+    static const double ends[2] = {0, 1};
+    spar_member *b = NULL;
+    scene_box(K, M);
+    scene_box(K + 36, M + 36);
+    CALL(spar_beam_create, s, name, elements, nodes, &b);
+    CALL(spar_beam_set_axis, b, 3, eta, xyz, twist);
+    CALL(spar_beam_set_sections, b, 2, ends, K, M);
+    CALL(spar_beam_set_damping, b, mu);
+    CALL(spar_member_set_owner, b, owner % run.ranks);
+    return b;
+}
+
+/* A fluid of loose nodes around a line along x, some on every rank; the last rank of several has none. */
+static spar_fluid *begin_fluid(spar_member *m, const char *name, double length, int64_t *n, double x[NODES][3]) {
+    spar_fluid *f = NULL;
+    *n = run.ranks > 1 && run.rank == run.ranks - 1 ? 0 : NODES;
+    for (int i = 0; i < NODES; i++) {
+        double angle = 0.7 * i + run.rank, place[3] = {length * i / (NODES - 1), 0.3 * cos(angle), 0.3 * sin(angle)};
+        memcpy(x[i], place, sizeof place);
+    }
+    CALL(spar_fluid_create, m, name, &f);
+    CALL(spar_fluid_set_motion_nodes, f, *n, *n ? x[0] : NULL);
+    CALL(spar_fluid_set_force_nodes, f, *n, *n ? x[0] : NULL);
+    return f;
+}
+
+static void note_member(const spar_member *m) {
+    double q[7 * MANY], v[6 * MANY], a[6 * MANY], load[6];
+    int64_t n = 0;
+    CALL(spar_member_get_count, m, &n);
+    CALL(spar_member_get_motion, m, q, v, a);
+    note(q, (size_t)(7 * n) * sizeof *q);
+    note(v, (size_t)(6 * n) * sizeof *v);
+    note(a, (size_t)(6 * n) * sizeof *a);
+    CALL(spar_member_get_reaction, m, load);
+    NOTE(load);
+}
+
+typedef struct host {
+    spar_session *session;
+    spar_member *member[4];
+    spar_fluid *fluid[4];
+    int members, fluids;
+    int64_t n[4];
+    double x[4][NODES][3];
+    int at;    /* pushes with a theta */
+    int steps; /* made since anything was described */
+} host;
+
+/* A viscous medium with a load that comes and goes. */
+static int solve(spar_session *s, double t, double dt, int iteration, void *context) {
+    host *h = context;
+    int was = alloc_arm(0);
+    double v[NODES][3], f[NODES][3], moment[NODES][3];
+    (void)s, (void)iteration;
+    for (int k = 0; k < h->fluids; k++) {
+        double *at = h->n[k] ? v[0] : NULL, *force = h->n[k] ? f[0] : NULL, *m = h->n[k] ? moment[0] : NULL;
+        CALL(spar_fluid_pull_motion, h->fluid[k], 1, NULL, at);
+        for (int64_t i = 0; i < h->n[k]; i++) {
+            for (int c = 0; c < 3; c++) {
+                f[i][c] = -0.5 * v[i][c] + (c == 1 ? 2 * sin(3 * (t + dt)) : 0);
+                moment[i][c] = c == 0 ? 0.1 : 0;
+            }
+        }
+        if (h->at) {
+            CALL(spar_fluid_push_forces_at, h->fluid[k], 1, force, m);
+        } else {
+            CALL(spar_fluid_push_forces, h->fluid[k], force, m);
+        }
+    }
+    (void)alloc_arm(was);
+    return 0;
+}
+
+static int before_step(spar_session *s, double t, double dt, void *context) {
+    (void)s, (void)t, (void)dt, (void)context;
+    return 0;
+}
+
+/* Nothing in a step takes memory, from the third on: the first two may find what predictors and accelerators keep. */
+static void expect_none(const host *h, int64_t before) {
+    if (h->steps > 2 && !run.injecting && alloc_counted() != before) {
+        scenario_complain("a step", "takes memory");
+    }
+}
+
+static void go(host *h, int steps) {
+    for (int i = 0; i < steps; i++) {
+        int iterations = 0;
+        int64_t before = alloc_counted();
+        CALL(spar_step, h->session, 0.02, solve, h, &iterations);
+        h->steps++;
+        expect_none(h, before);
+        note(&iterations, sizeof iterations);
+    }
+    for (int k = 0; k < h->members; k++) {
+        note_member(h->member[k]);
+    }
+}
+
+/* ---- acts ---- */
+
+static void settings(spar_session *s) {
+    static const double g[3] = {0, 0, -2};
+    static const char *const option[][2] = {{"coupling.unconverged", "accept"},
+                                            {"coupling.columns", "10"},
+                                            {"coupling.reuse", "2"},
+                                            {"coupling.filter", "1e-5"},
+                                            {"coupling.target", "0.02"},
+                                            {"coupling.motion_rtol", "1e-3"},
+                                            {"fluid.theta", "group"},
+                                            {"fluid.far", "take"},
+                                            {"fluid.audit", "on"},
+                                            {"advise.horizon", "0"},
+                                            {"advise.coupling", "vary"}};
+    CALL(spar_session_set_gravity, s, g);
+    CALL(spar_session_set_integrator, s, 0.8, 1);
+    CALL(spar_session_set_newton, s, 1e-10, 1e-9, 30);
+    CALL(spar_session_set_predictor, s, 2);
+    CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 40);
+    CALL(spar_session_set_relaxation, s, 0.9);
+    if (run.ranks == 1) {
+        CALL(spar_session_set_reproducible, s, 1);
+    }
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        CALL(spar_session_set_option, s, option[i][0], option[i][1]);
+    }
+}
+
+/* All that can be said of members, and asked after commit. */
+static void act_describe(void) {
+    static const double place[3] = {0, 1, 0}, v0[3] = {0.1, 0, 0}, omega[3] = {0, 0, 0.2}, centre[3] = {0.1, 0, 0},
+                        J[3] = {1, 2, 3};
+    double nodes[4][3] = {{0}}, mass[36], x[3 * MANY], q[4 * MANY], energy[4];
+    spar_session *s = begin_session();
+    settings(s);
+    spar_member *b = begin_beam(s, "beam", 2, 5, 0), *given = begin_beam(s, "given", 1, 4, 1), *body = NULL,
+                *point = NULL;
+    CALL(spar_beam_set_quadrature, b, SPAR_QUADRATURE_SECTIONS, 4);
+    CALL(spar_member_set_placement, b, place, unit_q);
+    CALL(spar_member_set_velocity, b, place, v0, omega);
+    CALL(spar_member_set_root, b, SPAR_ROOT_FREE);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION);
+    CALL(spar_member_commit, b);
+    for (int i = 0; i < 4; i++) {
+        nodes[i][0] = 10.0 * i / 3;
+    }
+    CALL(spar_beam_set_nodes, given, 4, nodes[0], NULL);
+    CALL(spar_member_set_external, given, 1);
+    CALL(spar_member_commit, given);
+    scene_mass(mass, 3, centre, J);
+    CALL(spar_rigid_create, s, "body", place, unit_q, mass, &body);
+    CALL(spar_member_commit, body);
+    CALL(spar_point_create, s, "point", origin, unit_q, &point);
+    CALL(spar_member_commit, point);
+    memset(q, 0, sizeof q), memset(x, 0, sizeof x);
+    q[3] = 1;
+    CALL(spar_member_set_motion, point, q, x, x);
+    CALL(spar_member_get_reference, b, x, q);
+    note(x, 30 * sizeof *x);
+    CALL(spar_member_get_energy, b, energy);
+    NOTE(energy);
+    note_member(b);
+    PLAIN_0(spar_version);
+    PLAIN(spar_has, "mpi");
+    PLAIN(spar_status_text, 3);
+    PLAIN(spar_session_message, s);
+    PLAIN(spar_effect_name, 3);
+    end_session(&s);
+}
+
+static void quiet(const spar_session *s, int level, const char *text, void *context) {
+    (void)s, (void)level, (void)text, (void)context;
+}
+
+/* An exact beam with all its loads under the calls of one step, and what a step can be asked. */
+static void act_step(void) {
+    host h = {.fluids = 1, .members = 1, .at = 1};
+    double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
+           report[SPAR_REPORT_COUNT], audit[8], all[6 * MANY], strain[12], force[12];
+    static const double eta[2] = {0.2, 0.9};
+    int64_t step;
+    int done = 0, iteration;
+    spar_session *s = h.session = begin_session();
+    settings(s);
+    CALL(spar_session_set_log, s, quiet, NULL);
+    spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
+    CALL(spar_member_set_root, b, SPAR_ROOT_DRIVEN);
+    CALL(spar_member_commit, b);
+    h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
+    CALL(spar_fluid_map, h.fluid[0]);
+    CALL(spar_member_add_load, b, 5, load);
+    CALL(spar_member_add_follower, b, 4, load);
+    CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_DEAD);
+    CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_FOLLOWER);
+    CALL(spar_member_get_work, b, work);
+    for (int i = 1; i <= 5; i++) {
+        double turn = 0.02 * i, q[7] = {0, 0, 0, cos(0.5 * turn), sin(0.5 * turn), 0, 0}, v[6] = {0, 0, 0, 1},
+               a[6] = {0};
+        CALL(spar_member_drive_root, b, q, v, a);
+        int64_t before = alloc_counted();
+        CALL(spar_step_begin, s, 0.02);
+        done = 0;
+        for (int k = 0; !done && k < 60; k++) {
+            CALL(spar_step_solve, s);
+            (void)solve(s, 0.02 * i, 0.02, k, &h);
+            CALL(spar_step_check, s, &done);
+        }
+        if (i == 2) {
+            CALL(spar_step_reject, s);
+        } else {
+            CALL(spar_step_accept, s);
+        }
+        h.steps++;
+        expect_none(&h, before);
+        note_member(b);
+    }
+    CALL(spar_session_get_coupling, s, &iteration, residual, size, report);
+    NOTE(report);
+    CALL(spar_session_get_time, s, &t, &step, &iteration);
+    CALL(spar_fluid_get_audit, h.fluid[0], audit);
+    NOTE(audit);
+    CALL(spar_member_get_loads, b, all);
+    note(all, 36 * sizeof *all);
+    CALL(spar_member_get_work, b, work);
+    NOTE(work);
+    CALL(spar_beam_get_section, b, 2, eta, strain, force, NULL, NULL);
+    NOTE(force);
+    end_session(&s);
+}
+
+/* Members below the exact ones, some driven, with loads that they carry to their root, and the other couplings. */
+static void act_rungs(void) {
+    static const struct {
+        int kind, modes, root, elements, nodes;
+    } what[4] = {{SPAR_FIDELITY_RIGID, 0, SPAR_ROOT_FREE, 2, 3},
+                 {SPAR_FIDELITY_LINEAR, 0, SPAR_ROOT_DRIVEN, 2, 4},
+                 {SPAR_FIDELITY_MODAL, 4, SPAR_ROOT_FIXED, 1, 5},
+                 {SPAR_FIDELITY_PRESCRIBED, 0, SPAR_ROOT_DRIVEN, 1, 3}};
+    static const char *const name[4] = {"rigid", "linear", "modal", "prescribed"};
+    host h = {.fluids = 4, .members = 4};
+    double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3];
+    spar_session *s = h.session = begin_session();
+    CALL(spar_session_set_coupling, s, SPAR_COUPLING_AITKEN, 1e-9, 1e-7, 40);
+    for (int k = 0; k < 4; k++) {
+        spar_member *m = h.member[k] = begin_beam(s, name[k], what[k].elements, what[k].nodes, k);
+        CALL(spar_member_set_root, m, what[k].root);
+        CALL(spar_member_set_fidelity, m, what[k].kind, what[k].modes);
+        CALL(spar_member_commit, m);
+        h.fluid[k] = begin_fluid(m, name[k], 10, &h.n[k], h.x[k]);
+        CALL(spar_fluid_map, h.fluid[k]);
+        if (k != 3) {
+            CALL(spar_member_get_work, m, work);
+        }
+        CALL(spar_member_add_load, m, 1, load);
+        if (k == 0) {
+            CALL(spar_member_add_follower, m, 1, load);
+        }
+    }
+    go(&h, 4);
+    CALL(spar_member_get_modes, h.member[2], 3, frequency, shapes);
+    NOTE(frequency);
+    if (run.ranks == 1) {
+        CALL(spar_member_get_modes, h.member[0], 2, frequency, shapes);
+    }
+    end_session(&s);
+}
+
+/* A fluid of every kind, and all that can be pulled and pushed. */
+static void act_fluids(void) {
+    host h = {.fluids = 1, .members = 1};
+    double xi[5] = {-1, -0.5, 0, 0.5, 1}, out[16 * NODES], q[4 * NODES], w[3 * NODES], audit[8];
+    float x32[3 * NODES], v32[3 * NODES], q32[4 * NODES];
+    int flags[NODES];
+    int64_t count, first[NODES];
+    spar_fluid *sections = NULL;
+    spar_session *s = h.session = begin_session();
+    spar_member *b = h.member[0] = begin_beam(s, "beam", 2, 3, 0);
+    CALL(spar_member_set_effects, b, 4 * SPAR_EFFECT_FLUID_MOMENT - 1);
+    CALL(spar_member_commit, b);
+    spar_fluid *f = h.fluid[0] = begin_fluid(b, "loose", 10, &h.n[0], h.x[0]);
+    int64_t n = h.n[0];
+    CALL(spar_fluid_set_projection, f, SPAR_PROJECT_RPOLY, 1.0);
+    CALL(spar_fluid_set_interpolation, f, SPAR_INTERPOLATE_CONSISTENT);
+    CALL(spar_fluid_map, f);
+    CALL(spar_fluid_create, b, "sections", &sections);
+    CALL(spar_fluid_set_sections, sections, 5, xi, NULL);
+    CALL(spar_fluid_map, sections);
+    CALL(spar_fluid_get_count, f, SPAR_NODES_FORCE, &count);
+    CALL(spar_fluid_get_flag_count, f, SPAR_NODES_FORCE, SPAR_MAP_END, &count);
+    CALL(spar_fluid_get_map, f, SPAR_NODES_MOTION, out, w, flags);
+    CALL(spar_fluid_get_feet, f, SPAR_NODES_MOTION, out, q, w);
+    if (n > 0) {
+        CALL(spar_fluid_get_basis, sections, SPAR_NODES_FORCE, first, out);
+    }
+    go(&h, 1);
+    CALL(spar_fluid_pull_sections, sections, 1, q, w, NULL);
+    CALL(spar_fluid_pull_sections, sections, 0.5, q, w, out);
+    CALL(spar_fluid_pull_poses, sections, 1, out, q, w, w, w, w);
+    CALL(spar_fluid_pull_matrices, sections, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
+    CALL(spar_fluid_check_matrices, sections, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
+    CALL(spar_fluid_pull_motion_f32, f, 1, n ? x32 : NULL, n ? v32 : NULL);
+    CALL(spar_fluid_pull_sections_f32, sections, 1, q32, x32, v32);
+    for (int i = 0; i < 3 * NODES; i++) {
+        w[i] = 0.01 * i;
+        x32[i] = 0.25F * (float)i;
+    }
+    CALL(spar_step_begin, s, 0.02);
+    CALL(spar_step_solve, s);
+    (void)solve(s, 0, 0.02, 0, &h);
+    CALL(spar_fluid_push_forces, sections, w, NULL);
+    CALL(spar_fluid_push_forces_f32, sections, x32, NULL);
+    CALL(spar_fluid_pull_forces, f, 1, n ? out : NULL);
+    note(out, (size_t)(3 * n) * sizeof *out);
+    CALL(spar_fluid_pull_forces_f32, f, 1, n ? x32 : NULL);
+    CALL(spar_fluid_get_audit, sections, audit);
+    CALL(spar_step_reject, s);
+    go(&h, 2);
+    CALL(spar_fluid_set_sections, sections, 3, xi, NULL); /* mapped again */
+    CALL(spar_fluid_map, sections);
+    h.steps = 0;
+    go(&h, 1);
+    PLAIN(spar_fluid_destroy, &sections);
+    go(&h, 1);
+    end_session(&s);
+}
+
+/* Statics, modes and the damping from them. */
+static void act_static(void) {
+    double load[6] = {0, 0, 5}, frequency[4], mu[6], shapes[4 * 6 * 9];
+    static const int64_t mode[2] = {0, 1};
+    static const double ratio[2] = {0.005, 0.006}, g[3] = {0, 0, -1}, still[6];
+    spar_session *s = begin_session();
+    CALL(spar_session_set_gravity, s, g);
+    for (int k = 0; k < 2; k++) {
+        spar_member *b = begin_beam(s, k ? "two" : "one", k + 1, 4, k);
+        CALL(spar_member_set_root, b, k ? SPAR_ROOT_DRIVEN : SPAR_ROOT_FIXED);
+        CALL(spar_member_commit, b);
+        CALL(spar_beam_set_modal_damping, b, mode, ratio, mu);
+        NOTE(mu);
+        CALL(spar_member_add_load, b, 3, load);
+        if (k == 1) {
+            double turned[7] = {0, 0, 0, 1}, rate[6] = {0, 0, 0, 0.5};
+            CALL(spar_member_drive_root, b, turned, rate, still);
+        }
+        CALL(spar_member_solve_static, b, 2);
+        note_member(b);
+        CALL(spar_member_get_modes, b, 4, frequency, shapes);
+        NOTE(frequency);
+    }
+    end_session(&s);
+}
+
+static void describe_saved(host *h) {
+    double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}};
+    static const double eta[2] = {0.2, 0.9};
+    spar_session *s = h->session = begin_session();
+    h->members = h->fluids = 2;
+    CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 40);
+    for (int k = 0; k < 2; k++) {
+        spar_member *b = h->member[k] = begin_beam(s, k ? "modal" : "exact", 1 + k, 4, k);
+        if (k == 1) {
+            CALL(spar_member_set_fidelity, b, SPAR_FIDELITY_MODAL, 3);
+        }
+        CALL(spar_member_set_root, b, SPAR_ROOT_FIXED);
+        CALL(spar_member_commit, b);
+        h->fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h->n[k], h->x[k]);
+        CALL(spar_fluid_map, h->fluid[k]);
+        CALL(spar_member_add_follower, b, 2, load);
+        CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_FOLLOWER);
+    }
+}
+
+static void act_save(void) {
+    char path[400];
+    host h = {0}, other = {0};
+    (void)snprintf(path, sizeof path, "%s/state", run.folder);
+    describe_saved(&h);
+    go(&h, 2);
+    CALL(spar_session_save, h.session, path);
+    go(&h, 1);
+    end_session(&h.session);
+    describe_saved(&other);
+    CALL(spar_session_load, other.session, path);
+    go(&other, 1);
+    end_session(&other.session);
+}
+
+static void act_output(void) {
+    char path[400];
+    host h = {0};
+    describe_saved(&h);
+    go(&h, 1);
+    for (int k = 0; k < 2; k++) {
+        (void)snprintf(path, sizeof path, "%s/member%d_%d.vtp", run.folder, k, run.rank);
+        CALL(spar_member_write_vtk, h.member[k], path);
+        (void)snprintf(path, sizeof path, "%s/fluid%d_%d.vtu", run.folder, k, run.rank);
+        CALL(spar_fluid_write_vtk, h.fluid[k], path);
+        (void)snprintf(path, sizeof path, "%s/series_%d.pvd", run.folder, run.rank);
+        CALL(spar_vtk_series_add, path, 0.1 * k, k, "member.vtp");
+    }
+    end_session(&h.session);
+}
+
+/* Two members, one of them below the exact ones; loads along the line; fluids of both kinds. */
+static void describe_trial(host *h) {
+    double load[6] = {0, 1, 2};
+    spar_session *s = h->session = begin_session();
+    h->members = h->fluids = 2;
+    CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-8, 1e-4, 40);
+    for (int k = 0; k < 2; k++) {
+        spar_member *b = h->member[k] = begin_beam(s, k ? "rigid" : "exact", 1, 3, k);
+        if (k == 1) {
+            CALL(spar_member_set_fidelity, b, SPAR_FIDELITY_RIGID, 0);
+        }
+        CALL(spar_member_set_root, b, SPAR_ROOT_PINNED);
+        CALL(spar_member_commit, b);
+        h->fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h->n[k], h->x[k]);
+        CALL(spar_fluid_map, h->fluid[k]);
+        CALL(spar_member_add_follower, b, 2, load);
+    }
+}
+
+static void act_try(void) {
+    host h = {0};
+    double report[SPAR_TRY_COUNT];
+    describe_trial(&h);
+    go(&h, 1);
+    for (int compare = 0; compare < 2; compare++) {
+        CALL(spar_session_try, h.session, 0.02, 8, before_step, solve, &h, compare, report);
+        note(report, 3 * sizeof *report);
+    }
+    go(&h, 1);
+    end_session(&h.session);
+}
+
+static void act_effects(void) {
+    host h = {0};
+    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    describe_trial(&h);
+    CALL(spar_session_report_effects, h.session, 0.02, 8, before_step, solve, &h, table);
+    go(&h, 1);
+    end_session(&h.session);
+}
+
+static void act_advise(void) {
+    host h = {0};
+    double advice[SPAR_ADVICE_COUNT];
+    int fidelity, nodes, points;
+    int64_t modes;
+    describe_trial(&h);
+    CALL(spar_session_set_option, h.session, "advise.dt", "keep");
+    CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
+    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, before_step, solve, &h, advice);
+    CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
+    go(&h, 1);
+    end_session(&h.session);
+}
+
+static void act_beamdyn(void) {
+    static const char *const file[2][2] = {
+        {SPAR_SOURCE_DIR "/tests/data/bend_primary.inp", NULL},
+        {SPAR_SOURCE_DIR "/tests/data/blade_primary.inp", SPAR_SOURCE_DIR "/tests/data/blade_blade.inp"}};
+    spar_session *s = begin_session();
+    for (int k = 0; k < 2; k++) {
+        spar_member *b = NULL;
+        double q[4 * MANY], x[3 * MANY];
+        CALL(spar_beam_create, s, k ? "blade" : "bend", k + 1, 5, &b);
+        CALL(spar_beam_read_beamdyn, b, file[k][0], file[k][1]);
+        CALL(spar_member_commit, b);
+        CALL(spar_member_get_reference, b, x, q);
+        note(x, 15 * sizeof *x);
+    }
+    end_session(&s);
+}
+
+typedef struct wind {
+    spar_aero *aero;
+    double inflow[5][3];
+} wind;
+
+static int blow(spar_session *s, double t, double dt, int iteration, void *context) {
+    wind *w = context;
+    int was = alloc_arm(0);
+    (void)s, (void)t, (void)dt, (void)iteration;
+    CALL(spar_aero_solve, w->aero, 1.225, w->inflow[0], 1);
+    (void)alloc_arm(was);
+    return 0;
+}
+
+/* One blade of a rotor, by blade elements; the fluid lives on rank 0. */
+static void act_aero(void) {
+    enum { N = 5 };
+    static const double pi = 3.14159265358979323846, hub[3], axis[3] = {0, 1, 0};
+    double alpha[7], cl[7], cd[7], cm[7], xi[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power,
+        table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
+    int flags[N];
+    int64_t none;
+    int here = run.rank == 0;
+    wind w = {0};
+    spar_polar *polar = NULL;
+    spar_fluid *f = NULL;
+    spar_session *s = begin_session();
+    spar_member *blade = begin_beam(s, "blade", 1, 4, 0);
+    CALL(spar_member_commit, blade);
+    CALL(spar_fluid_create, blade, "air", &f);
+    for (int i = 0; i < N; i++) {
+        xi[i] = -0.9 + 1.8 * i / (N - 1);
+        w.inflow[i][1] = 10;
+    }
+    for (int i = 0; i < 7; i++) {
+        alpha[i] = -pi + i * pi / 3;
+        cl[i] = i == 6 ? sin(2 * alpha[0]) : sin(2 * alpha[i]), cd[i] = 0.02, cm[i] = -0.01;
+    }
+    CALL(spar_fluid_set_sections, f, here ? N : 0, here ? xi : NULL, NULL);
+    CALL(spar_fluid_map, f);
+    if (here) {
+        CALL(spar_polar_create, 7, alpha, cl, cd, cm, &polar);
+        CALL(spar_polar_set_interpolation, polar, SPAR_POLAR_CUBIC);
+        CALL(spar_polar_set_interpolation, polar, SPAR_POLAR_AKIMA);
+        CALL(spar_polar_evaluate, polar, 0.1, a, b, c);
+        CALL(spar_aero_create, 1, &f, &w.aero);
+        for (int i = 0; i < N; i++) {
+            CALL(spar_aero_set_section, w.aero, i, 0.2, 0.1, polar);
+        }
+        CALL(spar_aero_set_rotor, w.aero, hub, axis, 0.5, 11);
+        CALL(spar_aero_set_turn, w.aero, 1);
+        CALL(spar_aero_set_blades, w.aero, 3);
+        CALL(spar_aero_set_effects, w.aero, 2 * SPAR_AERO_MOMENT - 1);
+        CALL(spar_aero_solve, w.aero, 1.225, w.inflow[0], 1);
+        CALL(spar_aero_get_rotor, w.aero, &thrust, &torque, &power);
+        note(&thrust, sizeof thrust);
+        CALL(spar_aero_get_sections, w.aero, a, b, c, NULL, NULL);
+        NOTE(a);
+        CALL(spar_aero_get_flags, w.aero, flags, &none);
+        CALL(spar_aero_get_loads, w.aero, NULL, force, NULL);
+        NOTE(force);
+        PLAIN(spar_aero_effect_name, 0);
+        if (run.ranks == 1) {
+            CALL(spar_aero_report_effects, w.aero, s, 0.01, 8, NULL, blow, &w, table);
+            CALL(spar_step, s, 0.01, blow, &w, NULL);
+            note_member(blade);
+        }
+        PLAIN(spar_aero_destroy, &w.aero);
+        PLAIN(spar_polar_destroy, &polar);
+    }
+    end_session(&s);
+}
+
+const act acts[] = {{"describe", act_describe, 1}, {"step", act_step, 1},     {"rungs", act_rungs, 1},
+                    {"fluids", act_fluids, 1},     {"static", act_static, 1}, {"save", act_save, 1},
+                    {"output", act_output, 1},     {"try", act_try, 1},       {"effects", act_effects, 1},
+                    {"beamdyn", act_beamdyn, 1},   {"aero", act_aero, 1},     {"advise", act_advise, 0}};
+const int act_count = (int)(sizeof acts / sizeof *acts);
