@@ -61,8 +61,18 @@ int spari_fluid_save(const spar_fluid *fluid, double *state) {
     return SPAR_OK;
 }
 
+static int is_count(double x) {
+    return x >= 0 && x < 1e15 && x == floor(x);
+}
+
 int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
-    return count >= S_HEAD && state[S_NODES] >= 0 && state[S_NODES] < 1e15 && count == state_size(fluid, state);
+    return count >= S_HEAD && is_count(state[S_NODES]) && is_count(state[S_PUSHES]) &&
+           count == state_size(fluid, state);
+}
+
+/* Of a state; 0 where their forces are not in it. */
+static int64_t kept_nodes(const double *state) {
+    return state[S_KEPT] != 0 ? (int64_t)state[S_NODES] : 0;
 }
 
 /* Where the places of a state begin. */
@@ -93,7 +103,7 @@ static const double **find_nodes(const spar_fluid *fluid, int count, const doubl
                                  int64_t n) {
     int64_t total = 0, at = 0;
     for (int k = 0; k < count; k++) {
-        total += (int64_t)states[k][S_NODES];
+        total += kept_nodes(states[k]);
     }
     const double **sorted = spari_zalloc(total, sizeof *sorted), **found = spari_zalloc(n, sizeof *found);
     if (!sorted || !found) {
@@ -103,7 +113,7 @@ static const double **find_nodes(const spar_fluid *fluid, int count, const doubl
     }
     for (int k = 0; k < count; k++) {
         const double *x = state_places(fluid, states[k]);
-        for (int64_t i = 0; i < (int64_t)states[k][S_NODES]; i++) {
+        for (int64_t i = 0; i < kept_nodes(states[k]); i++) {
             sorted[at++] = x + 3 * i;
         }
     }
@@ -134,7 +144,7 @@ static int take_forces(const spar_fluid *fluid, int count, const double *const *
         missing = !found[i] && missing < 0 ? i : missing;
         for (int k = 0; k < count && found[i] && copy; k++) {
             const double *x = state_places(fluid, states[k]);
-            n = found[i] >= x && found[i] < x + 3 * (int64_t)states[k][S_NODES] ? (int64_t)states[k][S_NODES] : n;
+            n = found[i] >= x && found[i] < x + 3 * kept_nodes(states[k]) ? kept_nodes(states[k]) : n;
         }
         for (int k = 0; k < 4 && h; k++) {
             double *to = k == 0 ? h->after : h->past[k - 1];
@@ -218,7 +228,7 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
         }
         kept |= states[k][S_KEPT] != 0;
         memcpy(fluid->audit, states[k] + S_AUDIT, sizeof fluid->audit);
-        int gives = takes_loads && states[k][S_MAPPED] != 0;
+        int gives = takes_loads && fluid->load && states[k][S_MAPPED] != 0;
         for (size_t i = 0; gives && i < loads; i++) { /* the first as it is: 0 + -0 is not -0 */
             fluid->load[i] = taken ? fluid->load[i] + load[i] : load[i];
             fluid->load_accepted[i] = taken ? fluid->load_accepted[i] + load[loads + i] : load[loads + i];

@@ -371,7 +371,8 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
 void spari_applied_check(spar_member *m, spari_image *image) {
     spari_applied_free(m->applied_next);
     m->applied_next = NULL;
-    if (spari_image_get_int(image) == 0 || image->failed) {
+    int64_t count = spari_image_get_int(image), begin = image->at;
+    if (count == 0 || image->failed) {
         return;
     }
     spari_applied *a = m->applied_next = applied_create(m);
@@ -383,6 +384,7 @@ void spari_applied_check(spar_member *m, spari_image *image) {
     for (int k = 0; k < 2 && !image->failed; k++) {
         take_line(m, image, &a->line[k]);
     }
+    image->failed |= image->at - begin != count; /* by which it is passed over later */
 }
 
 void spari_applied_load(spar_member *m, spari_image *image) {

@@ -2,6 +2,7 @@
 
 #include "status.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -476,8 +477,33 @@ static int whole_below(double x, double end) {
     return x >= 0 && x < end && x == floor(x);
 }
 
+static int is_count(double x) {
+    return whole_below(x, 1e15);
+}
+
+/* Columns in slots of their own, not more of this step nor of older ones than there can be. */
+static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
+    int64_t width = COLUMN_HEAD + 2 * a->n, of_step = 0;
+    for (int64_t k = 0; k < occupied; k++) {
+        const double *c = first + k * width;
+        int now = c[2] == step;
+        of_step += now;
+        if (!whole_below(c[0], a->slots) || !(c[1] == LIVE || (!now && (c[1] == RESTING || c[1] == DROPPED))) ||
+            !whole_below(c[2], step + 1) || !is_count(c[3])) {
+            return 0;
+        }
+        for (const double *other = first; other != c; other += width) {
+            if (other[0] == c[0]) {
+                return 0;
+            }
+        }
+    }
+    return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
+}
+
 int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count) {
-    if (count < HEAD || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
+    if (count < HEAD || !is_count(state[1]) || !is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
+        !whole_below(state[4], INT_MAX) || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
         !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
         return 0;
     }
@@ -485,11 +511,8 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
     if (count != HEAD + 2 * a->n + occupied * (COLUMN_HEAD + 2 * a->n) + used) {
         return 0;
     }
-    for (int64_t k = 0; k < occupied; k++) {
-        const double *c = state + HEAD + 2 * a->n + k * (COLUMN_HEAD + 2 * a->n);
-        if (!whole_below(c[0], a->slots) || !(c[1] == LIVE || c[1] == RESTING || c[1] == DROPPED)) {
-            return 0;
-        }
+    if (!are_columns(a, state + HEAD + 2 * a->n, occupied, state[1])) {
+        return 0;
     }
     for (int64_t j = count - used; j < count; j++) {
         if (!whole_below(state[j], a->slots)) {

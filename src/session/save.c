@@ -11,6 +11,7 @@
 #include "../member/rung.h"
 #include "../solve/solver.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,6 +74,17 @@ static void pass_kept(stream *t, double *words, int64_t n) {
     }
 }
 
+/* Of a motion that is only checked: numbers, and rotations where they are. */
+static void check_motion(stream *t, const double *words, int width, int64_t n) {
+    int ok = words && spari_first_nonfinite(words, width * n) < 0;
+    for (int64_t i = 0; i < n && ok && width == 7; i++) {
+        const double *q = words + 7 * i + 3;
+        double size = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        ok = size > 0.5 && size < 2;
+    }
+    t->image->failed |= !ok;
+}
+
 static void pass_member(stream *t, spar_member *m) {
     int64_t n = m->nodes;
     double *motions[] = {m->now.q, m->now.v, m->now.a, m->after.q, m->after.v, m->after.a};
@@ -87,7 +99,11 @@ static void pass_member(stream *t, spar_member *m) {
                        m->load_solved[0],
                        m->load_solved[1]};
     for (int k = 0; k < 6; k++) {
+        const double *there = (const double *)(const void *)(t->image->word + t->image->at);
         pass(t, motions[k], width[k] * n);
+        if (t->mode == CHECK) {
+            check_motion(t, t->image->failed ? NULL : there, width[k], n);
+        }
     }
     for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
         pass_kept(t, loads[k], 6 * n);
@@ -336,6 +352,7 @@ typedef struct record {
 typedef struct loading {
     spari_image image;
     int64_t common;        /* where the clock begins */
+    int phase;             /* where the step stood */
     int ranks;             /* of the saved run */
     const double **solver; /* [members] state of each solver here; NULL: not here */
     record *records;       /* fluids of all ranks */
@@ -379,11 +396,39 @@ static int check_description(spar_session *s, loading *l) {
     return l->image.failed || l->ranks < 1 ? broken(s) : SPAR_OK;
 }
 
+/* Where the next count words end, if there are as many. */
+static int find_end(const spari_image *image, int64_t count, int64_t *end) {
+    int there = !image->failed && count >= 0 && count <= image->count - image->at;
+    *end = there ? image->at + count : image->at;
+    return there;
+}
+
+/* A clock that can go on, read into a copy of the session. */
+static int check_clock(spar_session *s, loading *l) {
+    stream t = {&l->image, READ};
+    spar_session then = *s;
+    pass_clock(&t, &then);
+    int phase = (int)then.phase, within = phase > SPARI_IDLE,
+        ok = !l->image.failed && isfinite(then.time) && then.step >= 0 && then.iteration >= 0 && phase >= SPARI_IDLE &&
+             phase <= SPARI_CHECKED && then.order >= 0 && then.order <= 2 && then.past >= 0 &&
+             then.past <= then.predictor && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
+             then.started == (within || then.step > 0);
+    for (int k = 0; k < 2; k++) { /* what a prediction divides by */
+        int used = then.past > k || (within && then.order > k);
+        ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
+    }
+    l->phase = phase;
+    return ok ? SPAR_OK : broken(s);
+}
+
 /* What of the coupling fits the settings in force, in memory of its own. */
-static int check_coupling(spar_session *s, loading *l, int phase) {
-    int64_t count = spari_image_get_int(&l->image), end = l->image.at + count;
-    if (count == 0) {
+static int check_coupling(spar_session *s, loading *l) {
+    int64_t count = spari_image_get_int(&l->image), end;
+    if (count == 0 && !l->image.failed) {
         return SPAR_OK;
+    }
+    if (!find_end(&l->image, count, &end)) {
+        return broken(s);
     }
     double settings[SPARI_COUPLING_SETTINGS];
     const uint64_t *saved = spari_image_get(&l->image, SPARI_COUPLING_SETTINGS);
@@ -404,7 +449,7 @@ static int check_coupling(spar_session *s, loading *l, int phase) {
         return l->image.failed || l->image.at != end ? broken(s) : SPAR_OK;
     }
     SPARI_REQUIRE(
-        s, phase == SPARI_IDLE, SPAR_ERR_STATE,
+        s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
         "spar_session_load: the file is from the middle of a step and the coupling is set otherwise here; make "
         "the same settings first (they may be changed when the step is accepted)");
     l->image.at = end;
@@ -458,7 +503,10 @@ static int check_own(spar_session *s, loading *l) {
         return no_memory(s, "spar_session_load");
     }
     for (int rank = 0; rank < l->ranks; rank++) {
-        int64_t end = spari_image_get_int(&l->image) + l->image.at;
+        int64_t count = spari_image_get_int(&l->image), end;
+        if (!find_end(&l->image, count, &end)) {
+            return broken(s);
+        }
         SPARI_TRY(check_solvers(s, l));
         SPARI_TRY(check_fluids(s, l, rank));
         if (l->image.at != end) {
@@ -478,18 +526,17 @@ static int check_image(spar_session *s, loading *l) {
     stream t = {&l->image, CHECK};
     SPARI_TRY(check_description(s, l));
     l->common = l->image.at;
-    pass_clock(&t, s);
-    if (l->image.failed) {
-        return broken(s);
-    }
-    int phase = (int)l->image.word[l->image.at - 1];
+    SPARI_TRY(check_clock(s, l));
     for (spar_member *m = s->members; m; m = m->next) {
         pass_member(&t, m);
         if (l->image.no_memory) {
             return no_memory(s, "spar_session_load");
         }
     }
-    SPARI_TRY(check_coupling(s, l, phase));
+    if (l->image.failed) {
+        return broken(s);
+    }
+    SPARI_TRY(check_coupling(s, l));
     return check_own(s, l);
 }
 

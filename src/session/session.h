@@ -53,6 +53,7 @@ struct spar_session {
     int started;        /* the clock has run */
     int failed;         /* the last check of the step under way failed */
     int trial;          /* a trial run is under way (trial.h) */
+    int parted;         /* the ranks were found to be at different things: nothing more is to be agreed on */
     spari_record *kept; /* of a trial that others are compared with; NULL: none */
     double *pack;       /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
     int64_t pack_count;
@@ -60,7 +61,6 @@ struct spar_session {
     spari_coupling *coupling; /* from the first step on */
     int coupling_stale;       /* settings have changed since it was made */
     double *motion;           /* several ranks: motion of all solved members, by owner */
-    int parted;               /* the ranks were found to be at different things: nothing more is to be agreed on */
 };
 
 /* Entry of a collective call: agrees on a status and on what is called. */
