@@ -4,7 +4,7 @@
 
 #include "aero/element.h"
 #include "math/rotation.h"
-#include "session/status.h"
+#include "base/scene.h"
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846

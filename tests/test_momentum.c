@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "aero/momentum.h"
-#include "session/status.h"
+#include "base/scene.h"
 #include <cmocka.h>
 #include <gsl/gsl_integration.h>
 

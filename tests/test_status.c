@@ -1,6 +1,6 @@
 /* Status codes, texts and messages; the check for non-finite numbers; GSL's error handler. The expected values are the
    interface itself (codes are fixed for ever) and the C standard's arithmetic. */
-#include "session/session.h"
+#include "base/scene.h"
 
 #include <cmocka.h>
 #include <gsl/gsl_errno.h>

@@ -1,5 +1,5 @@
 #include "polar.h"
-#include "../session/status.h"
+#include "../base/scene.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>

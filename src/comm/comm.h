@@ -4,7 +4,7 @@
 #ifndef SPARI_COMM_H
 #define SPARI_COMM_H
 
-#include "../session/status.h"
+#include "../base/status.h"
 
 typedef struct spari_comm spari_comm;
 

@@ -1,8 +1,8 @@
 #include "projection.h"
 
+#include "../base/status.h"
 #include "../math/roots.h"
 #include "../math/rotation.h"
-#include "../session/status.h"
 #include "transfer.h"
 #include <float.h>
 #include <math.h>

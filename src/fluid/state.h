@@ -3,7 +3,7 @@
 #ifndef SPARI_FLUID_STATE_H
 #define SPARI_FLUID_STATE_H
 
-#include "../session/session.h"
+#include "../base/scene.h"
 #include "fluid.h"
 #include "transfer.h"
 

@@ -1,7 +1,7 @@
 #include "transfer.h"
 
+#include "../base/status.h"
 #include "../math/rotation.h"
-#include "../session/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef SPARI_PREDICTOR_H
 #define SPARI_PREDICTOR_H
 
-#include "../session/status.h"
+#include "../base/status.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef SPARI_APPLIED_H
 #define SPARI_APPLIED_H
 
-#include "../session/image.h"
+#include "../base/image.h"
 #include "member.h"
 
 /* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. For members with

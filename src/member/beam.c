@@ -1,8 +1,8 @@
 #include "beam.h"
 
+#include "../base/scene.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

@@ -1,8 +1,8 @@
 #include "body.h"
 
+#include "../base/status.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../session/status.h"
 
 #include <cblas.h>
 #include <stdlib.h>

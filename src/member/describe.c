@@ -1,6 +1,6 @@
 /* The description of a member before commit: creation, setters and what they refuse. */
+#include "../comm/comm.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "beam.h"
 #include "edge.h"
 

@@ -1,7 +1,9 @@
 #include "edge.h"
 
+#include "../comm/enter.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
+
+#include <stdio.h>
 
 int spari_need_member(const spar_member *member, const char *call) {
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
@@ -59,4 +61,10 @@ int spari_need_increasing(spar_session *session, const char *call, const char *n
                       eta[i]);
     }
     return SPAR_OK;
+}
+
+int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status) {
+    char what[SPARI_MESSAGE_SIZE / 2];
+    (void)snprintf(what, sizeof what, "%s: member '%s'", call, member->name);
+    return spari_enter_alike(member->session, what, alike, count, status);
 }

@@ -3,6 +3,7 @@
 #ifndef SPARI_EDGE_H
 #define SPARI_EDGE_H
 
+#include "../comm/comm.h"
 #include "member.h"
 
 int spari_need_member(const spar_member *member, const char *call);
@@ -11,6 +12,8 @@ int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
 /* A beam, not committed yet. */
 int spari_need_beam(spar_member *member, const char *call);
+/* Entry of a collective call on one member: as spari_enter_alike. */
+int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
 /* x[n] must be there and finite; `what` names it. */
 int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                       const double *x);

@@ -1,7 +1,7 @@
 #include "member.h"
 
+#include "../comm/comm.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "../solve/solver.h"
 #include "applied.h"
 #include "beam.h"

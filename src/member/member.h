@@ -3,7 +3,7 @@
 #ifndef SPARI_MEMBER_H
 #define SPARI_MEMBER_H
 
-#include "../session/status.h"
+#include "../base/scene.h"
 
 enum { SPARI_POINT, SPARI_RIGID, SPARI_BEAM };
 

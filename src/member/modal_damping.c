@@ -3,9 +3,9 @@
    groups: bending about y with shear z, bending about z with shear y, torsion with stretch; each of the two modes sets
    the mu of the group that holds most of its strain energy, the third group gets their geometric mean. */
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "../solve/solver.h"
 #include "beam.h"
+#include "edge.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,8 +5,8 @@
    sign changes; its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist turns
    about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
    joined by cubic splines, natural at their ends, over z. */
+#include "../base/scene.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "beam.h"
 #include "edge.h"
 

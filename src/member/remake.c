@@ -1,8 +1,8 @@
 #include "remake.h"
 
+#include "../base/scene.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "applied.h"
 #include "beam.h"
 #include "rung.h"

@@ -1,7 +1,7 @@
 #include "beam.h"
 
+#include "../base/scene.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 
 #include <stdlib.h>
 #include <string.h>

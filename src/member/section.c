@@ -1,7 +1,7 @@
 /* What a section of a beam feels: strains and section forces anywhere along the line, from the element's own field, as
    the quadrature points take them (body.c). */
+#include "../base/scene.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "beam.h"
 #include "rung.h"
 

@@ -1,7 +1,7 @@
 #include "work.h"
 
+#include "../base/scene.h"
 #include "../math/rotation.h"
-#include "../session/session.h"
 #include "applied.h"
 #include "edge.h"
 #include "rung.h"

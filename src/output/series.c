@@ -1,6 +1,6 @@
 /* The index of a series of VTK files (.pvd): what ParaView opens to show them in time. */
 #include "../base/file.h"
-#include "../session/status.h"
+#include "../base/scene.h"
 #include <errno.h>
 #include <spar/spar_output.h>
 #include <stdio.h>
@@ -78,8 +78,8 @@ int spar_vtk_series_add(const char *path, double time, int part, const char *fil
     if (!old && errno != ENOENT) {
         int reason = errno;
         spari_file_drop(&index);
-        return spari_fail(NULL, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: cannot read '%s': %s", call, path,
-                          reason == ENOMEM ? "no memory" : strerror(reason));
+        return spari_fail(NULL, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: cannot read '%s': %s", call,
+                          path, reason == ENOMEM ? "no memory" : strerror(reason));
     }
     int ok = put_index(old, index.stream, time, part, file);
     (void)(old && fclose(old));

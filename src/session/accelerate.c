@@ -1,6 +1,6 @@
 #include "accelerate.h"
 
-#include "status.h"
+#include "../base/status.h"
 
 #include <limits.h>
 #include <math.h>

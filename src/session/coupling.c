@@ -60,7 +60,7 @@ static int64_t count_unknowns(const spar_session *s) {
 }
 
 int spari_coupling_fits(const spar_session *s) {
-    const spari_coupling *c = s->coupling;
+    const spari_coupling *c = s->own->coupling;
     return c && !s->coupling_stale && c->members == s->member_count && c->n == count_unknowns(s);
 }
 
@@ -90,18 +90,18 @@ int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
 int spari_coupling_prepare(spar_session *s) {
     spari_coupling *c;
     SPARI_TRY(spari_coupling_create(s, &c));
-    if (s->coupling) {
-        c->report[SPAR_REPORT_UNCONVERGED] = s->coupling->report[SPAR_REPORT_UNCONVERGED];
+    if (s->own->coupling) {
+        c->report[SPAR_REPORT_UNCONVERGED] = s->own->coupling->report[SPAR_REPORT_UNCONVERGED];
     }
-    spari_coupling_free(&s->coupling);
-    s->coupling = c;
+    spari_coupling_free(&s->own->coupling);
+    s->own->coupling = c;
     return SPAR_OK;
 }
 
 /* ---- the stacked vector ---- */
 
 static void stack(const spar_session *s) {
-    const spari_coupling *c = s->coupling;
+    const spari_coupling *c = s->own->coupling;
     int64_t at = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
@@ -114,7 +114,7 @@ static void stack(const spar_session *s) {
 }
 
 static void unstack(const spar_session *s) {
-    const spari_coupling *c = s->coupling;
+    const spari_coupling *c = s->own->coupling;
     int64_t at = 0;
     int k = 0;
     for (spar_member *m = s->members; m; m = m->next, k++) {
@@ -131,7 +131,7 @@ static void load_norms(const spar_session *s, const double *from, double *change
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         const double *used = from ? from : m->load_used;
-        double per_length = 1 / s->coupling->length[k];
+        double per_length = 1 / s->own->coupling->length[k];
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * used[i];
             r2 += r * r;
@@ -156,7 +156,7 @@ static void travel(const double *from, const double *to, double d[6]) {
 
 /* How far the nodes are from where the iteration before had them, and from t^n, [m]; turns count times the length. */
 static void motion_norms(const spar_session *s) {
-    spari_coupling *c = s->coupling;
+    spari_coupling *c = s->own->coupling;
     double r2 = 0, d2 = 0, d[6], *last = c->motion;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
@@ -178,7 +178,7 @@ static void motion_norms(const spar_session *s) {
 /* ---- the step ---- */
 
 void spari_coupling_begin(spar_session *s) {
-    spari_coupling *c = s->coupling;
+    spari_coupling *c = s->own->coupling;
     c->iterations = 0;
     for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
         c->report[i] = 0;
@@ -203,7 +203,7 @@ static void record(spari_coupling *c, double residual, double size) {
 }
 
 static int not_converged(spar_session *s, double residual, double size) {
-    const spari_coupling *c = s->coupling;
+    const spari_coupling *c = s->own->coupling;
     char motion[80] = "";
     if (wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
@@ -217,7 +217,7 @@ static int not_converged(spar_session *s, double residual, double size) {
 }
 
 int spari_coupling_check(spar_session *s, int *done) {
-    spari_coupling *c = s->coupling;
+    spari_coupling *c = s->own->coupling;
     double residual, size;
     *done = 1;
     load_norms(s, NULL, &residual, &size);
@@ -254,7 +254,7 @@ int spari_coupling_check(spar_session *s, int *done) {
 
 /* The predicted loads against the final ones tell the error of the coupling; it goes with dt^(order + 1). */
 static void estimate_error(spar_session *s) {
-    spari_coupling *c = s->coupling;
+    spari_coupling *c = s->own->coupling;
     double change, size;
     load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
     double error = size > 0 ? change / size : 0;
@@ -285,7 +285,7 @@ static double work_defect(const spar_session *s, double *whole) {
    size of the work and grows from step to step. */
 static void watch(spar_session *s) {
     enum { GROWING_STEPS = 4 };
-    spari_coupling *c = s->coupling;
+    spari_coupling *c = s->own->coupling;
     double whole, defect = work_defect(s, &whole);
     c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
     c->defect = defect;
@@ -313,21 +313,21 @@ void spari_coupling_accept(spar_session *s) {
         estimate_error(s);
         watch(s);
     }
-    if (s->coupling->accelerator) {
-        spari_accelerator_accept(s->coupling->accelerator);
+    if (s->own->coupling->accelerator) {
+        spari_accelerator_accept(s->own->coupling->accelerator);
     }
 }
 
 void spari_coupling_reject(spar_session *s) {
-    if (s->coupling->accelerator) {
-        spari_accelerator_reject(s->coupling->accelerator);
+    if (s->own->coupling->accelerator) {
+        spari_accelerator_reject(s->own->coupling->accelerator);
     }
 }
 
 int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
                               double report[SPAR_REPORT_COUNT]) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
-    const spari_coupling *c = session->coupling;
+    const spari_coupling *c = session->own->coupling;
     int room = session->scheme == SPAR_COUPLING_EXPLICIT ? 1 : session->coupling_max; /* the host's arrays */
     int n = !c ? 0 : c->iterations < room ? c->iterations : room;
     if (iterations) {

@@ -23,7 +23,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     int status = spari_trial_check(s, call, &run);
     if (status == SPAR_OK && !report) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", call);
-    } else if (status == SPAR_OK && compare && (!s->kept || s->kept->members != s->member_count)) {
+    } else if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
         status = spari_fail(s, SPAR_ERR_STATE,
                             "%s: there is no run of these members to compare with; try with compare = 0 first", call);
     }
@@ -35,9 +35,9 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     }
     spari_wish_free(&wish);
     if (status == SPAR_OK && report) { /* checked above */
-        report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->kept) : 0;
-        report[SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->kept) : 0;
-        report[SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->kept) : 0;
+        report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->own->kept) : 0;
+        report[SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->own->kept) : 0;
+        report[SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->own->kept) : 0;
         report[SPAR_TRY_SECONDS] = record.seconds;
         report[SPAR_TRY_SOLUTIONS] = (double)record.solutions;
         if (!compare) {

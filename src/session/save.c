@@ -4,8 +4,10 @@
    Every rank gets the whole image to load from, so that members and fluids may live on other ranks than before. A file
    is taken in two passes: the first checks and gets memory, and only when all ranks can load does the second change the
    session. */
-#include "image.h"
+#include "../base/image.h"
 #include "session.h"
+
+#include "../comm/enter.h"
 
 #include "../member/applied.h"
 #include "../member/rung.h"
@@ -163,10 +165,10 @@ static void put_coupling(spari_image *image, spar_session *s) {
         stream t = {image, WRITE};
         spari_coupling_settings(s, settings);
         spari_image_put(image, settings, SPARI_COUPLING_SETTINGS);
-        pass_coupling(&t, s->coupling);
-        if (s->coupling->accelerator) {
-            put_accelerator(image, s->coupling);
-            spari_image_put(image, s->coupling->motion, motion_words(s->coupling, settings));
+        pass_coupling(&t, s->own->coupling);
+        if (s->own->coupling->accelerator) {
+            put_accelerator(image, s->own->coupling);
+            spari_image_put(image, s->own->coupling->motion, motion_words(s->own->coupling, settings));
         }
     }
     if (!image->failed) {
@@ -324,7 +326,7 @@ int spar_session_save(const spar_session *session, const char *path) {
     int64_t *first = NULL;
     int status = check_call(s, call, path);
     status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
-    SPARI_TRY(spari_session_enter_alike(s, call, NULL, 0, status));
+    SPARI_TRY(spari_enter_alike(s, call, NULL, 0, status));
     status = put_own(&own, s);
     status = agree(s, status == SPAR_OK && own.failed ? no_memory(s, call) : status);
     if (status == SPAR_OK) {
@@ -658,8 +660,8 @@ static void apply(spar_session *s, loading *l) {
     }
     s->coupling_stale = !l->coupling;
     if (l->coupling) {
-        spari_coupling_free(&s->coupling);
-        s->coupling = l->coupling;
+        spari_coupling_free(&s->own->coupling);
+        s->own->coupling = l->coupling;
         l->coupling = NULL;
     }
 }
@@ -692,7 +694,7 @@ int spar_session_load(spar_session *session, const char *path) {
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", call);
     }
-    SPARI_TRY(spari_session_enter_alike(s, call, NULL, 0, status));
+    SPARI_TRY(spari_enter_alike(s, call, NULL, 0, status));
     status = fetch(s, &l, path);
     if (status == SPAR_OK) {
         status = agree(s, check_image(s, &l));

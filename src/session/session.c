@@ -2,11 +2,11 @@
 
 #include "../math/predictor.h"
 #include "../member/body.h"
+#include "../member/edge.h"
 #include "../member/rung.h"
 #include "../solve/solver.h"
 #include "trial.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,15 +14,56 @@
 
 /* ---- create and destroy ---- */
 
+/* What all ranks set alike. Not here: fluid.far and fluid.audit, which concern a rank's own nodes and nothing else. */
+static const spari_setting settings[] = {
+    {"gravity (x)", offsetof(spar_session, gravity), 0},
+    {"gravity (y)", offsetof(spar_session, gravity) + sizeof(double), 0},
+    {"gravity (z)", offsetof(spar_session, gravity) + 2 * sizeof(double), 0},
+    {"rho_inf of spar_session_set_integrator", offsetof(spar_session, rho_inf), 0},
+    {"substeps of spar_session_set_integrator", offsetof(spar_session, substeps), 1},
+    {"atol of spar_session_set_newton", offsetof(spar_session, newton_atol), 0},
+    {"rtol of spar_session_set_newton", offsetof(spar_session, newton_rtol), 0},
+    {"max_iterations of spar_session_set_newton", offsetof(spar_session, newton_max), 1},
+    {"order of spar_session_set_predictor", offsetof(spar_session, predictor), 1},
+    {"scheme of spar_session_set_coupling", offsetof(spar_session, scheme), 1},
+    {"atol of spar_session_set_coupling", offsetof(spar_session, coupling_atol), 0},
+    {"rtol of spar_session_set_coupling", offsetof(spar_session, coupling_rtol), 0},
+    {"max_iterations of spar_session_set_coupling", offsetof(spar_session, coupling_max), 1},
+    {"omega of spar_session_set_relaxation", offsetof(spar_session, relaxation), 0},
+    {"option coupling.unconverged (1: accept)", offsetof(spar_session, accept_unconverged), 1},
+    {"option coupling.columns", offsetof(spar_session, coupling_columns), 1},
+    {"option coupling.reuse", offsetof(spar_session, coupling_reuse), 1},
+    {"option coupling.filter", offsetof(spar_session, coupling_filter), 0},
+    {"option coupling.target", offsetof(spar_session, coupling_target), 0},
+    {"option coupling.motion_atol", offsetof(spar_session, motion_atol), 0},
+    {"option coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0},
+    {"option fluid.theta (1: group)", offsetof(spar_session, theta_on_group), 1},
+    {"option advise.dt (1: keep)", offsetof(spar_session, keep_dt), 1},
+    {"option advise.nodes (1: keep)", offsetof(spar_session, keep_nodes), 1},
+    {"option advise.fidelity (1: keep)", offsetof(spar_session, keep_fidelity), 1},
+    {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
+    {"option advise.horizon", offsetof(spar_session, horizon), 0},
+    {"numbers of members", offsetof(spar_session, member_count), 1},
+    /* what a setter has done, though the setting is as it was */
+    {"calls that set the coupling", offsetof(spar_session, coupling_stale), 1},
+    {"calls of spar_session_set_predictor", offsetof(spar_session, past), 1},
+};
 /* Default tolerances of Newton: what turning the axes or another number of ranks must not change (1e-11) stays below.
  */
 static const double default_atol = 1e-15, default_rtol = 1e-12;
 
 static spar_session *session_new(void) {
-    spar_session *s = spari_zalloc(1, sizeof *s);
-    if (!s) {
+    struct whole {
+        spar_session scene;
+        spari_own own;
+    } *whole = spari_zalloc(1, sizeof *whole);
+    if (!whole) {
         return NULL;
     }
+    spar_session *s = &whole->scene; /* comes first: freed as one */
+    s->own = &whole->own;
+    s->settings = settings;
+    s->setting_count = sizeof settings / sizeof *settings;
     spari_gsl_quiet();
     s->rho_inf = 0.9;
     s->substeps = 1;
@@ -90,11 +131,11 @@ void spar_session_destroy(spar_session **session) {
         spari_member_free(m);
     }
     spari_comm_destroy(&s->comm);
-    spari_coupling_free(&s->coupling);
+    spari_coupling_free(&s->own->coupling);
     spari_trial_forget(s);
-    free(s->pack);
-    free(s->first);
-    free(s->motion);
+    free(s->own->pack);
+    free(s->own->first);
+    free(s->own->motion);
     free(s);
     *session = NULL;
 }
@@ -294,53 +335,6 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
                       value);
 }
 
-/* What all ranks set alike. Not here: fluid.far and fluid.audit, which concern a rank's own nodes and nothing else. */
-typedef struct setting {
-    const char *name;
-    size_t field;
-    int whole; /* an int, else a double */
-} setting;
-
-static const setting settings[] = {
-    {"gravity (x)", offsetof(spar_session, gravity), 0},
-    {"gravity (y)", offsetof(spar_session, gravity) + sizeof(double), 0},
-    {"gravity (z)", offsetof(spar_session, gravity) + 2 * sizeof(double), 0},
-    {"rho_inf of spar_session_set_integrator", offsetof(spar_session, rho_inf), 0},
-    {"substeps of spar_session_set_integrator", offsetof(spar_session, substeps), 1},
-    {"atol of spar_session_set_newton", offsetof(spar_session, newton_atol), 0},
-    {"rtol of spar_session_set_newton", offsetof(spar_session, newton_rtol), 0},
-    {"max_iterations of spar_session_set_newton", offsetof(spar_session, newton_max), 1},
-    {"order of spar_session_set_predictor", offsetof(spar_session, predictor), 1},
-    {"scheme of spar_session_set_coupling", offsetof(spar_session, scheme), 1},
-    {"atol of spar_session_set_coupling", offsetof(spar_session, coupling_atol), 0},
-    {"rtol of spar_session_set_coupling", offsetof(spar_session, coupling_rtol), 0},
-    {"max_iterations of spar_session_set_coupling", offsetof(spar_session, coupling_max), 1},
-    {"omega of spar_session_set_relaxation", offsetof(spar_session, relaxation), 0},
-    {"option coupling.unconverged (1: accept)", offsetof(spar_session, accept_unconverged), 1},
-    {"option coupling.columns", offsetof(spar_session, coupling_columns), 1},
-    {"option coupling.reuse", offsetof(spar_session, coupling_reuse), 1},
-    {"option coupling.filter", offsetof(spar_session, coupling_filter), 0},
-    {"option coupling.target", offsetof(spar_session, coupling_target), 0},
-    {"option coupling.motion_atol", offsetof(spar_session, motion_atol), 0},
-    {"option coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0},
-    {"option fluid.theta (1: group)", offsetof(spar_session, theta_on_group), 1},
-    {"option advise.dt (1: keep)", offsetof(spar_session, keep_dt), 1},
-    {"option advise.nodes (1: keep)", offsetof(spar_session, keep_nodes), 1},
-    {"option advise.fidelity (1: keep)", offsetof(spar_session, keep_fidelity), 1},
-    {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
-    {"option advise.horizon", offsetof(spar_session, horizon), 0},
-    {"numbers of members", offsetof(spar_session, member_count), 1},
-    /* what a setter has done, though the setting is as it was */
-    {"calls that set the coupling", offsetof(spar_session, coupling_stale), 1},
-    {"calls of spar_session_set_predictor", offsetof(spar_session, past), 1},
-};
-enum { SETTINGS = sizeof settings / sizeof *settings };
-
-static spari_alike alike_of(const spar_session *s, const setting *of) {
-    const void *field = (const char *)s + of->field;
-    return of->whole ? spari_whole(of->name, *(const int *)field) : spari_real(of->name, *(const double *)field);
-}
-
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_time: the session is NULL; create it first");
     if (t) {
@@ -373,29 +367,30 @@ int spari_session_seal(spar_session *s, int status) {
         count += m->committed ? 6 * m->nodes : 0;
         down += block_size(m);
     }
-    if (status == SPAR_OK && (!s->pack || s->pack_count != count || (s->first && s->first[ranks] != down))) {
-        free(s->pack);
-        free(s->first);
-        free(s->motion);
-        s->pack_count = count;
-        s->first = NULL;
-        s->motion = NULL;
-        s->pack = spari_zalloc(count + 1, sizeof *s->pack);
-        int ok = s->pack != NULL;
+    if (status == SPAR_OK &&
+        (!s->own->pack || s->own->pack_count != count || (s->own->first && s->own->first[ranks] != down))) {
+        free(s->own->pack);
+        free(s->own->first);
+        free(s->own->motion);
+        s->own->pack_count = count;
+        s->own->first = NULL;
+        s->own->motion = NULL;
+        s->own->pack = spari_zalloc(count + 1, sizeof *s->own->pack);
+        int ok = s->own->pack != NULL;
         if (ok && ranks > 1) {
-            s->first = spari_zalloc(ranks + 1, sizeof *s->first);
-            ok = s->first != NULL;
+            s->own->first = spari_zalloc(ranks + 1, sizeof *s->own->first);
+            ok = s->own->first != NULL;
             for (int r = 0; r < ranks && ok; r++) {
-                s->first[r + 1] = s->first[r] + 1; /* the status */
+                s->own->first[r + 1] = s->own->first[r] + 1; /* the status */
                 for (const spar_member *m = s->members; m; m = m->next) {
-                    s->first[r + 1] += m->owner == r ? block_size(m) : 0;
+                    s->own->first[r + 1] += m->owner == r ? block_size(m) : 0;
                 }
             }
-            ok = ok && (s->motion = spari_zalloc(s->first[ranks], sizeof *s->motion));
+            ok = ok && (s->own->motion = spari_zalloc(s->own->first[ranks], sizeof *s->own->motion));
         }
         if (!ok) {
-            free(s->pack);
-            s->pack = NULL;
+            free(s->own->pack);
+            s->own->pack = NULL;
             status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the ranks exchange");
         }
     }
@@ -412,7 +407,7 @@ int spari_session_pushes(spar_session *s, const char *call) {
 }
 
 int spari_session_exchange_loads(spar_session *s) {
-    memset(s->pack, 0, (size_t)(s->pack_count + 1) * sizeof *s->pack);
+    memset(s->own->pack, 0, (size_t)(s->own->pack_count + 1) * sizeof *s->own->pack);
     int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         m->pack_at = at;
@@ -420,14 +415,14 @@ int spari_session_exchange_loads(spar_session *s) {
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
-            spari_fluid_add_loads(f, s->pack + spari_fluid_member(f)->pack_at);
+            spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
         }
     }
-    return spari_comm_sum(s->comm, s->pack, s->pack_count, SPAR_OK, s->message, sizeof s->message);
+    return spari_comm_sum(s->comm, s->own->pack, s->own->pack_count, SPAR_OK, s->message, sizeof s->message);
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
-    memcpy(load, s->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
+    memcpy(load, s->own->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
 }
 
 /* One member's block: unknowns' q, v, a; dissipation. */
@@ -454,16 +449,16 @@ int spari_session_share_motion(spar_session *s, int status) {
     if (ranks == 1) {
         return status;
     }
-    double *at = s->motion + s->first[rank];
+    double *at = s->own->motion + s->own->first[rank];
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         if (m->owner == rank && m->body) {
             pack_member(m, at);
             at += block_size(m);
         }
     }
-    SPARI_TRY(spari_comm_share(s->comm, s->motion, s->first, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_share(s->comm, s->own->motion, s->own->first, status, s->message, sizeof s->message));
     for (int r = 0; r < ranks; r++) {
-        at = s->motion + s->first[r];
+        at = s->own->motion + s->own->first[r];
         for (spar_member *m = s->members; m; m = m->next) {
             if (m->owner == r && m->body) {
                 if (r != rank) {
@@ -474,41 +469,6 @@ int spari_session_share_motion(spar_session *s, int status) {
         }
     }
     return SPAR_OK;
-}
-
-static int enter(spar_session *s, const char *call, const spari_alike *alike, int count, int status) {
-    int answer = spari_comm_enter(s->comm, call, alike, count, status, s->message, sizeof s->message);
-    if (answer == SPAR_ERR_COMM) {
-        s->parted = 1;
-        (void)spari_fail(s, answer, "%s", s->message); /* for the log */
-    }
-    return answer;
-}
-
-int spari_session_enter(spar_session *s, const char *call, int status) {
-    return enter(s, call, NULL, 0, status);
-}
-
-int spari_session_enter_alike(spar_session *s, const char *call, const spari_alike *alike, int count, int status) {
-    spari_alike all[SPARI_MOST_ALIKE];
-    int n = 0;
-    if (spari_comm_size(s->comm) == 1) {
-        return status;
-    }
-    assert(count + SETTINGS <= SPARI_MOST_ALIKE);
-    for (; n < SETTINGS; n++) {
-        all[n] = alike_of(s, settings + n);
-    }
-    for (int i = 0; i < count; i++) {
-        all[n++] = alike[i];
-    }
-    return enter(s, call, all, n, status);
-}
-
-int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status) {
-    char what[SPARI_MESSAGE_SIZE / 2];
-    (void)snprintf(what, sizeof what, "%s: member '%s'", call, member->name);
-    return spari_session_enter_alike(member->session, what, alike, count, status);
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {

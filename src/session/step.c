@@ -1,6 +1,8 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "session.h"
 
+#include "../comm/enter.h"
+
 #include "../math/predictor.h"
 #include "../member/body.h"
 #include "../member/rung.h"
@@ -60,9 +62,9 @@ int spar_step_begin(spar_session *session, double dt) {
     spar_session *s = session;
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
-    SPARI_TRY(spari_session_enter_alike(s, "spar_step_begin", alike, 2, check_begin(s, dt)));
+    SPARI_TRY(spari_enter_alike(s, "spar_step_begin", alike, 2, check_begin(s, dt)));
     if (anew) {
-        SPARI_TRY(spari_session_enter(s, "coupling", spari_coupling_prepare(s)));
+        SPARI_TRY(spari_enter(s, "coupling", spari_coupling_prepare(s)));
         s->coupling_stale = 0;
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
@@ -135,7 +137,7 @@ int spar_step_solve(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
-    SPARI_TRY(spari_session_enter(s, "spar_step_solve", status));
+    SPARI_TRY(spari_enter(s, "spar_step_solve", status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
         status = status == SPAR_OK && is_moved(m) ? check_motion(m) : status;
@@ -170,7 +172,7 @@ static int check(spar_session *s, int status, int *done) {
     } else if (status == SPAR_OK) {
         status = spari_session_pushes(s, "spar_step_check");
     }
-    status = spari_session_enter(s, "spar_step_check", status);
+    status = spari_enter(s, "spar_step_check", status);
     if (status != SPAR_OK) {
         s->failed = s->failed || (solved && status != SPAR_ERR_COMM); /* alike on all ranks: they were in this call */
         return status;
@@ -220,7 +222,7 @@ int spar_step_accept(spar_session *session) {
     } else if (s->phase == SPARI_SOLVED) {
         status = spari_session_pushes(s, call);
     }
-    SPARI_TRY(spari_session_enter(s, call, status));
+    SPARI_TRY(spari_enter(s, call, status));
     spari_coupling_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
@@ -257,7 +259,7 @@ int spar_step_reject(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
-    SPARI_TRY(spari_session_enter(s, "spar_step_reject", status));
+    SPARI_TRY(spari_enter(s, "spar_step_reject", status));
     reject(s);
     return SPAR_OK;
 }

@@ -1,5 +1,6 @@
 #include "trial.h"
 
+#include "../comm/enter.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 
@@ -38,6 +39,7 @@ void spari_wish_free(spari_wish *wish) {
 
 typedef struct stash {
     spar_session session;
+    spari_own own;
     spar_member *members; /* [member_count] what they were; */
     int made;             /* so many have been made anew */
     spar_fluid **fluids;  /* what they were, in their order */
@@ -46,7 +48,7 @@ typedef struct stash {
 
 /* Where it fails the session is as it was: there is nothing to go back to. */
 static int stash_create(spar_session *s, stash *t) {
-    *t = (stash){.session = *s};
+    *t = (stash){.session = *s, .own = *s->own};
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         t->fluid_count++;
     }
@@ -57,10 +59,10 @@ static int stash_create(spar_session *s, stash *t) {
         free(t->fluids);
         return spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     }
-    s->coupling = NULL;
+    s->own->coupling = NULL;
     s->coupling_stale = 1;
-    s->pack = s->motion = NULL;
-    s->first = NULL;
+    s->own->pack = s->own->motion = NULL;
+    s->own->first = NULL;
     s->log = NULL;
     return SPAR_OK;
 }
@@ -110,12 +112,13 @@ static void go_back(spar_session *s, stash *t) {
     for (int k = 0; k < t->made; k++, m = m->next) {
         spari_member_restore(m, t->members + k);
     }
-    spari_coupling_free(&s->coupling);
-    free(s->pack);
-    free(s->first);
-    free(s->motion);
+    spari_coupling_free(&s->own->coupling);
+    free(s->own->pack);
+    free(s->own->first);
+    free(s->own->motion);
     memcpy(t->session.message, s->message, sizeof s->message);
     *s = t->session;
+    *s->own = t->own;
     free(t->members);
     free(t->fluids);
 }
@@ -261,15 +264,15 @@ int spari_trial_keep(spar_session *s, spari_record *record) {
     spari_trial_forget(s);
     *kept = *record;
     *record = (spari_record){0};
-    s->kept = kept;
+    s->own->kept = kept;
     return SPAR_OK;
 }
 
 void spari_trial_forget(spar_session *s) {
-    if (s->kept) {
-        spari_record_free(s->kept);
-        free(s->kept);
-        s->kept = NULL;
+    if (s->own->kept) {
+        spari_record_free(s->own->kept);
+        free(s->own->kept);
+        s->own->kept = NULL;
     }
 }
 
@@ -347,7 +350,7 @@ static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
         status = march(s, run, &w, r);
     }
     if (status == SPAR_OK) {
-        memcpy(r->report, s->coupling->report, sizeof r->report);
+        memcpy(r->report, s->own->coupling->report, sizeof r->report);
         double shared[2] = {r->seconds, 0};
         status = spari_comm_sum(s->comm, shared, 1, SPAR_OK, s->message, sizeof s->message);
         r->seconds = shared[0];
@@ -406,7 +409,7 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
                                  spari_given("solve", run->solve != NULL),
                                  spari_real("tolerance", tolerance),
                                  spari_whole("compare", compare != 0)};
-    return spari_session_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
+    return spari_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {

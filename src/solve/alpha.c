@@ -1,9 +1,9 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
+#include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/rung.h"
-#include "../session/session.h"
 #include "leap.h"
 #include "solver.h"
 

@@ -2,7 +2,7 @@
    where an entry is no finite number or its square is none: all it is given is brought to the size of 1 first. */
 #include "eigen.h"
 
-#include "../session/status.h"
+#include "../base/status.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>

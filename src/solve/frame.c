@@ -1,10 +1,10 @@
 #include "frame.h"
 
+#include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/rung.h"
-#include "../session/session.h"
 #include "eigen.h"
 #include "leap.h"
 #include "solver.h"

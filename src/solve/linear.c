@@ -1,6 +1,6 @@
 #include "linear.h"
 
-#include "../session/status.h"
+#include "../base/status.h"
 
 #include <gsl/gsl_cblas.h>
 #include <gsl/gsl_errno.h>

@@ -3,11 +3,11 @@
    stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
    keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
    is 0 where K is positive definite, else the smallest tried that makes it so. */
+#include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/edge.h"
 #include "../member/rung.h"
-#include "../session/session.h"
 #include "eigen.h"
 #include "frame.h"
 #include "solver.h"

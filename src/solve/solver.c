@@ -1,9 +1,9 @@
 #include "solver.h"
 
+#include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/rung.h"
-#include "../session/session.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Status and messages: the one way a failure leaves the library. */
+/* Statuses, and what every file may need: checks of numbers, memory, a quiet GSL. Knows nobody. */
 #ifndef SPARI_STATUS_H
 #define SPARI_STATUS_H
 
@@ -17,26 +17,12 @@ enum { SPARI_MESSAGE_SIZE = 1024 };
    takes fits 64 bits. */
 #define SPARI_MOST (INT64_C(1) << 40)
 
-/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
-   thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
-int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
-#ifdef __clang_analyzer__ /* reads one file at a time: what it must know is that a failure is never 0 */
-#define spari_fail(session, status, ...) ((spari_fail)(session, status, __VA_ARGS__) ? (status) ? (status) : 1 : 1)
-#endif
-
 /* Checks and returns, at the public edge and below it. */
 #define SPARI_TRY(call)                                                                                                \
     do {                                                                                                               \
         int spari_status_ = (call);                                                                                    \
         if (spari_status_ != SPAR_OK) {                                                                                \
             return spari_status_;                                                                                      \
-        }                                                                                                              \
-    } while (0)
-
-#define SPARI_REQUIRE(session, condition, status, ...)                                                                 \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            return spari_fail(session, status, __VA_ARGS__);                                                           \
         }                                                                                                              \
     } while (0)
 

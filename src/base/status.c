@@ -1,11 +1,7 @@
 #include "status.h"
 
-#include "session.h"
-
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,9 +27,6 @@ static const struct {
     SPARI_STATUS_TABLE(SPARI_ROW)
 #undef SPARI_ROW
 };
-
-/* A failed create has no session that could keep its message. */
-static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
 
 const char *spar_status_text(int status) {
     if (status < 0 || (size_t)status >= sizeof table / sizeof table[0] || table[status].code != status) {
@@ -71,29 +64,6 @@ int spar_has(const char *feature) {
         }
     }
     return 0;
-}
-
-int(spari_fail)(spar_session *session, int status, const char *format, ...) {
-    /* Formatted aside first: an argument may point into the message that is about to be replaced. */
-    char text[SPARI_MESSAGE_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    if (vsnprintf(text, sizeof text, format, arguments) < 0) {
-        snprintf(text, sizeof text, "%s", spar_status_text(status));
-    }
-    va_end(arguments);
-    memcpy(session ? session->message : thread_message, text, sizeof text);
-    if (session) {
-        session->failures++;
-    }
-    if (session && session->log) {
-        session->log(session, SPAR_LOG_ERROR, session->message, session->log_context);
-    }
-    return status;
-}
-
-const char *spar_session_message(const spar_session *session) {
-    return session ? session->message : thread_message;
 }
 
 int64_t spari_first_nonfinite(const double *x, int64_t n) {

@@ -1,0 +1,85 @@
+/* The scene: what every room may ask of the session it works for: clock, settings, ranks, members and fluids, and where
+   messages go, the one way a failure leaves the library. */
+#ifndef SPARI_SCENE_H
+#define SPARI_SCENE_H
+
+#include "status.h"
+
+typedef struct spari_comm spari_comm; /* comm/comm.h */
+typedef struct spari_own spari_own;   /* session/session.h */
+
+/* Where a step stands. */
+typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
+
+/* A setting that all ranks make alike. */
+typedef struct spari_setting {
+    const char *name;
+    size_t field; /* of the session */
+    int whole;    /* an int, else a double */
+} spari_setting;
+
+struct spar_session {
+    spari_comm *comm;
+    char message[SPARI_MESSAGE_SIZE];
+    int64_t failures; /* messages written so far: tells whether a callback has left one */
+    spar_log log;
+    void *log_context;
+    spar_member *members; /* list, in order of creation */
+    spar_fluid *fluids;   /* list, this rank's */
+    int member_count;
+
+    double gravity[3];
+    double rho_inf;
+    int substeps;
+    double newton_atol, newton_rtol;
+    int newton_max;
+    int predictor; /* its order; as many loads before those of t^n are kept */
+    int scheme;
+    double coupling_atol, coupling_rtol;
+    int coupling_max;
+    double relaxation;
+    int accept_unconverged;               /* option coupling.unconverged = accept */
+    int coupling_columns, coupling_reuse; /* of IQN-ILS */
+    double coupling_filter;
+    double coupling_target;          /* error the advised dt aims at */
+    double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
+    int theta_on_group;              /* option fluid.theta = average (default) | group */
+    int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
+    int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
+    double horizon;                                        /* option advise.horizon */
+    int audit_off;                                         /* option fluid.audit = on (default) | off */
+    int coupling_stale;                                    /* settings of the coupling have changed since it was made */
+
+    double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
+    int64_t step;
+    int iteration;
+    spari_phase phase;
+    int past;      /* loads before those of t^n that there are so far: the order of the next prediction */
+    int order;     /* of the predictor in the step under way */
+    int iterating; /* the last check asked for another iteration */
+    int started;   /* the clock has run */
+    int failed;    /* the last check of the step under way failed */
+    int trial;     /* a trial run is under way (trial.h) */
+
+    const spari_setting *settings;
+    int setting_count;
+    int parted; /* the ranks were found to be at different things: nothing more is to be agreed on */
+
+    spari_own *own; /* what is the session's alone (session.h) */
+};
+
+/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
+   thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
+int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
+#ifdef __clang_analyzer__ /* reads one file at a time: what it must know is that a failure is never 0 */
+#define spari_fail(session, status, ...) ((spari_fail)(session, status, __VA_ARGS__) ? (status) ? (status) : 1 : 1)
+#endif
+
+#define SPARI_REQUIRE(session, condition, status, ...)                                                                 \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            return spari_fail(session, status, __VA_ARGS__);                                                           \
+        }                                                                                                              \
+    } while (0)
+
+#endif
