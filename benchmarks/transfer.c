@@ -8,7 +8,7 @@
      transfer projection    microseconds and errors of the nearest point: bounds, RPOLY, GSL's companion matrix
 
    Times are the least of several runs: the machine may be shared. One core. */
-#include "fluid/projection.h"
+#include "transfer/projection.h"
 #include "math/basis.h"
 #include "plain.h"
 #include <gsl/gsl_errno.h>

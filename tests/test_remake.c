@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include "math/basis.h"
+#include "math/resample.h"
 #include "member/remake.h"
 
 enum { ELEMENTS = 2, NODES = 6 };
@@ -80,7 +81,7 @@ static void test_state_goes_over(void **state) {
     OK(s, spari_member_remake(b, &wish, &old));
     for (int e = 0; e < ELEMENTS; e++) {
         for (int l = 0; l < NODES; l++) {
-            spari_remake_basis(9, x[l], phi);
+            spari_resample_basis(9, x[l], phi);
             for (int c = 0; c < 3; c++) {
                 double u = 0;
                 for (int k = 0; k < 9; k++) {

@@ -1,6 +1,6 @@
 /* The transfer kernels against the formulas written out node by node, for every vector width this processor has.
  * Tolerances are relative to the size of what is summed: 1e-13, some hundred roundings. */
-#include "fluid/transfer.h"
+#include "transfer/transfer.h"
 #include "math/rotation.h"
 #include "support/lines.h"
 #include <cmocka.h>

@@ -4,6 +4,6 @@
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
-#include "fluid/transfer.c"
+#include "transfer/transfer.c"
 
 #include "test_transfer.c"

@@ -2,7 +2,7 @@
 
 #include "../math/predictor.h"
 #include "../math/rotation.h"
-#include "projection.h"
+#include "../transfer/projection.h"
 #include "state.h"
 #include <math.h>
 #include <stdarg.h>

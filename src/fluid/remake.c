@@ -1,6 +1,6 @@
 /* A fluid for a trial run: its member may have been made anew with other nodes. What the run changes is its own, what
    it only reads (the map, where the line's nodes are the same) stays shared. */
-#include "../member/remake.h"
+#include "../math/resample.h"
 #include "../math/rotation.h"
 #include "state.h"
 
@@ -104,8 +104,9 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     spar_member as_it_was = *before;
     was.member = &as_it_was; /* its line is the one the map was made on */
     SPARI_TRY(begin(fluid, &was, before->per_element == fluid->member->per_element));
-    spari_remake_loads(before, fluid->member, was.load, fluid->load);
-    spari_remake_loads(before, fluid->member, was.load_accepted, fluid->load_accepted);
+    int elements = before->elements, P = before->per_element, n = fluid->member->per_element;
+    spari_resample_loads(elements, P, n, was.load, fluid->load);
+    spari_resample_loads(elements, P, n, was.load_accepted, fluid->load_accepted);
     return SPAR_OK;
 }
 

@@ -4,8 +4,8 @@
 #define SPARI_FLUID_STATE_H
 
 #include "../base/scene.h"
+#include "../transfer/transfer.h"
 #include "fluid.h"
-#include "transfer.h"
 
 /* A set of nodes as the host gave it, until the map ties it to the line, and as it is kept afterwards. */
 typedef struct spari_node_set {

@@ -1,11 +1,11 @@
 #include "applied.h"
 
 #include "../math/basis.h"
+#include "../math/resample.h"
 #include "../math/rotation.h"
 #include "beam.h"
 #include "body.h"
 #include "edge.h"
-#include "remake.h"
 #include "rung.h"
 
 #include <stdlib.h>
@@ -414,7 +414,7 @@ static int remake_line(const spar_member *from, const line_load *line, const spa
         for (int l = 0; l < P; l++) {
             xi += line->phi[(int64_t)k * P + l] * x[l];
         }
-        spari_remake_basis(n, xi, out->phi + (int64_t)k * n);
+        spari_resample_basis(n, xi, out->phi + (int64_t)k * n);
     }
     return SPAR_OK;
 }
@@ -430,7 +430,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
         b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
         status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
         if (status == SPAR_OK) {
-            spari_remake_loads(from, m, a->follower, b->follower);
+            spari_resample_loads(m->elements, from->per_element, m->per_element, a->follower, b->follower);
         }
     }
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {

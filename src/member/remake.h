@@ -20,9 +20,5 @@ spari_remake spari_remake_of(const spar_member *member);
    give it to spari_member_restore, also after a failure. Local. */
 int spari_member_remake(spar_member *member, const spari_remake *wish, spar_member *old);
 void spari_member_restore(spar_member *member, const spar_member *old);
-/* Nodal loads [nodes][6] of `from` as those of `to`, the same member with other nodes. */
-void spari_remake_loads(const spar_member *from, const spar_member *to, const double *loads, double *out);
-/* P basis values at xi of an element with P nodes; 1 for one node. */
-void spari_remake_basis(int per_element, double xi, double *phi);
 
 #endif

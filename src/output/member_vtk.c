@@ -1,8 +1,8 @@
 /* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. */
-#include "../fluid/transfer.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/edge.h"
+#include "../transfer/transfer.h"
 #include "vtk.h"
 #include <spar/spar_output.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 
 #include "../comm/enter.h"
 #include "../math/basis.h"
+#include "../math/resample.h"
 #include "../math/rotation.h"
 
 #include <math.h>
@@ -134,7 +135,7 @@ static int stations_of(const spar_member *m) {
 static void beam_station(const spar_member *m, int k, double X[3], double u[3]) {
     double eta = (k + 1.0) / STATIONS * m->elements, phi[SPARI_MAX_NODES];
     int e = (int)ceil(eta) - 1;
-    spari_remake_basis(m->per_element, 2 * (eta - e) - 1, phi);
+    spari_resample_basis(m->per_element, 2 * (eta - e) - 1, phi);
     for (int c = 0; c < 3; c++) {
         X[c] = u[c] = 0;
         for (int l = 0; l < m->per_element; l++) {
