@@ -67,6 +67,12 @@
    sessions never meet; but the members and fluids of one session share its clock, its work arrays and its message.
    Sessions over several ranks need of MPI the thread level that the host's own use of it implies.
 
+   Surroundings. A host may trap floating-point exceptions, round as it likes and set any locale. While the library
+   computes, traps are held, so that what is not finite leads to a status and not to a signal, and numbers in files,
+   options and messages have a point; the host's own is in force again when a call returns and inside its callbacks.
+   Flags raised meanwhile are not seen outside. Rounding and the treatment of denormal numbers stay the host's. A stack
+   of 128 kB is enough. (Built by another compiler than GCC or Clang, the library leaves all of this as it is.)
+
    ABI. Structs are opaque, enumerators and codes never change their numbers, a function never changes its arguments:
    what must behave differently is a new function. The shared library's soname changes only if that rule is broken. */
 #ifndef SPAR_SPAR_H

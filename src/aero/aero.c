@@ -1,5 +1,6 @@
 /* The blade-element fluid: public calls. Everything between the session and the sections goes through spar.h. */
 #include "aero.h"
+#include "../base/quiet.h"
 #include "../math/rotation.h"
 #include <stdlib.h>
 #include <string.h>
@@ -175,6 +176,7 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
 }
 
 int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
                   "spar_aero_set_section: no section %lld; there are %lld, counted from 0", (long long)i,
@@ -205,6 +207,7 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
 
 int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius,
                         double tip_radius) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "spar_aero_set_rotor: hub or axis is NULL");
     SPARI_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
@@ -250,6 +253,7 @@ int spar_aero_set_blades(spar_aero *aero, int total) {
 }
 
 int spar_aero_set_effects(spar_aero *aero, int effects) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
                   "spar_aero_set_effects: %d has bits that are no SPAR_AERO_ effect", effects);
@@ -343,6 +347,7 @@ static int solve(spar_aero *aero, double density, const double *inflow, double t
 }
 
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     int status = solve(aero, density, inflow, theta);
     if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
@@ -379,6 +384,7 @@ static void sum_rotor(const spar_aero *aero, double *thrust, double *torque, dou
 }
 
 int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     SPARI_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
@@ -396,6 +402,7 @@ int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, d
 
 int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
                            double *a_tangential) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     double *out[] = {alpha, cl, cd, a, a_tangential};
@@ -428,6 +435,7 @@ int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root) {
 }
 
 int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment) {
+    SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     size_t bytes = (size_t)(3 * count(aero)) * sizeof(double);

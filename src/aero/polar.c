@@ -1,4 +1,5 @@
 #include "polar.h"
+#include "../base/quiet.h"
 #include "../base/scene.h"
 #include <math.h>
 #include <stdatomic.h>
@@ -137,6 +138,7 @@ static int check_turn(int64_t n, const double *alpha, const double *const value[
 
 int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm,
                       spar_polar **polar) {
+    SPARI_QUIET;
     const double *const value[] = {cl, cd, cm};
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT,
                   "spar_polar_create: no place for the polar; pass the address of a NULL");
@@ -168,6 +170,7 @@ void spar_polar_destroy(spar_polar **polar) {
 }
 
 int spar_polar_set_interpolation(spar_polar *polar, int kind) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_set_interpolation: the polar is NULL");
     SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
                   "spar_polar_set_interpolation: no kind %d; there are SPAR_POLAR_LINEAR, _AKIMA and _CUBIC", kind);
@@ -222,6 +225,7 @@ double spari_table_moment(const spari_table *table, double place, gsl_interp_acc
 }
 
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_evaluate: the polar is NULL");
     SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "spar_polar_evaluate: alpha is not finite");
     gsl_interp_accel accel = {0, 0, 0};

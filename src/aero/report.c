@@ -1,4 +1,5 @@
 /* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. */
+#include "../base/quiet.h"
 #include "../session/trial.h"
 #include "aero.h"
 
@@ -109,6 +110,7 @@ static int check(spar_session *s, const spar_aero *aero, const spari_run *t, con
 int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps, spar_before_step before,
                              spar_fluid_solver solve, void *context,
                              double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+    SPARI_QUIET;
     const char *call = "spar_aero_report_effects";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", call);
     spar_session *s = session;

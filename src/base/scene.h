@@ -68,6 +68,9 @@ struct spar_session {
     spari_own *own; /* what is the session's alone (session.h) */
 };
 
+/* Tells the host's log, if there is one. */
+void spari_log(const spar_session *session, int level, const char *text);
+
 /* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
    thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
 int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);

@@ -1,4 +1,5 @@
 #include "fluid.h"
+#include "../base/quiet.h"
 
 #include "../math/predictor.h"
 #include "../math/rotation.h"
@@ -193,16 +194,19 @@ static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, 
 }
 
 int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     return set_places(fluid, SPAR_NODES_MOTION, n, x, __func__);
 }
 
 int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     return set_places(fluid, SPAR_NODES_FORCE, n, x, __func__);
 }
 
 int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, n >= 0 && n <= SPARI_MOST && (n == 0 || xi), SPAR_ERR_ARGUMENT,
@@ -230,6 +234,7 @@ int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, cons
 }
 
 int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, method == SPAR_PROJECT_BOUNDED || method == SPAR_PROJECT_RPOLY, SPAR_ERR_ARGUMENT,
@@ -242,6 +247,7 @@ int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance
 }
 
 int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, kind == SPAR_INTERPOLATE_NODAL || kind == SPAR_INTERPOLATE_CONSISTENT, SPAR_ERR_ARGUMENT,
@@ -440,6 +446,7 @@ static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
 }
 
 int spar_fluid_map(spar_fluid *fluid) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     const spar_member *m = fluid->member;
     SPARI_FLUID_REQUIRE(fluid, m->committed, SPAR_ERR_STATE,
@@ -514,6 +521,7 @@ int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int6
 }
 
 int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_which(fluid, which, __func__));
     const spari_nodes *s;
@@ -535,6 +543,7 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *d
 }
 
 int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_which(fluid, which, __func__));
     const spari_nodes *s;
@@ -557,6 +566,7 @@ int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, doubl
 }
 
 int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_which(fluid, which, __func__));
     const spari_nodes *s;

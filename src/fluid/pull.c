@@ -1,3 +1,4 @@
+#include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "state.h"
 #include <math.h>
@@ -84,7 +85,8 @@ static int need_states(spar_fluid *fluid, double theta, const char *caller) {
     if (fluid->field[1] || !fluid->field[0] || !is_between(theta) || m->session->theta_on_group) {
         return SPAR_OK;
     }
-    fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS, sizeof *fluid->field[1]);
+    /* with the tile of the second state behind it, which would be much for a small stack */
+    fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS + SPARI_ROWS * SPARI_ROW, sizeof *fluid->field[1]);
     return fluid->field[1]
                ? SPAR_OK
                : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for a pull between two times");
@@ -262,10 +264,16 @@ static void leave_out(const spar_fluid *fluid, const spari_nodes *s, wanted *w) 
     zero(&w->alpha, s->n);
 }
 
+/* NULL where no average has been asked for yet. */
+static double (*second_tile(const spar_fluid *fluid))[SPARI_ROW] {
+    double *field = fluid->field[1];
+    return field ? (double(*)[SPARI_ROW])(field + fluid->member->nodes * SPARI_FIELDS) : NULL;
+}
+
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
-    double a[SPARI_ROWS][SPARI_ROW], b[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
-    states t = {.buf = {a, b}, .reference = c};
+    double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
+    states t = {.buf = {a, second_tile(fluid)}, .reference = c};
     const spari_nodes *s;
     int what = what_of(w);
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
@@ -310,24 +318,28 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
 }
 
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .v.d = v};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.f = x, .v.f = v};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.d = q, .omega.d = omega, .accel.d = accel};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.f = q, .omega.f = omega, .accel.f = accel};
     return pull_motion(fluid, theta, &w, __func__);
@@ -335,6 +347,7 @@ int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, floa
 
 int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
                           double *accel, double *alpha) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .q.d = q, .v.d = v, .omega.d = omega, .accel.d = accel, .alpha.d = alpha};
     return pull_motion(fluid, theta, &w, __func__);
@@ -351,6 +364,7 @@ static int check_convention(const spar_fluid *fluid, int convention, const char 
 }
 
 int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     SPARI_FLUID_REQUIRE(fluid, matrix || spari_fluid_set(fluid, SPAR_NODES_MOTION)->n == 0, SPAR_ERR_ARGUMENT,
@@ -401,6 +415,7 @@ static const char *wrong_with(const double m[9], const double right[9]) {
 }
 
 int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     const spari_nodes *s;

@@ -1,3 +1,4 @@
+#include "../base/quiet.h"
 #include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "state.h"
@@ -50,11 +51,13 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
 }
 
 int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     return pull_forces(fluid, theta, force, NULL, __func__);
 }
 
 int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     return pull_forces(fluid, theta, NULL, force, __func__);
 }
@@ -208,12 +211,14 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
 }
 
 int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     const spari_source f = {.d = force}, m = {.d = moment};
     return push_forces(fluid, f, m, __func__);
 }
 
 int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     const spari_source f = {.f = force}, m = {.f = moment};
     return push_forces(fluid, f, m, __func__);
@@ -246,6 +251,7 @@ static void average(int64_t n, const double *mean, const double *from, double sh
 }
 
 int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, theta > 0 && theta <= 1, SPAR_ERR_ARGUMENT, "theta is %g; give a number in (0, 1]",
                         theta);
@@ -284,6 +290,7 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
 }
 
 int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]) {
+    SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, audit, SPAR_ERR_ARGUMENT, "the place for the audit is NULL");
     memcpy(audit, fluid->audit, sizeof fluid->audit);

@@ -41,7 +41,8 @@ struct spar_fluid {
 
     /* allocated by the map */
     double *modal;     /* [P][P] */
-    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on */
+    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on, with
+                          room for its tile behind */
     double *reference; /* of the reference configuration */
     double *work;      /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */

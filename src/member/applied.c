@@ -1,4 +1,5 @@
 #include "applied.h"
+#include "../base/quiet.h"
 
 #include "../math/basis.h"
 #include "../math/resample.h"
@@ -16,6 +17,7 @@ typedef struct line_load {
     int *first;   /* [elements + 1] */
     double *phi;  /* [points][P] */
     double *load; /* [points][6] times weight and Jacobian; global axes, at the reference where they follow */
+    double *room; /* [7 P][4 P] for the tangent */
 } line_load;
 
 struct spari_applied {
@@ -24,10 +26,15 @@ struct spari_applied {
     double *room;      /* [nodes][6] of a rigid member; NULL: of another */
 };
 
+static double *room_for(const spar_member *m) {
+    return spari_zalloc(28 * (int64_t)m->per_element * m->per_element, sizeof(double));
+}
+
 static void line_free(line_load *line) {
     free(line->first);
     free(line->phi);
     free(line->load);
+    free(line->room);
     memset(line, 0, sizeof *line);
 }
 
@@ -248,7 +255,7 @@ static void project(int P, const double *B, double E[][4][3], double factor, dou
 static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4], double factor,
                          double *S) {
     int P = m->per_element, stride = 6 * P;
-    double B[7 * 4 * SPARI_MAX_NODES * SPARI_MAX_NODES], g[7 * SPARI_MAX_NODES] = {0}, E[SPARI_MAX_NODES][4][3];
+    double *B = line->room, g[7 * SPARI_MAX_NODES] = {0}, E[SPARI_MAX_NODES][4][3];
     memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
@@ -365,6 +372,9 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
     if (!image->failed) {
         line->phi = take(image, points * m->per_element);
         line->load = take(image, points * 6);
+        line->room = room_for(m);
+        image->no_memory |= !line->room;
+        image->failed |= !line->room;
     }
 }
 
@@ -404,7 +414,8 @@ static int remake_line(const spar_member *from, const line_load *line, const spa
     out->first = spari_zalloc(E + 1, sizeof *out->first);
     out->phi = spari_zalloc((int64_t)points * n, sizeof *out->phi);
     out->load = spari_zalloc((int64_t)points * 6, sizeof *out->load);
-    if (!out->first || !out->phi || !out->load) {
+    out->room = room_for(m);
+    if (!out->first || !out->phi || !out->load || !out->room) {
         return SPAR_ERR_MEMORY;
     }
     memcpy(out->first, line->first, (size_t)(E + 1) * sizeof *out->first);
@@ -466,6 +477,7 @@ static void drop_empty(spar_member *m) {
 }
 
 int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]) {
+    SPARI_QUIET;
     const char *call = "spar_member_add_follower";
     SPARI_TRY(need_applied(member, call));
     spar_session *s = member->session;
@@ -530,7 +542,8 @@ static int line_build(const spar_member *m, int64_t n, const double *eta, const 
     line->first = spari_zalloc(E + 1, sizeof *line->first);
     line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
     line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
-    int ok = s && w && line->first && line->phi && line->load;
+    line->room = room_for(m);
+    int ok = s && w && line->first && line->phi && line->load && line->room;
     for (int e = 0; e < E && ok; e++) {
         int k = line->first[e], count = line_points(m, e, n, eta, s + k, w + k, at + k);
         ok = count >= 0;
@@ -588,6 +601,7 @@ static int check_line_load(const spar_member *m, int64_t n, const double *eta, c
 }
 
 int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind) {
+    SPARI_QUIET;
     SPARI_TRY(need_applied(beam, "spar_beam_set_line_load"));
     line_load line = {0};
     int status = check_line_load(beam, n, eta, load, kind);

@@ -1,4 +1,5 @@
 /* The description of a member before commit: creation, setters and what they refuse. */
+#include "../base/quiet.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "beam.h"
@@ -75,6 +76,7 @@ static void place(spar_member *m, const double x[3], const double q[4]) {
 
 int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       spar_member **member) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_point_create: the session is NULL; create it first");
     SPARI_TRY(check_place(session, "spar_point_create", name ? name : "", x, q));
     spar_member *m;
@@ -86,6 +88,7 @@ int spar_point_create(spar_session *session, const char *name, const double x[3]
 
 int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       const double mass[36], spar_member **member) {
+    SPARI_QUIET;
     const char *call = "spar_rigid_create", *label = name ? name : "";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_TRY(check_place(session, call, label, x, q));
@@ -130,6 +133,7 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
 /* ---- describe ---- */
 
 int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
+    SPARI_QUIET;
     const char *call = "spar_beam_set_axis";
     SPARI_TRY(spari_need_beam(beam, call));
     spar_session *session = beam->session;
@@ -157,6 +161,7 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
 }
 
 int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q) {
+    SPARI_QUIET;
     const char *call = "spar_beam_set_nodes";
     SPARI_TRY(spari_need_beam(beam, call));
     spar_session *session = beam->session;
@@ -220,6 +225,7 @@ const char *spari_stiffness_fault(const double C[36]) {
 
 int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
                            const double *mass) {
+    SPARI_QUIET;
     const char *call = "spar_beam_set_sections";
     SPARI_TRY(spari_need_beam(beam, call));
     spar_session *session = beam->session;
@@ -253,6 +259,7 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
 }
 
 int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
+    SPARI_QUIET;
     const char *call = "spar_beam_set_quadrature";
     SPARI_TRY(spari_need_beam(beam, call));
     SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
@@ -266,6 +273,7 @@ int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
 }
 
 int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
+    SPARI_QUIET;
     const char *call = "spar_beam_set_damping";
     SPARI_TRY(spari_need_beam(beam, call));
     SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mu", 6, mu));
@@ -281,6 +289,7 @@ int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
 }
 
 int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]) {
+    SPARI_QUIET;
     const char *call = "spar_member_set_placement";
     SPARI_TRY(spari_need_open(member, call));
     SPARI_TRY(check_place(member->session, call, member->name, x, q));
@@ -304,6 +313,7 @@ int spar_member_set_external(spar_member *member, int on) {
 }
 
 int spar_member_set_effects(spar_member *member, int effects) {
+    SPARI_QUIET;
     const char *call = "spar_member_set_effects";
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                     SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY;

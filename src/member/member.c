@@ -1,4 +1,5 @@
 #include "member.h"
+#include "../base/quiet.h"
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"
@@ -111,6 +112,7 @@ void spari_member_reject(spar_member *m) {
 }
 
 int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]) {
+    SPARI_QUIET;
     const char *call = "spar_member_set_velocity";
     static const double zero[3] = {0, 0, 0};
     SPARI_TRY(spari_need_member(member, call));
@@ -308,6 +310,7 @@ static int place_of(const spar_member *member) {
 }
 
 int spar_member_commit(spar_member *member) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_member(member, "spar_member_commit"));
     spar_session *s = member->session;
     int asked = member->effects, status;
@@ -369,6 +372,7 @@ static void give(double *to, const double *from, int64_t n) {
 }
 
 int spar_member_get_reference(const spar_member *member, double *x, double *q) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_get_reference"));
     give(x, member->xr, 3 * member->nodes);
     give(q, member->qr, 4 * member->nodes);
@@ -376,6 +380,7 @@ int spar_member_get_reference(const spar_member *member, double *x, double *q) {
 }
 
 int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_get_motion"));
     give(q, member->after.q, 7 * member->nodes);
     give(v, member->after.v, 6 * member->nodes);
@@ -384,6 +389,7 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
 }
 
 int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {
+    SPARI_QUIET;
     const char *call = "spar_member_set_motion";
     SPARI_TRY(spari_need_committed(member, call));
     spar_session *s = member->session;
@@ -425,6 +431,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
 }
 
 int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]) {
+    SPARI_QUIET;
     static const double rest[6] = {0};
     const char *call = "spar_member_drive_root";
     SPARI_TRY(spari_need_committed(member, call));
@@ -451,6 +458,7 @@ int spar_member_drive_root(spar_member *member, const double q[7], const double 
 }
 
 int spar_member_add_load(spar_member *member, int64_t node, const double load[6]) {
+    SPARI_QUIET;
     const char *call = "spar_member_add_load";
     SPARI_TRY(spari_need_committed(member, call));
     SPARI_REQUIRE(member->session, node >= 0 && node < member->nodes, SPAR_ERR_ARGUMENT,
@@ -462,6 +470,7 @@ int spar_member_add_load(spar_member *member, int64_t node, const double load[6]
 }
 
 int spar_member_get_loads(const spar_member *member, double *load) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_get_loads"));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_loads: '%s': load is NULL", member->name);
     const spar_session *s = member->session;
@@ -477,6 +486,7 @@ int spar_member_get_loads(const spar_member *member, double *load) {
 }
 
 int spar_member_get_reaction(const spar_member *member, double load[6]) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_get_reaction"));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_reaction: '%s': load is NULL",
                   member->name);
@@ -546,6 +556,7 @@ int spari_member_reaction(const spar_member *m, double load[6]) {
 }
 
 int spar_member_get_energy(const spar_member *member, double energy[4]) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_get_energy"));
     SPARI_REQUIRE(member->session, energy, SPAR_ERR_ARGUMENT, "spar_member_get_energy: '%s': energy is NULL",
                   member->name);

@@ -2,6 +2,7 @@
    modal mass has the ratio x^T B x / (2 omega), B the beam's own damping matrix. The strain components form three
    groups: bending about y with shear z, bending about z with shear y, torsion with stretch; each of the two modes sets
    the mu of the group that holds most of its strain energy, the third group gets their geometric mean. */
+#include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "../solve/solver.h"
 #include "beam.h"
@@ -200,6 +201,7 @@ static int check(const spar_member *m, const int64_t mode[2], const double ratio
 }
 
 int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", CALL);
     spar_session *s = beam->session;
     double found[6];

@@ -5,6 +5,7 @@
    sign changes; its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist turns
    about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
    joined by cubic splines, natural at their ends, over z. */
+#include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "beam.h"
@@ -439,6 +440,7 @@ static int describe(spar_member *m, const reader *r, blade *b) {
 }
 
 int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_beam(beam, CALL));
     SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", CALL, beam->name);
     blade b = {0};

@@ -1,5 +1,6 @@
 /* What a section of a beam feels: strains and section forces anywhere along the line, from the element's own field, as
    the quadrature points take them (body.c). */
+#include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "beam.h"
@@ -160,6 +161,7 @@ static void section_output(const spar_member *m, const spari_station *s, double 
 
 int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                           double *x, double *q) {
+    SPARI_QUIET;
     const char *call = "spar_beam_get_section";
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
     spar_session *session = beam->session;

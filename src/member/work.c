@@ -1,4 +1,5 @@
 #include "work.h"
+#include "../base/quiet.h"
 
 #include "../base/scene.h"
 #include "../math/rotation.h"
@@ -93,6 +94,7 @@ void spari_work_restart(spar_member *m) {
 }
 
 int spar_member_get_work(spar_member *member, double work[3]) {
+    SPARI_QUIET;
     const char *call = "spar_member_get_work";
     SPARI_TRY(spari_need_committed(member, call));
     spar_session *s = member->session;

@@ -1,4 +1,5 @@
 /* A picture of a fluid's nodes on this rank: where they are, where their feet are, and what the map thinks of them. */
+#include "../base/quiet.h"
 #include "../fluid/fluid.h"
 #include "../math/rotation.h"
 #include "vtk.h"
@@ -117,6 +118,7 @@ static int draw(const spar_fluid *fluid, const sketch *s, const char *path) {
 }
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_write_vtk: the fluid is NULL; create it first");
     sketch s = {0};
     SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &s.count[0]));

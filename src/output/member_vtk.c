@@ -1,4 +1,5 @@
 /* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. */
+#include "../base/quiet.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/edge.h"
@@ -151,6 +152,7 @@ static int write_picture(const spar_member *m, const sampled *s, const char *pat
 }
 
 int spar_member_write_vtk(const spar_member *member, const char *path) {
+    SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, "spar_member_write_vtk"));
     int64_t n = member->nodes;
     sampled s = {.n = (int64_t)member->elements * ((member->per_element - 1) * SPARI_PIECES + 1)};

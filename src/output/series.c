@@ -1,5 +1,6 @@
 /* The index of a series of VTK files (.pvd): what ParaView opens to show them in time. */
 #include "../base/file.h"
+#include "../base/quiet.h"
 #include "../base/scene.h"
 #include <errno.h>
 #include <spar/spar_output.h>
@@ -65,6 +66,7 @@ static int put_index(FILE *old, FILE *to, double time, int part, const char *fil
 }
 
 int spar_vtk_series_add(const char *path, double time, int part, const char *file) {
+    SPARI_QUIET;
     const char *call = "spar_vtk_series_add";
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_file index;

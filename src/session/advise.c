@@ -2,6 +2,7 @@
    with a share of the tolerance for each, what of the structure can be left out; then the coupling and dt together;
    then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
    those of whole runs, costs the processor time of their steps. */
+#include "../base/quiet.h"
 #include "plan.h"
 
 #include "../math/basis.h"
@@ -422,6 +423,7 @@ static int check(spar_session *s, double tolerance, const spari_run *run, const 
 
 int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
                         spar_fluid_solver solve, void *context, double advice[SPAR_ADVICE_COUNT]) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
     spar_session *s = session;
     spari_advisor d = {.session = s, .run = {dt, steps, before, solve, context}, .tolerance = tolerance};

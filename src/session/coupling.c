@@ -1,4 +1,5 @@
 #include "coupling.h"
+#include "../base/quiet.h"
 
 #include "../math/rotation.h"
 #include "../member/body.h"
@@ -303,7 +304,7 @@ static void watch(spar_session *s) {
                 "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
                 "coupling) or lower the order of the predictor",
                 s->time + s->dt, fabs(defect), whole, c->grown);
-            s->log(s, SPAR_LOG_WARNING, text, s->log_context);
+            spari_log(s, SPAR_LOG_WARNING, text);
         }
     }
 }
@@ -326,6 +327,7 @@ void spari_coupling_reject(spar_session *s) {
 
 int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
                               double report[SPAR_REPORT_COUNT]) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
     const spari_coupling *c = session->own->coupling;
     int room = session->scheme == SPAR_COUPLING_EXPLICIT ? 1 : session->coupling_max; /* the host's arrays */

@@ -1,4 +1,5 @@
 /* What an effect is worth: its size in the present state, and trials with it and without. */
+#include "../base/quiet.h"
 #include "trial.h"
 
 #include "../math/rotation.h"
@@ -14,6 +15,7 @@
 
 int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
                      void *context, int compare, double report[SPAR_TRY_COUNT]) {
+    SPARI_QUIET;
     const char *call = "spar_session_try";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     spar_session *s = session;
@@ -239,7 +241,7 @@ static void tell_failure(spar_session *s, int r) {
     if (s->log) {
         (void)snprintf(text, sizeof text, "spar_session_report_effects: without %s the run fails: %s", rows[r].name,
                        s->message);
-        s->log(s, SPAR_LOG_INFO, text, s->log_context);
+        spari_log(s, SPAR_LOG_INFO, text);
     }
 }
 
@@ -323,6 +325,7 @@ static int fill_table(spar_session *s, const spari_run *run, double (*table)[SPA
 int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
                                 spar_fluid_solver solve, void *context,
                                 double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+    SPARI_QUIET;
     const char *call = "spar_session_report_effects";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     spar_session *s = session;

@@ -155,7 +155,7 @@ static void tell(const spari_advisor *d, const spari_plan *p, double error, doub
     } else {
         (void)snprintf(text, sizeof text, "%s: trial %d: %s: fails: %.300s", SPARI_ADVISE, d->trials, what, s->message);
     }
-    s->log(s, SPAR_LOG_INFO, text, s->log_context);
+    spari_log(s, SPAR_LOG_INFO, text);
 }
 
 /* How much larger an error is over the time that the host will run: errors of phase grow with time. */

@@ -5,6 +5,7 @@
    is taken in two passes: the first checks and gets memory, and only when all ranks can load does the second change the
    session. */
 #include "../base/image.h"
+#include "../base/quiet.h"
 #include "session.h"
 
 #include "../comm/enter.h"
@@ -318,6 +319,7 @@ static int check_call(spar_session *s, const char *call, const char *path) {
 }
 
 int spar_session_save(const spar_session *session, const char *path) {
+    SPARI_QUIET;
     const char *call = "spar_session_save";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
@@ -686,6 +688,7 @@ static int fetch(spar_session *s, loading *l, const char *path) {
 }
 
 int spar_session_load(spar_session *session, const char *path) {
+    SPARI_QUIET;
     const char *call = "spar_session_load";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     spar_session *s = session;

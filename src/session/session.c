@@ -1,4 +1,5 @@
 #include "session.h"
+#include "../base/quiet.h"
 
 #include "../math/predictor.h"
 #include "../member/body.h"
@@ -157,6 +158,7 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
 }
 
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_gravity";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, g && spari_first_nonfinite(g, 3) < 0, SPAR_ERR_ARGUMENT,
@@ -171,6 +173,7 @@ int spar_session_set_gravity(spar_session *session, const double g[3]) {
 }
 
 int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_integrator";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, rho_inf >= 0 && rho_inf <= 1, SPAR_ERR_ARGUMENT,
@@ -191,6 +194,7 @@ static int check_limits(spar_session *session, const char *call, double atol, do
 }
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_newton";
     SPARI_TRY(settable(session, call));
     SPARI_TRY(check_limits(session, call, atol, rtol, max_iterations));
@@ -201,6 +205,7 @@ int spar_session_set_newton(spar_session *session, double atol, double rtol, int
 }
 
 int spar_session_set_predictor(spar_session *session, int order) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_predictor";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", call, order);
@@ -218,6 +223,7 @@ int spar_session_set_predictor(spar_session *session, int order) {
 }
 
 int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_coupling";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, scheme >= SPAR_COUPLING_EXPLICIT && scheme <= SPAR_COUPLING_IQN_ILS, SPAR_ERR_ARGUMENT,
@@ -232,6 +238,7 @@ int spar_session_set_coupling(spar_session *session, int scheme, double atol, do
 }
 
 int spar_session_set_relaxation(spar_session *session, double omega) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_relaxation";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]", call,
@@ -310,6 +317,7 @@ static int set_number(spar_session *session, const number_option *o, const char 
 }
 
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
+    SPARI_QUIET;
     const char *call = "spar_session_set_option";
     SPARI_TRY(settable(session, call));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", call);
@@ -336,6 +344,7 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
 }
 
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_time: the session is NULL; create it first");
     if (t) {
         *t = session->time;
@@ -472,6 +481,7 @@ int spari_session_share_motion(spar_session *s, int status) {
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
+    SPARI_QUIET;
     const char *call = "spar_member_solve_static";
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
     spar_session *s = member->session;

@@ -1,4 +1,5 @@
 /* One coupling step: predict, solve, check, accept or reject. */
+#include "../base/quiet.h"
 #include "session.h"
 
 #include "../comm/enter.h"
@@ -58,6 +59,7 @@ static void hold_root(spar_member *m) {
 }
 
 int spar_step_begin(spar_session *session, double dt) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
     spar_session *s = session;
     int anew = !spari_coupling_fits(s);
@@ -134,6 +136,7 @@ static int is_moved(const spar_member *m) {
 }
 
 int spar_step_solve(spar_session *session) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
@@ -192,6 +195,7 @@ static int check(spar_session *s, int status, int *done) {
 }
 
 int spar_step_check(spar_session *session, int *done) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
     return check(session, SPAR_OK, done);
 }
@@ -207,6 +211,7 @@ static void shift_history(spar_session *s, spar_member *m) {
 }
 
 int spar_step_accept(spar_session *session) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
     const char *call = "spar_step_accept";
     spar_session *s = session;
@@ -256,6 +261,7 @@ static void reject(spar_session *s) {
 }
 
 int spar_step_reject(spar_session *session) {
+    SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
@@ -274,7 +280,10 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
         if (solve) {
             int64_t failures = s->failures;
             s->parted = 0;
+            spari_host host;
+            spari_host_begin(&host);
             int answer = solve(s, s->time, s->dt, s->iteration, context);
+            spari_host_end(&host);
             if (s->parted) { /* this rank alone called the others from here: they met it, and know */
                 return SPAR_ERR_COMM;
             }
@@ -290,6 +299,7 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
 }
 
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
+    SPARI_QUIET;
     SPARI_TRY(spar_step_begin(session, dt));
     int status = iterate(session, solve, context);
     if (iterations) {

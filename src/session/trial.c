@@ -1,5 +1,6 @@
 #include "trial.h"
 
+#include "../base/quiet.h"
 #include "../comm/enter.h"
 #include "../math/basis.h"
 #include "../math/resample.h"
@@ -283,7 +284,10 @@ static int prepare_step(spar_session *s, const spari_run *run) {
     }
     int64_t failures = s->failures;
     s->parted = 0;
+    spari_host host;
+    spari_host_begin(&host);
     int answer = run->before(s, s->time, run->dt, run->context), status = SPAR_OK;
+    spari_host_end(&host);
     if (s->parted) { /* this rank alone called the others from here: they met it, and know */
         return SPAR_ERR_COMM;
     }

@@ -3,6 +3,7 @@
    stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
    keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
    is 0 where K is positive definite, else the smallest tried that makes it so. */
+#include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -202,6 +203,7 @@ static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequen
 }
 
 int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
+    SPARI_QUIET;
     const char *call = "spar_member_get_modes";
     SPARI_TRY(spari_need_committed(member, call));
     spar_session *s = member->session;

@@ -240,7 +240,7 @@ static void warn_of_bend(const spar_member *m) {
         "spar_member_solve_static: '%s': neighbouring nodes are turned by %.2g rad against each other, more "
         "than they can follow: the equilibrium found may be none of the beam; give it more nodes or elements",
         m->name, largest_bend(m->solver, m->solver->best));
-    s->log(s, SPAR_LOG_WARNING, text, s->log_context);
+    spari_log(s, SPAR_LOG_WARNING, text);
 }
 
 static int no_memory(const spar_member *member) {

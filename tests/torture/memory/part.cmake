@@ -8,12 +8,12 @@ if("${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_DEBUG} ${CMAKE_EXE_LINKER_FLAGS}" MATCHES "
   target_link_options(torture_memory PRIVATE LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free)
 endif()
 add_test(NAME torture_memory COMMAND torture_memory short WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
-spar_set_test(torture_memory torture 120)
+spar_set_test(torture_memory torture 300)
 if(SPAR_MPI)
   add_test(NAME torture_memory_np2
     COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 --oversubscribe --allow-run-as-root $<TARGET_FILE:torture_memory> short
     WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   # as with the tests of many ranks: Open MPI leaves what the leak checker cannot tell from ours
-  spar_set_test(torture_memory_np2 torture 180 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
+  spar_set_test(torture_memory_np2 torture 300 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
   set_tests_properties(torture_memory_np2 PROPERTIES PROCESSORS 2)
 endif()
