@@ -407,16 +407,20 @@ static int find_end(const spari_image *image, int64_t count, int64_t *end) {
     return there;
 }
 
+static int is_within(int64_t x, int64_t least, int64_t most) {
+    return x >= least && x <= most;
+}
+
 /* A clock that can go on, read into a copy of the session. */
 static int check_clock(spar_session *s, loading *l) {
     stream t = {&l->image, READ};
     spar_session then = *s;
     pass_clock(&t, &then);
-    int phase = (int)then.phase, within = phase > SPARI_IDLE,
-        ok = !l->image.failed && isfinite(then.time) && then.step >= 0 && then.iteration >= 0 && phase >= SPARI_IDLE &&
-             phase <= SPARI_CHECKED && then.order >= 0 && then.order <= 2 && then.past >= 0 &&
-             then.past <= then.predictor && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
-             then.started == (within || then.step > 0);
+    int phase = (int)then.phase, within = phase > SPARI_IDLE;
+    int ok = !l->image.failed && isfinite(then.time) && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
+             is_within(then.step, 0, INT64_C(1) << 53) && is_within(then.iteration, 0, 1 << 30) &&
+             is_within(phase, SPARI_IDLE, SPARI_CHECKED) && is_within(then.order, 0, 2) &&
+             is_within(then.past, 0, then.predictor) && then.started == (within || then.step > 0);
     for (int k = 0; k < 2; k++) { /* what a prediction divides by */
         int used = then.past > k || (within && then.order > k);
         ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
