@@ -3,7 +3,7 @@
 
 #include "math/basis.h"
 #include "math/resample.h"
-#include "member/remake.h"
+#include "trial/remake.h"
 
 enum { ELEMENTS = 2, NODES = 6 };
 

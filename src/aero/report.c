@@ -1,6 +1,6 @@
 /* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. */
 #include "../base/quiet.h"
-#include "../session/trial.h"
+#include "../trial/trial.h"
 #include "aero.h"
 
 #include <math.h>

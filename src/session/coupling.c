@@ -3,7 +3,8 @@
 
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "session.h"
+#include "../member/member.h"
+#include "own.h"
 
 #include <math.h>
 #include <stdio.h>

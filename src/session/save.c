@@ -6,7 +6,10 @@
    session. */
 #include "../base/image.h"
 #include "../base/quiet.h"
-#include "session.h"
+#include "../fluid/fluid.h"
+#include "coupling.h"
+#include "exchange.h"
+#include "own.h"
 
 #include "../comm/enter.h"
 

@@ -1,6 +1,9 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "../base/quiet.h"
-#include "session.h"
+#include "../fluid/fluid.h"
+#include "coupling.h"
+#include "exchange.h"
+#include "own.h"
 
 #include "../comm/enter.h"
 

@@ -3,8 +3,10 @@
 #ifndef SPARI_TRIAL_H
 #define SPARI_TRIAL_H
 
-#include "../member/remake.h"
-#include "session.h"
+#include "../comm/comm.h"
+#include "../fluid/fluid.h"
+#include "../session/own.h"
+#include "remake.h"
 
 /* Runs are compared at this many times, evenly spread over them. */
 enum { SPARI_SAMPLES = 8 };
@@ -61,7 +63,6 @@ int spari_trial_run(spar_session *session, const spari_run *run, const spari_wis
 void spari_record_free(spari_record *record);
 /* The session takes the record for later comparisons; *record is empty then. Collective. */
 int spari_trial_keep(spar_session *session, spari_record *record);
-void spari_trial_forget(spar_session *session);
 /* Root of the mean square of the difference over that of b's motion beyond its root, of b's reactions, of its loads. */
 double spari_record_motion(const spari_record *a, const spari_record *b);
 /* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as the

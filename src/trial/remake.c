@@ -3,9 +3,9 @@
 #include "../base/scene.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
-#include "applied.h"
-#include "beam.h"
-#include "rung.h"
+#include "../member/applied.h"
+#include "../member/beam.h"
+#include "../member/rung.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,9 +2,13 @@
 
 #include "../base/quiet.h"
 #include "../comm/enter.h"
+#include "../fluid/fluid.h"
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
+#include "../session/coupling.h"
+#include "../session/exchange.h"
+#include "../session/own.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -255,6 +259,11 @@ void spari_record_free(spari_record *r) {
     *r = (spari_record){0};
 }
 
+static void free_kept(spari_record *kept) {
+    spari_record_free(kept);
+    free(kept);
+}
+
 int spari_trial_keep(spar_session *s, spari_record *record) {
     spari_record *kept = spari_zalloc(1, sizeof *kept);
     int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
@@ -263,19 +272,14 @@ int spari_trial_keep(spar_session *s, spari_record *record) {
         free(kept);
         return status;
     }
-    spari_trial_forget(s);
+    if (s->own->kept) {
+        free_kept(s->own->kept);
+    }
     *kept = *record;
     *record = (spari_record){0};
     s->own->kept = kept;
+    s->own->free_kept = free_kept;
     return SPAR_OK;
-}
-
-void spari_trial_forget(spar_session *s) {
-    if (s->own->kept) {
-        spari_record_free(s->own->kept);
-        free(s->own->kept);
-        s->own->kept = NULL;
-    }
 }
 
 static int prepare_step(spar_session *s, const spari_run *run) {

@@ -1,24 +1,8 @@
-/* The session: one clock, its members, its fluids on this rank, one communicator. */
-#ifndef SPARI_SESSION_H
-#define SPARI_SESSION_H
+/* Between the ranks: loads up, motion down. */
+#ifndef SPARI_EXCHANGE_H
+#define SPARI_EXCHANGE_H
 
 #include "../base/scene.h"
-#include "../comm/comm.h"
-#include "../fluid/fluid.h"
-#include "../member/member.h"
-#include "coupling.h"
-
-typedef struct spari_record spari_record; /* trial.h */
-
-/* What no other room sees. */
-struct spari_own {
-    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
-    int64_t pack_count;
-    int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
-    double *motion;           /* several ranks: motion of all solved members, by owner */
-    spari_coupling *coupling; /* from the first step on */
-    spari_record *kept;       /* of a trial that others are compared with; NULL: none */
-};
 
 /* Whether this rank's fluids have loads to go on with: the status of a push that was refused, with the call in front of
    its message. Local. */

@@ -3,7 +3,7 @@
 #ifndef SPARI_REMAKE_H
 #define SPARI_REMAKE_H
 
-#include "member.h"
+#include "../member/member.h"
 
 struct spari_remake {
     int per_element; /* beams: nodes per element */

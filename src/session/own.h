@@ -1,0 +1,20 @@
+/* What of a session no room below sees. */
+#ifndef SPARI_OWN_H
+#define SPARI_OWN_H
+
+#include "../base/scene.h"
+
+typedef struct spari_record spari_record;     /* trial/trial.h */
+typedef struct spari_coupling spari_coupling; /* coupling.h */
+
+struct spari_own {
+    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
+    int64_t pack_count;
+    int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
+    double *motion;           /* several ranks: motion of all solved members, by owner */
+    spari_coupling *coupling; /* from the first step on */
+    spari_record *kept;       /* of a trial that others are compared with; NULL: none */
+    void (*free_kept)(spari_record *kept);
+};
+
+#endif

@@ -1,0 +1,59 @@
+/* Static equilibrium of one member, in its session. */
+#include "../base/quiet.h"
+#include "../member/body.h"
+#include "../member/edge.h"
+#include "../member/rung.h"
+#include "../solve/solver.h"
+#include "exchange.h"
+
+#include <string.h>
+
+int spar_member_solve_static(spar_member *member, int load_steps) {
+    SPARI_QUIET;
+    const char *call = "spar_member_solve_static";
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    spar_session *s = member->session;
+    int status = SPAR_OK;
+    if (!member->committed) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first", call,
+                            member->name);
+    } else if (s->phase != SPARI_IDLE) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first", call,
+                            member->name);
+    } else if (load_steps < 1) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, member->name,
+                            load_steps);
+    } else if (!member->body && !member->rung) {
+        status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)", call,
+                            member->name);
+    } else if (member->root == SPAR_ROOT_FREE ||
+               (member->root == SPAR_ROOT_PINNED && member->body && !member->body->C)) {
+        status =
+            spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
+    }
+    if (status == SPAR_OK && !s->started) {
+        status = spari_session_pushes(s, call);
+    }
+    const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
+    SPARI_TRY(spari_member_enter(member, call, alike, 1, status));
+    SPARI_TRY(spari_session_seal(s, SPAR_OK));
+    memcpy(member->load_before, member->load_pushed, (size_t)(6 * member->nodes) * sizeof(double));
+    if (!s->started) {
+        SPARI_TRY(spari_session_exchange_loads(s));
+        spari_session_take_loads(s, member, member->load_pushed);
+    }
+    if (member->rung) {
+        status = spari_rung_static(member);
+    } else if (member->solver) {
+        status = spari_solver_static(member, load_steps);
+    }
+    status = spari_session_share_motion(s, status);
+    if (status != SPAR_OK) {
+        memcpy(member->load_pushed, member->load_before, (size_t)(6 * member->nodes) * sizeof(double));
+        return status;
+    }
+    member->dissipated_step = 0;
+    spari_member_solved(member, member->load_pushed);
+    spari_member_settle(member);
+    return SPAR_OK;
+}
