@@ -436,6 +436,38 @@ static void test_refused(void **state) {
     end(&s);
 }
 
+/* What is refused when other blades could have had their loads already leaves those, and what the last solve found. */
+static void test_all_or_none(void **state) {
+    (void)state;
+    scene s;
+    double before[4][8], after[4][8], thrust[2];
+    begin(&s, 8.0, 9.16);
+    build(&s, 0, 1);
+    OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
+    OK(spar_aero_get_rotor(s.aero, thrust, NULL, NULL));
+    for (int k = 0; k < 3; k++) {
+        OK(spar_fluid_get_audit(s.fluid[k], before[k]));
+    }
+    s.wind[0][0] += 1;            /* other loads on blade 0, */
+    s.wind[2 * N + 5][1] = 1e308; /* none that can be taken on blade 2 */
+    REFUSED(SPAR_ERR_NUMERIC, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), "blade 2, section ");
+    s.wind[2 * N + 5][1] = 0;
+    for (int k = 0; k < 3; k++) {
+        OK(spar_fluid_get_audit(s.fluid[k], after[k]));
+        assert_memory_equal(before[k], after[k], sizeof before[k]);
+    }
+    s.wind[0][0] -= 1;
+    OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
+    OK(spar_step(s.session, 0.05, NULL, NULL, NULL));
+    OK(spar_fluid_get_audit(s.fluid[0], before[0]));
+    REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 2, s.wind[0], 1.0), "spar_aero_solve: fluid");
+    OK(spar_fluid_get_audit(s.fluid[0], after[0]));
+    assert_memory_equal(before[0], after[0], sizeof before[0]);
+    OK(spar_aero_get_rotor(s.aero, thrust + 1, NULL, NULL));
+    assert_true(thrust[0] == thrust[1]);
+    end(&s);
+}
+
 /* A fluid mapped anew with more sections than the object was made for, or with none: refused, and so is a step begun
    on it; nothing is read beyond what there is. */
 static void test_mapped_anew(void **state) {
@@ -528,10 +560,10 @@ static void test_wing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
-                                       cmocka_unit_test(test_reader),        cmocka_unit_test(test_effects),
-                                       cmocka_unit_test(test_turned),        cmocka_unit_test(test_spread),
-                                       cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),
-                                       cmocka_unit_test(test_mapped_anew),   cmocka_unit_test(test_wing)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam), cmocka_unit_test(test_reader),
+        cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),       cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),      cmocka_unit_test(test_mapped_anew),
+        cmocka_unit_test(test_wing),          cmocka_unit_test(test_all_or_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,20 @@ static void test_messages(void **state) {
     assert_int_equal(spar_session_set_log(session, NULL, NULL), SPAR_OK);
     spari_fail(session, SPAR_ERR_IO, "%s", text);
     assert_int_equal(strlen(spar_session_message(session)), SPARI_MESSAGE_SIZE - 1);
+    spari_fail(session, SPAR_ERR_IO, "call: member '%s': do this", text); /* the cure stays */
+    assert_int_equal(strlen(spar_session_message(session)), SPARI_MESSAGE_SIZE - 1);
+    assert_non_null(strstr(spar_session_message(session), "aa ... aa"));
+    assert_non_null(strstr(spar_session_message(session), "a': do this"));
+    assert_int_equal(strncmp(spar_session_message(session), "call: member 'aa", 16), 0);
+    assert_int_equal(spari_named(session, "call", SPAR_ERR_IO), SPAR_ERR_IO);
+    assert_int_equal(strncmp(spar_session_message(session), "call: member 'aa", 16), 0);
+    assert_int_equal(spari_named(session, "outer", SPAR_ERR_IO), SPAR_ERR_IO);
+    assert_int_equal(strncmp(spar_session_message(session), "outer: call: member 'aa", 23), 0);
+    spari_fail(session, SPAR_ERR_IO, "inner fails");
+    assert_int_equal(spari_named(session, "outer", SPAR_OK), SPAR_OK);
+    assert_string_equal(spar_session_message(session), "inner fails");
+    assert_int_equal(spari_named(session, "outer", SPAR_ERR_IO), SPAR_ERR_IO);
+    assert_string_equal(spar_session_message(session), "outer: inner fails");
     free(text);
     assert_int_equal(heard.calls, 1);
     spar_session_destroy(&session);

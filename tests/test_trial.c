@@ -416,6 +416,29 @@ static void test_meddling(void **state) {
     spar_session_destroy(&c.s);
 }
 
+/* What a callback asks and gives within trials: the residuals have the host's room, which is that of one iteration,
+   also where another scheme is tried; a first follower finds room for its reaction. */
+static int ask(spar_session *s, double t, double dt, int iteration, void *context) {
+    scene *c = context;
+    double residual[3] = {0, 7, 7}, size[3] = {0, 7, 7}, load[6] = {0, 0, 0.01, 0, 0, 0};
+    int iterations;
+    OK(s, spar_session_get_coupling(s, &iterations, residual, size, NULL));
+    assert_true(iterations <= 1 && residual[1] == 7 && size[1] == 7);
+    OK(s, spar_member_add_follower(c->b, 0, load));
+    return press(s, t, dt, iteration, context);
+}
+
+static void test_asking(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    double advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
+    build(&c, 0);
+    OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 30));
+    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, keep, ask, &c, advice));
+    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, ask, &c, 0, report));
+    spar_session_destroy(&c.s);
+}
+
 /* No members, or members that nothing is to be found of: a point, an external beam. */
 static void test_nothing_to_try(void **state) {
     (void)state;
@@ -443,6 +466,7 @@ int main(void) {
         cmocka_unit_test(test_advice_stays_stable),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
+        cmocka_unit_test(test_asking),
         cmocka_unit_test(test_nothing_to_try),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -82,8 +82,8 @@ SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
    rotor), and pushes them. Loads per length are linear between the sections and nothing lies beyond the first and the
    last; each interval (as long as its ends are apart in the reference configuration) gives its ends the consistent
    shares L/6 (2 f1 + f2), L/6 (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before. No
-   memory is taken. After a failure the loads are as they were, and the check of a step under way fails on all ranks
-   unless a later solve succeeds. */
+   memory is taken. After a failure the loads are as they were (and what the last solve found, but where it is
+   SPAR_ERR_NUMERIC), and the check of a step under way fails on all ranks unless a later solve succeeds. */
 SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta);
 /* Of the blades on this rank in the last solve, needs set_rotor: force along the axis, moment about the axis
    (right-handed), moment times rotor speed, which is the mean of the blades' first sections' angular velocity about

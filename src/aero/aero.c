@@ -123,7 +123,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     }
     if (status != SPAR_OK) {
         aero_free(made);
-        return status;
+        return spari_named(session, "spar_aero_create", status);
     }
     *aero = made;
     return SPAR_OK;
@@ -264,10 +264,30 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
 
 /* ---- solve ---- */
 
-static int check_solve(const spar_aero *aero, double density, const double *inflow) {
+/* The fluids are as they were when the object was made, mapped, and would take loads: what one of them refuses later
+   the others have had. */
+static int check_blades(const spar_aero *aero) {
+    for (int b = 0; b < aero->blades; b++) {
+        int64_t motion, force;
+        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &motion));
+        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_FORCE, &force));
+        SPARI_REQUIRE(
+            aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
+            "spar_aero_solve: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
+            "force nodes now; make a new one",
+            spari_fluid_name(aero->fluid[b]), (long long)aero->n, (long long)motion, (long long)force);
+        SPARI_TRY(spar_fluid_get_map(aero->fluid[b], SPAR_NODES_MOTION, NULL, NULL, NULL));
+        SPARI_TRY(spari_fluid_may_push(aero->fluid[b], "spar_aero_solve"));
+    }
+    return SPAR_OK;
+}
+
+static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta) {
     spar_session *session = aero->session;
     SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT,
                   "spar_aero_solve: density %g; give a number >= 0", density);
+    SPARI_REQUIRE(session, theta >= 0.0 && theta <= 1.0, SPAR_ERR_ARGUMENT,
+                  "spar_aero_solve: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", theta);
     SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "spar_aero_solve: the inflow is NULL");
     SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
                   "spar_aero_solve: induction is asked for but the rotor is not described; call spar_aero_set_rotor");
@@ -283,18 +303,12 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
                           spari_fluid_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n), (int)(bad % 3),
                           inflow[bad]);
     }
-    return SPAR_OK;
+    return check_blades(aero);
 }
 
 static int pull(spar_aero *aero, double theta) {
     for (int b = 0; b < aero->blades; b++) {
-        int64_t n, at = b * aero->n;
-        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &n));
-        SPARI_REQUIRE(
-            aero->session, n == aero->n, SPAR_ERR_STATE,
-            "spar_aero_solve: fluid '%s' had %lld sections when the aero object was made and has %lld now; make "
-            "a new one",
-            spari_fluid_name(aero->fluid[b]), (long long)aero->n, (long long)n);
+        int64_t at = b * aero->n;
         double *omega = aero->rotor_given ? aero->omega + 3 * at : NULL;
         SPARI_TRY(spar_fluid_pull_poses(aero->fluid[b], theta, aero->x + 3 * at, aero->q + 4 * at, aero->v + 3 * at,
                                         omega, NULL, NULL));
@@ -318,8 +332,20 @@ static void lump(const spar_aero *aero, int blade, int from, double *node) {
     }
 }
 
+/* Loads that every fluid can take: none of its sums leaves the range of numbers. */
+static int check_loads(const spar_aero *aero, const double *load, const char *what) {
+    for (int64_t i = 0; i < 3 * count(aero); i++) {
+        SPARI_REQUIRE(
+            aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
+            "spar_aero_solve: fluid '%s', blade %lld, section %lld: %s of %g; look at density, inflow, chords",
+            spari_fluid_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
+            (long long)(i / 3 % aero->n), what, load[i]);
+    }
+    return SPAR_OK;
+}
+
 static int solve(spar_aero *aero, double density, const double *inflow, double theta) {
-    SPARI_TRY(check_solve(aero, density, inflow));
+    SPARI_TRY(check_solve(aero, density, inflow, theta));
     aero->solved = 0;
     SPARI_TRY(pull(aero, theta));
     int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0;
@@ -336,6 +362,8 @@ static int solve(spar_aero *aero, double density, const double *inflow, double t
             lump(aero, b, 3, aero->moment);
         }
     }
+    SPARI_TRY(check_loads(aero, aero->force, "a force"));
+    SPARI_TRY(moments ? check_loads(aero, aero->moment, "a moment") : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = 3 * b * aero->n;
         SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));
@@ -349,7 +377,7 @@ static int solve(spar_aero *aero, double density, const double *inflow, double t
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
-    int status = solve(aero, density, inflow, theta);
+    int status = spari_named(aero->session, "spar_aero_solve", solve(aero, density, inflow, theta));
     if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
         return spari_fluid_refuse_push(aero->fluid[0], status);
     }

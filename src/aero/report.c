@@ -119,7 +119,7 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     char message[SPARI_MESSAGE_SIZE];
     SPARI_TRY(spari_trial_enter(s, call, &t, 0, 0, check(s, aero, &t, table, call)));
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(fill_table(s, aero, &t, made));
+    SPARI_TRY(spari_named(s, call, fill_table(s, aero, &t, made)));
     memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;

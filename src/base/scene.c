@@ -19,19 +19,44 @@ void spari_log(const spar_session *s, int level, const char *text) {
     }
 }
 
+/* One that does not fit, as a name in it is long, loses its middle: what it begins with and the cure stay. */
+static void shorten(char *text) {
+    static const char gap[] = " ... ";
+    size_t n = strlen(text), head = SPARI_MESSAGE_SIZE / 2, tail = SPARI_MESSAGE_SIZE - head - sizeof gap;
+    if (n >= SPARI_MESSAGE_SIZE) {
+        memmove(text + head + sizeof gap - 1, text + n - tail, tail + 1);
+        memcpy(text + head, gap, sizeof gap - 1);
+    }
+}
+
 int(spari_fail)(spar_session *session, int status, const char *format, ...) {
     /* Formatted aside first: an argument may point into the message that is about to be replaced. */
-    char text[SPARI_MESSAGE_SIZE];
+    char text[8 * SPARI_MESSAGE_SIZE];
     va_list arguments;
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) {
         snprintf(text, sizeof text, "%s", spar_status_text(status));
     }
     va_end(arguments);
-    memcpy(session ? session->message : thread_message, text, sizeof text);
+    shorten(text);
+    memcpy(session ? session->message : thread_message, text, strlen(text) + 1);
     if (session) {
         session->failures++;
         spari_log(session, SPAR_LOG_ERROR, session->message);
+    }
+    return status;
+}
+
+int spari_named(spar_session *session, const char *call, int status) {
+    char text[SPARI_MESSAGE_SIZE], *message = session ? session->message : thread_message;
+    if (status != SPAR_OK && !strstr(message, call)) {
+        size_t n = strlen(call), rest = strlen(message) + 1;
+        memcpy(text, message, rest);
+        rest = n + 2 + rest > sizeof text ? sizeof text - n - 2 : rest;
+        memcpy(message, call, n);
+        memcpy(message + n, ": ", 2);
+        memcpy(message + n + 2, text, rest);
+        message[SPARI_MESSAGE_SIZE - 1] = '\0';
     }
     return status;
 }

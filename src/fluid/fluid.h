@@ -16,6 +16,8 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why);
 /* The loads of this fluid are not to be had, for the reason in the session's message: as a push that is refused. Gives
    back status. */
 int spari_fluid_refuse_push(spar_fluid *fluid, int status);
+/* Whether a push of good loads would be taken now: a step is under way, the force nodes are mapped. */
+int spari_fluid_may_push(const spar_fluid *fluid, const char *caller);
 void spari_fluid_forget_refusal(spar_fluid *fluid);
 /* Past node forces for a predictor of this order, if they are kept. SPAR_ERR_MEMORY: all is as before. */
 int spari_fluid_keep(spar_fluid *fluid, int order);

@@ -183,16 +183,27 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
     return fluid->refused;
 }
 
-static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
-    spar_session *session = fluid->member->session;
+/* *s: the force nodes, NULL: none */
+static int may_push(const spar_fluid *fluid, const char *caller, const spari_nodes **s) {
+    const spar_session *session = fluid->member->session;
     if (session->phase == SPARI_IDLE && session->started) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
             "no step is under way; loads are pushed between spar_step_begin and spar_step_accept, or "
             "before the first step");
     }
+    return spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, s);
+}
+
+int spari_fluid_may_push(const spar_fluid *fluid, const char *caller) {
     const spari_nodes *s;
-    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
+    return may_push(fluid, caller, &s);
+}
+
+static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
+    spar_session *session = fluid->member->session;
+    const spari_nodes *s;
+    SPARI_TRY(may_push(fluid, caller, &s));
     if (!s) {
         return SPAR_OK;
     }

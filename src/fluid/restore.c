@@ -32,9 +32,12 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
 }
 
 int spari_fluid_save(const spar_fluid *fluid, double *state) {
-    SPARI_FLUID_REQUIRE(fluid, fluid->mean_theta == 0 || fluid->mean_theta == 1, SPAR_ERR_STATE,
-                        "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1",
-                        fluid->mean_theta);
+    if (fluid->mean_theta != 0 && fluid->mean_theta != 1) {
+        return spari_fluid_refuse(
+            fluid, SPAR_ERR_STATE, "spar_session_save",
+            "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1",
+            fluid->mean_theta);
+    }
     const spari_history *h = fluid->history;
     state_head(fluid, state);
     double *at = state + S_HEAD;

@@ -337,7 +337,7 @@ int spar_member_commit(spar_member *member) {
         if (!member->committed) {
             member->effects = asked;
         }
-        return agreed;
+        return spari_named(s, "spar_member_commit", agreed);
     }
     member->committed = 1;
     return SPAR_OK;

@@ -224,7 +224,7 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     status = spari_member_enter(beam, CALL, alike, 4, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
-        return status;
+        return spari_named(s, CALL, status);
     }
     spari_body_free(beam->body);
     beam->body = body;

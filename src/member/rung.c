@@ -427,8 +427,9 @@ void spari_rung_load(spar_member *m, const double *state) {
     }
 }
 
+/* With that of followers and line loads, which a host may give while the room stands. */
 int64_t spari_rung_reaction_room(const spar_member *m) {
-    return (m->body ? 25 * (int64_t)m->body->unique : 0) + 6 * m->nodes * (m->applied ? 2 : 1);
+    return (m->body ? 25 * (int64_t)m->body->unique : 0) + 12 * m->nodes;
 }
 
 void spari_rung_reaction(const spar_member *m, double *room, double load[6]) {

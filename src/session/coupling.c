@@ -331,8 +331,7 @@ int spar_session_get_coupling(const spar_session *session, int *iterations, doub
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
     const spari_coupling *c = session->own->coupling;
-    int room = session->scheme == SPAR_COUPLING_EXPLICIT ? 1 : session->coupling_max; /* the host's arrays */
-    int n = !c ? 0 : c->iterations < room ? c->iterations : room;
+    int n = !c ? 0 : c->iterations < session->room ? c->iterations : session->room;
     if (iterations) {
         *iterations = n;
     }

@@ -156,7 +156,7 @@ int spar_step_solve(spar_session *session) {
             }
         }
         s->phase = SPARI_BEGUN;
-        return status;
+        return spari_named(s, "spar_step_solve", status);
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);

@@ -447,7 +447,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     free(d.group);
     free(d.known);
     spari_record_free(&d.reference);
-    return status;
+    return spari_named(s, SPARI_ADVISE, status);
 }
 
 int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,

@@ -47,7 +47,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
         }
     }
     spari_record_free(&record);
-    return status;
+    return spari_named(s, call, status);
 }
 
 /* ---- sizes ---- */
@@ -338,7 +338,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_TRY(spari_trial_enter(s, call, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(fill_table(s, &run, made));
+    SPARI_TRY(spari_named(s, call, fill_table(s, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;
