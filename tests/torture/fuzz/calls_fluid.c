@@ -1,0 +1,252 @@
+/* The calls on fluids. */
+#include "fuzz.h"
+
+#include <limits.h>
+#include <stdio.h>
+
+void do_spar_fluid_create(call *c) {
+    live_fluid *at = NULL;
+    for (int i = 0; i < FLUIDS && !at; i++) {
+        at = c->w->fluid[i].f ? NULL : c->w->fluid + i;
+    }
+    if (!at) {
+        return;
+    }
+    live_member *m = arg_member(c, -1);
+    const char *name = arg_name(c, "f");
+    spar_fluid *f = NULL;
+    int nowhere = odd(c);
+    text(c, nowhere ? ", NULL" : ", &f%d", (int)(at - c->w->fluid));
+    RUN(c, spar_fluid_create(m->m, name, nowhere ? NULL : &f));
+    if ((c->status == SPAR_OK) != (f != NULL)) {
+        fuzz_finding("handle", "%s answers %d and %s a handle", c->what->name, c->status, f ? "writes" : "writes no");
+    }
+    if (f) {
+        *at = (live_fluid){f, c->session, (int)(m - c->w->member), ++c->w->clock};
+    }
+}
+
+void do_spar_fluid_destroy(call *c) {
+    live_fluid *f = arg_fluid(c);
+    c->asked = 0;
+    c->session = -1;
+    if (!f->f) {
+        spar_fluid *none = NULL;
+        int nowhere = chance(c, 50);
+        RUN_VOID(c, spar_fluid_destroy(nowhere ? NULL : &none));
+        return;
+    }
+    for (int i = 0; i < AEROS; i++) { /* a blade without its fluid: the host must not solve it any more */
+        live_aero *a = c->w->aero + i;
+        for (int b = 0; a->a && b < a->blades; b++) {
+            if (a->busy && a->fluid[b] == (int)(f - c->w->fluid)) {
+                return;
+            }
+            a->orphan |= a->fluid[b] == (int)(f - c->w->fluid);
+        }
+    }
+    RUN_VOID(c, spar_fluid_destroy(&f->f)); /* in a trial it stays */
+}
+
+static void set_nodes(call *c, int (*set)(spar_fluid *fluid, int64_t n, const double *x)) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = chance(c, 10) ? 0 : arg_count(c, 1, 5);
+    double *x = arg_reals(c, 3 * length(n), -0.3, 1.5);
+    RUN(c, set(f->f, n, x));
+}
+
+void do_spar_fluid_set_motion_nodes(call *c) {
+    set_nodes(c, spar_fluid_set_motion_nodes);
+}
+
+void do_spar_fluid_set_force_nodes(call *c) {
+    set_nodes(c, spar_fluid_set_force_nodes);
+}
+
+void do_spar_fluid_set_sections(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = chance(c, 5) ? 0 : arg_count(c, 2, 4), room = length(n);
+    double *xi = arg_rising(c, room, -0.9, 1), *offset = arg_reals_or_null(c, 3 * room, -0.05, 0.05);
+    RUN(c, spar_fluid_set_sections(f->f, n, xi, offset));
+}
+
+void do_spar_fluid_set_projection(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int method = arg_int(c, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY);
+    double most = chance(c, 50) ? 0 : arg_real(c, 0.1, 2);
+    RUN(c, spar_fluid_set_projection(f->f, method, most));
+}
+
+void do_spar_fluid_set_interpolation(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int kind = arg_int(c, SPAR_INTERPOLATE_NODAL, SPAR_INTERPOLATE_CONSISTENT);
+    RUN(c, spar_fluid_set_interpolation(f->f, kind));
+}
+
+void do_spar_fluid_map(call *c) {
+    live_fluid *f = arg_fluid(c);
+    RUN(c, spar_fluid_map(f->f));
+}
+
+/* ---- what is mapped ---- */
+
+void do_spar_fluid_get_count(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t *n = arg_out(c, sizeof *n, 0);
+    RUN(c, spar_fluid_get_count(f->f, which, n));
+}
+
+void do_spar_fluid_get_flag_count(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1), flag = odd(c) ? arg_int(c, 1, 4) : 1 << below(c, 3);
+    int64_t *n = arg_out(c, sizeof *n, 0);
+    RUN(c, spar_fluid_get_flag_count(f->f, which, flag, n));
+}
+
+void do_spar_fluid_get_map(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which);
+    double *xi = OUT_OR_NULL(c, n), *distance = OUT_OR_NULL(c, n);
+    int *flags = arg_out(c, n * (int64_t)sizeof(int), 1);
+    RUN(c, spar_fluid_get_map(f->f, which, xi, distance, flags));
+}
+
+void do_spar_fluid_get_feet(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which);
+    double *x = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n), *con = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_get_feet(f->f, which, x, q, con));
+}
+
+void do_spar_fluid_get_basis(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which), P = f->f ? c->w->member[f->member].per_element : 1;
+    P = c->w->depth > 0 ? 24 : P; /* a trial may have more nodes */
+    int64_t *first = arg_out(c, n * (int64_t)sizeof *first, 1);
+    double *phi = OUT_OR_NULL(c, n * P);
+    RUN(c, spar_fluid_get_basis(f->f, which, first, phi));
+}
+
+/* ---- pull ---- */
+
+static double arg_theta(call *c) {
+    double theta = odd(c) ? arg_real(c, 0, 1) : chance(c, 50) ? 1 : chance(c, 50) ? 0 : 0.5;
+    text(c, ", %g", theta);
+    return theta;
+}
+
+void do_spar_fluid_pull_motion(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_pull_motion(f->f, theta, x, v));
+}
+
+static float *out_floats(call *c, int64_t n) {
+    return arg_out(c, n * (int64_t)sizeof(float), 1);
+}
+
+void do_spar_fluid_pull_motion_f32(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c);
+    float *x = out_floats(c, 3 * n), *v = out_floats(c, 3 * n);
+    RUN(c, spar_fluid_pull_motion_f32(f->f, theta, x, v));
+}
+
+void do_spar_fluid_pull_sections(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *q = OUT_OR_NULL(c, 4 * n), *omega = OUT_OR_NULL(c, 3 * n),
+           *accel = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_pull_sections(f->f, theta, q, omega, accel));
+}
+
+void do_spar_fluid_pull_sections_f32(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c);
+    float *q = out_floats(c, 4 * n), *omega = out_floats(c, 3 * n), *accel = out_floats(c, 3 * n);
+    RUN(c, spar_fluid_pull_sections_f32(f->f, theta, q, omega, accel));
+}
+
+void do_spar_fluid_pull_poses(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n), *v = OUT_OR_NULL(c, 3 * n),
+           *omega = OUT_OR_NULL(c, 3 * n), *accel = OUT_OR_NULL(c, 3 * n), *alpha = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_pull_poses(f->f, theta, x, q, v, omega, accel, alpha));
+}
+
+void do_spar_fluid_pull_matrices(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c);
+    int convention = arg_int(c, 0, 1);
+    double *matrix = OUT(c, 9 * n);
+    RUN(c, spar_fluid_pull_matrices(f->f, theta, convention, matrix));
+}
+
+/* The right matrices, or any. */
+void do_spar_fluid_check_matrices(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    int convention = arg_int(c, 0, 1);
+    double *matrix = arg_reals(c, 9 * n, -1, 1);
+    if (f->f && matrix && chance(c, 60)) {
+        (void)spar_fluid_pull_matrices(f->f, 1, convention, matrix);
+    }
+    RUN(c, spar_fluid_check_matrices(f->f, convention, matrix));
+}
+
+void do_spar_fluid_pull_forces(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double theta = arg_theta(c), *force = OUT(c, 3 * fluid_count(f, SPAR_NODES_FORCE));
+    RUN(c, spar_fluid_pull_forces(f->f, theta, force));
+}
+
+void do_spar_fluid_pull_forces_f32(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double theta = arg_theta(c);
+    float *force = arg_out(c, 3 * fluid_count(f, SPAR_NODES_FORCE) * (int64_t)sizeof(float), 0);
+    RUN(c, spar_fluid_pull_forces_f32(f->f, theta, force));
+}
+
+/* ---- push ---- */
+
+void do_spar_fluid_push_forces(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
+    double *force = arg_reals(c, 3 * n, -1, 1), *moment = arg_reals_or_null(c, 3 * n, -0.1, 0.1);
+    RUN(c, spar_fluid_push_forces(f->f, force, moment));
+}
+
+void do_spar_fluid_push_forces_at(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
+    double theta = arg_theta(c), *force = arg_reals(c, 3 * n, -1, 1), *moment = arg_reals_or_null(c, 3 * n, -0.1, 0.1);
+    RUN(c, spar_fluid_push_forces_at(f->f, theta, force, moment));
+}
+
+void do_spar_fluid_push_forces_f32(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
+    float *force = arg_floats(c, 3 * n, -1, 1, 0), *moment = arg_floats(c, 3 * n, -0.1, 0.1, 1);
+    RUN(c, spar_fluid_push_forces_f32(f->f, force, moment));
+}
+
+void do_spar_fluid_get_audit(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *audit = OUT(c, 8);
+    RUN(c, spar_fluid_get_audit(f->f, audit));
+}
+
+void do_spar_fluid_write_vtk(call *c) {
+    live_fluid *f = arg_fluid(c);
+    const char *path = arg_path(c, chance(c, 50) ? ".vtu" : ".vtp");
+    RUN(c, spar_fluid_write_vtk(f->f, path));
+}

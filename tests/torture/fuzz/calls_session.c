@@ -1,0 +1,363 @@
+/* The calls on sessions, steps, trials. */
+#include "fuzz.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+static int odd_word(call *c) {
+    static const int list[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, -1, 99, INT_MIN, INT_MAX};
+    int x = list[below(c, (int)(sizeof list / sizeof *list))];
+    text(c, "%d", x);
+    return x;
+}
+
+static void is_text(const char *answer) {
+    if (!answer || strlen(answer) > 2000) {
+        fuzz_finding("text", "no text");
+    }
+}
+
+void do_spar_status_text(call *c) {
+    int status = odd_word(c);
+    RUN_VOID(c, is_text(spar_status_text(status)));
+}
+
+void do_spar_version(call *c) {
+    RUN_VOID(c, is_text(spar_version()));
+}
+
+void do_spar_has(call *c) {
+    static const char *const list[] = {NULL, "", "mpi", "gsl", "lapack", "MPI", "%n%s"};
+    const char *what = list[below(c, 7)];
+    text(c, "%s", what ? what : "NULL");
+    RUN_VOID(c, (void)spar_has(what));
+}
+
+void do_spar_effect_name(call *c) {
+    int row = odd_word(c);
+    RUN_VOID(c, is_text(spar_effect_name(row)));
+}
+
+void do_spar_aero_effect_name(call *c) {
+    int row = odd_word(c);
+    RUN_VOID(c, is_text(spar_aero_effect_name(row)));
+}
+
+/* ---- session ---- */
+
+static void begin_session(live_session *l, spar_session *s) {
+    *l = (live_session){.s = s, .room = 1};
+}
+
+void do_spar_session_create(call *c) {
+    int k = 0;
+    while (k < SESSIONS - 1 && c->w->session[k].s) {
+        k++;
+    }
+    spar_session *s = NULL;
+    int nowhere = odd(c) || c->w->session[k].s;
+    text(c, nowhere ? "NULL" : "&s%d", k);
+    RUN(c, spar_session_create(nowhere ? NULL : &s));
+    if (c->status == SPAR_OK) {
+        begin_session(c->w->session + k, s);
+    }
+}
+
+void do_spar_session_create_fcomm(call *c) {
+    spar_session *s = NULL;
+    int comm = odd_word(c), nowhere = odd(c);
+    RUN(c, spar_session_create_fcomm(comm, nowhere ? NULL : &s));
+    if (s || c->status == SPAR_OK) {
+        fuzz_finding("handle", "a session over what is no communicator");
+    }
+}
+
+/* What was made from it is dead. */
+static void forget_session(world *w, int session) {
+    for (int i = 0; i < MEMBERS; i++) {
+        if (w->member[i].session == session) {
+            w->member[i].m = NULL;
+        }
+    }
+    for (int i = 0; i < FLUIDS; i++) {
+        if (w->fluid[i].session == session) {
+            w->fluid[i].f = NULL;
+        }
+    }
+    for (int i = 0; i < AEROS; i++) {
+        if (w->aero[i].a && w->aero[i].session == session) {
+            spar_aero_destroy(&w->aero[i].a);
+        }
+    }
+    w->session[session] = (live_session){0};
+}
+
+void do_spar_session_destroy(call *c) {
+    live_session *l = arg_session(c);
+    c->asked = 0;
+    c->session = -1;
+    if (!l->s) {
+        spar_session *none = NULL;
+        int nowhere = chance(c, 50);
+        RUN_VOID(c, spar_session_destroy(nowhere ? NULL : &none));
+        return;
+    }
+    if (l->busy) {
+        return;
+    }
+    spar_session *s = l->s;
+    forget_session(c->w, (int)(l - c->w->session));
+    RUN_VOID(c, spar_session_destroy(&s));
+    if (s) {
+        fuzz_finding("handle", "a destroyed session's handle is not NULL");
+    }
+}
+
+void do_spar_session_message(call *c) {
+    live_session *l = arg_session(c);
+    RUN_VOID(c, is_text(spar_session_message(l->s)));
+}
+
+void do_spar_session_set_gravity(call *c) {
+    live_session *l = arg_session(c);
+    double *g = arg_reals(c, 3, -10, 10);
+    RUN(c, spar_session_set_gravity(l->s, g));
+}
+
+void do_spar_session_set_integrator(call *c) {
+    live_session *l = arg_session(c);
+    double rho = arg_real(c, 0, 1);
+    int substeps = arg_limit(c, 1, 3);
+    RUN(c, spar_session_set_integrator(l->s, rho, substeps));
+}
+
+void do_spar_session_set_newton(call *c) {
+    live_session *l = arg_session(c);
+    double atol = arg_real(c, 1e-13, 1e-10), rtol = arg_real(c, 1e-12, 1e-8);
+    int most = chance(c, 20) ? 1 : arg_limit(c, 15, 60);
+    c->wild |= most == 1;
+    RUN(c, spar_session_set_newton(l->s, atol, rtol, most));
+}
+
+void do_spar_session_set_predictor(call *c) {
+    live_session *l = arg_session(c);
+    int order = arg_int(c, 0, 2);
+    RUN(c, spar_session_set_predictor(l->s, order));
+}
+
+void do_spar_session_set_coupling(call *c) {
+    live_session *l = arg_session(c);
+    int scheme = arg_int(c, SPAR_COUPLING_EXPLICIT, SPAR_COUPLING_IQN_ILS);
+    double atol = arg_real(c, 1e-9, 1e-5), rtol = arg_real(c, 1e-8, 1e-3);
+    int most = arg_limit(c, 1, 12);
+    RUN(c, spar_session_set_coupling(l->s, scheme, atol, rtol, most));
+    if (c->status == SPAR_OK) {
+        l->room = scheme == SPAR_COUPLING_EXPLICIT ? 1 : most;
+    }
+}
+
+void do_spar_session_set_relaxation(call *c) {
+    live_session *l = arg_session(c);
+    double omega = arg_real(c, 0.1, 1.5);
+    RUN(c, spar_session_set_relaxation(l->s, omega));
+}
+
+void do_spar_session_set_reproducible(call *c) {
+    live_session *l = arg_session(c);
+    int on = arg_int(c, 0, 1);
+    RUN(c, spar_session_set_reproducible(l->s, on));
+}
+
+void do_spar_session_set_option(call *c) {
+    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",     "fluid.far",
+                                       "fluid.audit",          "advise.dt",       "advise.nodes",
+                                       "advise.fidelity",      "advise.coupling", "coupling.columns",
+                                       "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
+                                       "coupling.motion_rtol", "coupling.target", "advise.horizon"};
+    static const char *const values[][3] = {{"error", "accept", "accept"},
+                                            {"average", "group", "group"},
+                                            {"take", "refuse", "refuse"},
+                                            {"on", "off", "off"},
+                                            {"vary", "keep", "keep"},
+                                            {"vary", "keep", "keep"},
+                                            {"vary", "keep", "keep"},
+                                            {"vary", "keep", "keep"},
+                                            {"1", "3", "30"},
+                                            {"0", "1", "5"},
+                                            {"0", "1e-4", "0.5"},
+                                            {"0", "1e-12", "1e-3"},
+                                            {"0", "1e-6", "0.1"},
+                                            {"0.01", "1", "1e-15"},
+                                            {"0", "1", "0.01"}};
+    static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
+                                          "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
+    live_session *l = arg_session(c);
+    int k = below(c, 15);
+    const char *key = keys[k], *value = values[k][below(c, 3)];
+    if (odd(c)) {
+        key = chance(c, 30) ? NULL : chance(c, 50) ? "coupling.none%n" : keys[below(c, 15)];
+    }
+    if (odd(c)) {
+        value = chance(c, 20) ? NULL : strange[below(c, 17)];
+        c->wild = 1;
+    }
+    text(c, ", \"%s\", \"%s\"", key ? key : "NULL", value ? value : "NULL");
+    RUN(c, spar_session_set_option(l->s, key, value));
+}
+
+void do_spar_session_get_coupling(call *c) {
+    live_session *l = arg_session(c);
+    int *iterations = arg_out(c, sizeof(int), 1);
+    int room = l->s ? l->room : 1;
+    double *residual = OUT_OR_NULL(c, room), *size = OUT_OR_NULL(c, room), *report = OUT_OR_NULL(c, SPAR_REPORT_COUNT);
+    RUN(c, spar_session_get_coupling(l->s, iterations, residual, size, report));
+}
+
+void do_spar_session_get_time(call *c) {
+    live_session *l = arg_session(c);
+    double *t = OUT_OR_NULL(c, 1);
+    int64_t *step = arg_out(c, sizeof *step, 1);
+    int *iteration = arg_out(c, sizeof *iteration, 1);
+    RUN(c, spar_session_get_time(l->s, t, step, iteration));
+    if (c->status == SPAR_OK && step && *step < 0) {
+        fuzz_finding("time", "step %lld", (long long)*step);
+    }
+}
+
+void do_spar_session_set_log(call *c) {
+    live_session *l = arg_session(c);
+    int on = chance(c, 70);
+    text(c, on ? ", log" : ", NULL");
+    RUN(c, spar_session_set_log(l->s, on ? fuzz_log : NULL, l));
+    if (c->status == SPAR_OK) {
+        l->logs = on;
+    }
+}
+
+/* ---- steps ---- */
+
+void do_spar_step_begin(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    RUN(c, spar_step_begin(l->s, dt));
+}
+
+void do_spar_step_solve(call *c) {
+    live_session *l = arg_session(c);
+    RUN(c, spar_step_solve(l->s));
+}
+
+void do_spar_step_check(call *c) {
+    live_session *l = arg_session(c);
+    int *done = arg_out(c, sizeof *done, 0);
+    RUN(c, spar_step_check(l->s, done));
+    if (c->status == SPAR_OK && *done != 0 && *done != 1) {
+        fuzz_finding("done", "done is %d", *done);
+    }
+}
+
+void do_spar_step_accept(call *c) {
+    live_session *l = arg_session(c);
+    RUN(c, spar_step_accept(l->s));
+}
+
+void do_spar_step_reject(call *c) {
+    live_session *l = arg_session(c);
+    RUN(c, spar_step_reject(l->s));
+}
+
+void do_spar_step(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    spar_fluid_solver solve;
+    host *h = arg_host(c, &solve, NULL);
+    int *iterations = arg_out(c, sizeof *iterations, 1);
+    RUN(c, spar_step(l->s, dt, solve, h, iterations));
+}
+
+/* ---- files ---- */
+
+void do_spar_session_save(call *c) {
+    live_session *l = arg_session(c);
+    const char *path = arg_path(c, ".spar");
+    RUN(c, spar_session_save(l->s, path));
+}
+
+void do_spar_session_load(call *c) {
+    live_session *l = arg_session(c);
+    const char *path = arg_path(c, ".spar");
+    RUN(c, spar_session_load(l->s, path));
+}
+
+/* One byte of a saved file is another, or its end is gone. */
+void do_damage_file(call *c) {
+    static char bytes[1 << 16];
+    char path[128];
+    snprintf(path, sizeof path, "%s/f%d.spar", c->w->folder, below(c, 3));
+    text(c, "%s", path);
+    fuzz_before(c);
+    FILE *f = fopen(path, "rb");
+    size_t n = f ? fread(bytes, 1, sizeof bytes, f) : 0;
+    if (f) {
+        (void)fclose(f);
+    }
+    f = n > 0 ? fopen(path, "wb") : NULL;
+    if (f) {
+        bytes[word(c) % n] ^= (char)(1 << below(c, 8));
+        (void)fwrite(bytes, 1, chance(c, 50) ? n : word(c) % n, f);
+        (void)fclose(f);
+    }
+    fuzz_after(c, SPAR_OK);
+}
+
+void do_spar_vtk_series_add(call *c) {
+    const char *path = arg_path(c, ".pvd");
+    double time = arg_real(c, 0, 10);
+    int part = arg_int(c, 0, 3);
+    const char *file = arg_name(c, "v");
+    RUN(c, spar_vtk_series_add(path, time, part, file));
+}
+
+/* ---- what if ---- */
+
+static int64_t arg_steps(call *c) {
+    static const int64_t list[] = {0, -8, 7, 12, -1, INT64_MIN, INT64_MAX, 1};
+    int64_t steps = odd(c) ? list[below(c, 8)] : chance(c, 90) ? 8 : 16;
+    text(c, ", %lld", (long long)steps);
+    return steps;
+}
+
+void do_spar_session_try(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    int64_t steps = arg_steps(c);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    int compare = arg_int(c, 0, 1);
+    double *report = OUT(c, SPAR_TRY_COUNT);
+    RUN(c, spar_session_try(l->s, dt, steps, before, solve, h, compare, report));
+}
+
+void do_spar_session_report_effects(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    int64_t steps = arg_steps(c);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    double *table = OUT(c, SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
+    RUN(c, spar_session_report_effects(l->s, dt, steps, before, solve, h, (double(*)[SPAR_COLUMN_COUNT])table));
+}
+
+void do_spar_session_advise(call *c) {
+    live_session *l = arg_session(c);
+    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c);
+    int64_t steps = arg_steps(c);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    double *advice = OUT(c, SPAR_ADVICE_COUNT);
+    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, before, solve, h, advice));
+}
