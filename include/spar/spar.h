@@ -63,9 +63,10 @@
    order; SPAR_ERR_MEMORY.
 
    Threads. A session and all that is made from it is used by one thread at a time; different sessions may be used by
-   different threads at once. The library has no state besides the message of each thread's failed creates, so that
-   sessions never meet; but the members and fluids of one session share its clock, its work arrays and its message.
-   Sessions over several ranks need of MPI the thread level that the host's own use of it implies.
+   different threads at once. The library has no state besides the message of each thread's failed creates (and a lock
+   around BLAS, which may have some), so that sessions never meet; but the members and fluids of one session share its
+   clock, its work arrays and its message. Sessions over several ranks need of MPI the thread level that the host's own
+   use of it implies.
 
    Surroundings. A host may trap floating-point exceptions, round as it likes and set any locale. While the library
    computes, traps are held, so that what is not finite leads to a status and not to a signal, and numbers in files,

@@ -1,4 +1,5 @@
 #include "beam.h"
+#include "../base/blas.h"
 
 #include "../base/scene.h"
 #include "../math/basis.h"
@@ -85,7 +86,8 @@ static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
         double ends = row[1] * x[d] + row[f->P] * x[3 * (f->P - 1) + d];
         gsl_vector_set(&b.vector, i, row[0] * (gsl_vector_get(&b.vector, i) - ends));
     }
-    int bad = gsl_linalg_QR_lssolve(f->A, tau, &b.vector, &c.vector, &left.vector) != GSL_SUCCESS;
+    int bad;
+    SPARI_BLAS(bad = gsl_linalg_QR_lssolve(f->A, tau, &b.vector, &c.vector, &left.vector) != GSL_SUCCESS);
     for (size_t j = 0; j < f->inner && !bad; j++) {
         x[3 * (j + 1) + (size_t)d] = gsl_vector_get(&c.vector, j);
     }
@@ -120,7 +122,7 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
     gsl_vector_view tau = {{0}};
     if (!bad) {
         tau = gsl_vector_subvector(f.c, 0, inner);
-        bad = gsl_linalg_QR_decomp(f.A, &tau.vector) != GSL_SUCCESS;
+        SPARI_BLAS(bad = gsl_linalg_QR_decomp(f.A, &tau.vector) != GSL_SUCCESS);
     }
     for (int d = 0; d < 3 && !bad; d++) {
         for (size_t i = 0; i < f.rows; i++) {

@@ -1,4 +1,5 @@
 #include "body.h"
+#include "../base/blas.h"
 
 #include "../base/status.h"
 #include "../math/basis.h"
@@ -954,13 +955,15 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         }
     }
     int cols = (int)row;
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, 2 * n, 1, table, 2 * n, XK, cols, 0, K7, cols);
+    SPARI_BLAS(
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, 2 * n, 1, table, 2 * n, XK, cols, 0, K7, cols));
     if (rates) {
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n, XB, cols,
-                    0, B7, cols);
+        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n,
+                               XB, cols, 0, B7, cols));
     }
     if (masses && !damped) {
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, n, 1, table, 2 * n, XM, cols, 0, M7, cols);
+        SPARI_BLAS(
+            cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, n, 1, table, 2 * n, XM, cols, 0, M7, cols));
     }
     int64_t stride = 6 * P;
     memset(S, 0, (size_t)(stride * stride) * sizeof *S);
@@ -1100,7 +1103,7 @@ int spari_body_linearise(spari_body *body, int heavy) {
 
 /* v . B v of one element */
 static double quadratic(int n, const double *B, const double *v, double *work) {
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, B, n, v, 1, 0, work, 1);
+    SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, B, n, v, 1, 0, work, 1));
     return cblas_ddot(n, v, 1, work, 1);
 }
 
@@ -1143,8 +1146,8 @@ static double linear_residual(const spari_body *body, const double *q, const dou
                 if (k == 1) {
                     damped += quadratic(n, body->linear[1] + at, in[1], x + n);
                 }
-                cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1, r + 6 * first,
-                            1);
+                SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1,
+                                       r + 6 * first, 1));
             }
         }
     }

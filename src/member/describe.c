@@ -1,4 +1,5 @@
 /* The description of a member before commit: creation, setters and what they refuse. */
+#include "../base/blas.h"
 #include "../base/quiet.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
@@ -220,7 +221,9 @@ const char *spari_stiffness_fault(const double C[36]) {
         }
     }
     gsl_matrix_view view = gsl_matrix_view_array(scaled, 6, 6);
-    return gsl_linalg_cholesky_decomp1(&view.matrix) == GSL_SUCCESS ? NULL : "not positive definite";
+    int status;
+    SPARI_BLAS(status = gsl_linalg_cholesky_decomp1(&view.matrix));
+    return status == GSL_SUCCESS ? NULL : "not positive definite";
 }
 
 int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,

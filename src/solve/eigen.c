@@ -1,6 +1,7 @@
 /* Symmetric generalised eigenvalue problems, by Cholesky's factor and GSL's symmetric solver. That solver never ends
    where an entry is no finite number or its square is none: all it is given is brought to the size of 1 first. */
 #include "eigen.h"
+#include "../base/blas.h"
 
 #include "../base/status.h"
 
@@ -43,22 +44,29 @@ static void unit_columns(gsl_matrix *x) {
     }
 }
 
+/* L^-1 A L^-T in A, L in B; 0, or 1: B is not positive definite. */
+static int standardise(gsl_matrix *A, gsl_matrix *B) {
+    int bad;
+    SPARI_BLAS(bad = gsl_linalg_cholesky_decomp1(B) || gsl_eigen_gensymm_standardize(A, B));
+    return bad;
+}
+
 int spari_eigen(gsl_matrix *A, gsl_matrix *B, gsl_vector *mu, gsl_matrix *x) {
     int of_A, of_B, of_C;
-    if (!bring_to_one(A, &of_A) || !bring_to_one(B, &of_B) || gsl_linalg_cholesky_decomp1(B) != GSL_SUCCESS ||
-        gsl_eigen_gensymm_standardize(A, B) != GSL_SUCCESS || !bring_to_one(A, &of_C)) {
+    if (!bring_to_one(A, &of_A) || !bring_to_one(B, &of_B) || standardise(A, B) || !bring_to_one(A, &of_C)) {
         return SPAR_ERR_NUMERIC;
     }
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(A->size1);
     if (!w) {
         return SPAR_ERR_MEMORY;
     }
-    int status = gsl_eigen_symmv(A, mu, x, w);
+    int status;
+    SPARI_BLAS(status = gsl_eigen_symmv(A, mu, x, w));
     gsl_eigen_symmv_free(w);
     if (status != GSL_SUCCESS) {
         return SPAR_ERR_NUMERIC;
     }
-    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, B, x);
+    SPARI_BLAS(gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, B, x));
     unit_columns(x);
     for (size_t k = 0; k < mu->size; k++) {
         gsl_vector_set(mu, k, ldexp(gsl_vector_get(mu, k), of_A + of_C - of_B));

@@ -1,4 +1,5 @@
 #include "frame.h"
+#include "../base/blas.h"
 
 #include "../base/scene.h"
 #include "../math/rotation.h"
@@ -161,8 +162,8 @@ static void stretch_matrices(const spari_frame *f, const setup *w, const double 
 static void multiply(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
     int m = f->block, step = f->block - f->overlap;
     for (int e = 0; e < f->elements; e++) {
-        cblas_dgemv(CblasRowMajor, CblasNoTrans, m, m, factor, X + (int64_t)m * m * e, m, x + (int64_t)e * step, 1, 1,
-                    y + (int64_t)e * step, 1);
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, m, m, factor, X + (int64_t)m * m * e, m,
+                               x + (int64_t)e * step, 1, 1, y + (int64_t)e * step, 1));
     }
 }
 
@@ -361,9 +362,10 @@ static int project_matrix(const spari_frame *f, int cols, double **X) {
     }
     for (int e = 0; e < f->elements; e++) {
         const double *b = f->basis + (int64_t)e * step * cols;
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b, cols, 0,
-                    half, cols);
-        cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols);
+        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b,
+                               cols, 0, half, cols));
+        SPARI_BLAS(
+            cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols));
     }
     free(half);
     free(*X);
@@ -398,7 +400,7 @@ static int project(spari_frame *f, int cols) {
     for (int v = 0; v < 3 && part; v++) {
         for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
             double *x = vectors[v][k];
-            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1);
+            SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1));
             memcpy(x, part, (size_t)cols * sizeof *part);
         }
     }
@@ -602,7 +604,8 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
     }
     for (int k = 0; k < 2; k++) {
         spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
-        cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1);
+        SPARI_BLAS(
+            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1));
         memset(out[k], 0, (size_t)f->held * sizeof *y);
     }
 }
@@ -615,7 +618,8 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
     int64_t n6 = 6 * (int64_t)f->nodes;
     const double *x[3] = {s->y, s->v, s->a};
     for (int k = 0; k < 3 && f->basis; k++) {
-        cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x[k], 1, 0, f->nodal + k * n6, 1);
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x[k], 1, 0,
+                               f->nodal + k * n6, 1));
         x[k] = f->nodal + k * n6;
     }
     const double *root = s->root;
@@ -694,8 +698,8 @@ void spari_frame_shape(const spari_frame *f, const spar_member *m, const double 
     spari_rung_pose(m, &m->after, pose);
     memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
     if (f->basis) {
-        cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n, x, 1, 0,
-                    nodes, 1);
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n,
+                               x, 1, 0, nodes, 1));
     } else {
         memcpy(nodes + f->held, x, (size_t)(f->n - f->held) * sizeof *nodes);
     }
@@ -768,7 +772,7 @@ static void turn_loads(const spari_frame *f, const double q[4], double *x, doubl
         spari_rotate_back(q, x + i, x + i);
     }
     if (f->basis) {
-        cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, x, 1, 0, out, 1);
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, x, 1, 0, out, 1));
     } else {
         memcpy(out, x, (size_t)f->n * sizeof *out);
     }

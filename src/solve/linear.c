@@ -1,4 +1,5 @@
 #include "linear.h"
+#include "../base/blas.h"
 
 #include "../base/status.h"
 
@@ -91,7 +92,7 @@ void spari_linear_fix(spari_linear *s, int i) {
 static int factor_dense(spari_linear *s) {
     int n = (int)s->n, info = 0;
 #ifdef SPARI_HAVE_LAPACK
-    dgetrf_(&n, &n, s->A->data, &n, s->swap, &info);
+    SPARI_BLAS(dgetrf_(&n, &n, s->A->data, &n, s->swap, &info));
 #else
     for (int k = 0; k < n && !info; k++) {
         double *at = s->A->data + (int64_t)k * n + k;
@@ -113,8 +114,13 @@ int spari_linear_factor(spari_linear *s) {
     if (spari_first_nonfinite(s->A->data, (int64_t)(s->A->size1 * s->A->tda)) >= 0) {
         return 1;
     }
-    if (s->elements == 1 ? factor_dense(s)
-                         : gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->band_swap) != GSL_SUCCESS) {
+    int bad = 0;
+    if (s->elements == 1) {
+        bad = factor_dense(s);
+    } else {
+        SPARI_BLAS(bad = gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->band_swap) != GSL_SUCCESS);
+    }
+    if (bad) {
         return 1;
     }
     for (size_t i = 0; i < s->n; i++) {
@@ -174,7 +180,8 @@ int spari_linear_definite(spari_linear *s) {
             }
         }
     }
-    int status = s->elements == 1 ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L);
+    int status;
+    SPARI_BLAS(status = s->elements == 1 ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L));
     return status == GSL_SUCCESS;
 }
 
@@ -186,11 +193,11 @@ int spari_linear_solve(spari_linear *s, double *x) {
             x[s->swap[i] - 1] = x[i];
             x[i] = there;
         }
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, n, s->A->data, n, x, 1);
-        cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n, s->A->data, n, x, 1);
+        SPARI_BLAS(cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, n, s->A->data, n, x, 1));
+        SPARI_BLAS(cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n, s->A->data, n, x, 1));
     } else {
         gsl_vector_view v = gsl_vector_view_array(x, s->n);
-        gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->band_swap, &v.vector);
+        SPARI_BLAS(gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->band_swap, &v.vector));
     }
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }

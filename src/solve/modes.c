@@ -3,6 +3,7 @@
    stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
    keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
    is 0 where K is positive definite, else the smallest tried that makes it so. */
+#include "../base/blas.h"
 #include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
@@ -102,7 +103,9 @@ static int shifted(const modal *p, double sigma) {
         }
     }
     gsl_matrix_memcpy(p->A, p->B);
-    return gsl_linalg_cholesky_decomp1(p->A) == GSL_SUCCESS;
+    int status;
+    SPARI_BLAS(status = gsl_linalg_cholesky_decomp1(p->A));
+    return status == GSL_SUCCESS;
 }
 
 /* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1 when
@@ -128,7 +131,7 @@ static double find_shift(const modal *p) {
 static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
     gsl_vector_view x = gsl_matrix_column(p->x, k);
     double norm;
-    gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work);
+    SPARI_BLAS(gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work));
     gsl_blas_ddot(&x.vector, p->work, &norm);
     gsl_vector_memcpy(p->work, &x.vector);
     gsl_vector_scale(p->work, 1 / (norm > 0 ? sqrt(norm) : 1));

@@ -11,11 +11,11 @@
 #include <spar/spar_mpi.h>
 #endif
 
-/* ---- the harness ---- */
+/* ---- the harness: of each thread ---- */
 
 enum { FUNCTIONS = 256, NODES = 12, MANY = 64 };
 
-static struct {
+static _Thread_local struct {
     int rank, ranks, injecting, complaints;
     const char *folder;
     uint64_t digest;

@@ -1,0 +1,21 @@
+#include "blas.h"
+
+#ifdef SPARI_HAVE_OPENBLAS
+#include <pthread.h>
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+void spari_blas_begin(void) {
+    (void)pthread_mutex_lock(&lock);
+}
+
+void spari_blas_end(void) {
+    (void)pthread_mutex_unlock(&lock);
+}
+#else
+void spari_blas_begin(void) {
+}
+
+void spari_blas_end(void) {
+}
+#endif
