@@ -11,7 +11,7 @@
 #include "nrel5mw.h"
 
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 #include "solve/solver.h"
 
 /* ---- small tools ---- */

@@ -3,7 +3,7 @@
 
 #include "member/applied.h"
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 
 #include <stdio.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "member/beam.h"
-#include "member/member.h"
+#include "member/structure.h"
 
 #include <stdio.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
    what is reported, and what a failure leaves behind. The maps are in closed form (pistons.h). */
 #include "pistons.h"
 
-#include "member/member.h"
+#include "member/structure.h"
 
 #include <stdio.h>
 

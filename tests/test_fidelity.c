@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "member/rung.h"
+#include "solve/rung.h"
 #include "solve/frame.h"
 #include "solve/solver.h"
 

@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 
 static const double two_pi = 6.283185307179586;
 

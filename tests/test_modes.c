@@ -3,7 +3,7 @@
 
 #include "math/basis.h"
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 #include "solve/turn.h"
 
 static const double two_pi = 6.283185307179586;

@@ -2,7 +2,7 @@
 #ifndef SPARI_FLUID_H
 #define SPARI_FLUID_H
 
-#include "../member/member.h"
+#include "../member/structure.h"
 
 /* What the session asks of a fluid; the public calls are in fluid.c. */
 

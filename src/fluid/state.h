@@ -1,5 +1,5 @@
-/* What a fluid is made of, for the files of this room: fluid.c (life, nodes, map), pull.c (motion out), push.c (loads
- * in). */
+/* What a fluid is made of, for the files of this room: nodes.c (life, what the host gives), map.c, pull.c (motion out),
+ * push.c (loads in). */
 #ifndef SPARI_FLUID_STATE_H
 #define SPARI_FLUID_STATE_H
 
@@ -73,6 +73,10 @@ static inline const spari_node_set *spari_fluid_set(const spar_fluid *fluid, int
     return &fluid->set[fluid->shared ? SPAR_NODES_MOTION : which];
 }
 
+/* Frees what a set of nodes has, and empties it. */
+void spari_node_set_clear(spari_node_set *set);
+/* Nodes and maps change between steps, and not in a trial. */
+int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller);
 /* The mapped set, or a refusal; *nodes NULL: there is none and nothing to do. */
 int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes);
 /* Finite numbers x [n][width]. */

@@ -7,7 +7,6 @@
 #include "beam.h"
 #include "body.h"
 #include "edge.h"
-#include "rung.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +50,7 @@ void spari_applied_free(spari_applied *a) {
 /* Without loads; NULL when there is no memory. */
 static spari_applied *applied_create(const spar_member *m) {
     spari_applied *a = spari_zalloc(1, sizeof *a);
-    if (a && m->rung && m->rung->core && !(a->room = spari_zalloc(6 * m->nodes, sizeof *a->room))) {
+    if (a && m->fidelity == SPAR_FIDELITY_RIGID && !(a->room = spari_zalloc(6 * m->nodes, sizeof *a->room))) {
         free(a);
         a = NULL;
     }

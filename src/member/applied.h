@@ -6,7 +6,7 @@
 #define SPARI_APPLIED_H
 
 #include "../base/image.h"
-#include "member.h"
+#include "structure.h"
 
 /* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. For members with
  * `applied` only. */

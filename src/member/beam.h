@@ -4,7 +4,7 @@
 
 #include "../math/basis.h"
 #include "body.h"
-#include "member.h"
+#include "structure.h"
 
 struct spari_beam {
     int64_t axis_count, section_count;

@@ -4,7 +4,7 @@
 #define SPARI_EDGE_H
 
 #include "../comm/comm.h"
-#include "member.h"
+#include "structure.h"
 
 int spari_need_member(const spar_member *member, const char *call);
 /* Not committed yet. */

@@ -4,7 +4,7 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "rung.h"
+#include "pose.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -79,20 +79,20 @@ static void strains(const spari_station *s, const section_field *f, double e[6],
 
 /* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
 static int is_linear(const spar_member *m) {
-    return (m->rung && m->rung->frame) || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    return spari_member_is_framed(m) || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
 }
 
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
     int P = m->per_element;
     double pose[13], theta[3] = {0}, omega[3] = {0}, c[3];
-    spari_rung_pose(m, &m->after, pose);
+    spari_member_pose(m, &m->after, pose);
     memset(e, 0, 6 * sizeof *e);
     memset(ed, 0, 6 * sizeof *ed);
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)s->element * P + l;
         double x[6], rate[6];
-        spari_rung_deformation(m, pose, &m->after, node, x, rate);
-        if (!m->rung) { /* the equations of LARGE_ROTATION off take velocities for rates */
+        spari_member_deformation(m, pose, &m->after, node, x, rate);
+        if (m->fidelity == SPAR_FIDELITY_EXACT) { /* the equations of LARGE_ROTATION off take velocities for rates */
             memcpy(rate, m->after.v + 6 * node, sizeof rate);
         }
         for (int i = 0; i < 3; i++) {

@@ -3,6 +3,7 @@
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/edge.h"
+#include "../solve/reaction.h"
 #include "../transfer/transfer.h"
 #include "vtk.h"
 #include <spar/spar_output.h>

@@ -3,7 +3,7 @@
 
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "../member/member.h"
+#include "../member/structure.h"
 #include "own.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
-#include "../member/member.h"
+#include "../member/structure.h"
 #include "own.h"
 
 #include <stdlib.h>

@@ -14,7 +14,7 @@
 #include "../comm/enter.h"
 
 #include "../member/applied.h"
-#include "../member/rung.h"
+#include "../solve/rung.h"
 #include "../solve/solver.h"
 
 #include <math.h>

@@ -6,7 +6,8 @@
 #include "../base/quiet.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
-#include "../member/member.h"
+#include "../member/structure.h"
+#include "../solve/life.h"
 
 #include <stdio.h>
 #include <stdlib.h>

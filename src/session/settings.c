@@ -5,7 +5,8 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
-#include "../member/member.h"
+#include "../member/structure.h"
+#include "../solve/life.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,8 @@
 #include "../base/quiet.h"
 #include "../member/body.h"
 #include "../member/edge.h"
-#include "../member/rung.h"
+#include "../solve/life.h"
+#include "../solve/rung.h"
 #include "../solve/solver.h"
 #include "exchange.h"
 
@@ -49,6 +50,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     }
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) {
+        spari_member_reject(member);
         memcpy(member->load_pushed, member->load_before, (size_t)(6 * member->nodes) * sizeof(double));
         return status;
     }

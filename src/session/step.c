@@ -1,6 +1,7 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
+#include "../solve/life.h"
 #include "coupling.h"
 #include "exchange.h"
 #include "own.h"
@@ -9,7 +10,7 @@
 
 #include "../math/predictor.h"
 #include "../member/body.h"
-#include "../member/rung.h"
+#include "../solve/rung.h"
 #include "../solve/solver.h"
 
 #include <math.h>

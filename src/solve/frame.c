@@ -5,7 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
-#include "../member/rung.h"
+#include "../member/pose.h"
 #include "eigen.h"
 #include "leap.h"
 #include "solver.h"
@@ -583,10 +583,10 @@ static void matvec3(const double T[9], const double x[3], double y[3]) {
 /* Deformation and rates of the nodes' motion, seen from the frame, as unknowns. */
 static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion *nodes, double *y, double *rate) {
     double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, pose[13];
-    spari_rung_pose(m, nodes, pose);
+    spari_member_pose(m, nodes, pose);
     for (int64_t i = 0; i < m->nodes; i++) {
         int64_t u = m->elements == 1 ? i : i - i / m->per_element;
-        spari_rung_deformation(m, pose, nodes, i, x + 6 * u, xd + 6 * u);
+        spari_member_deformation(m, pose, nodes, i, x + 6 * u, xd + 6 * u);
     }
     if (!f->basis) {
         memcpy(y, x, (size_t)f->n * sizeof *y);
@@ -684,7 +684,7 @@ int64_t spari_frame_unknowns(const spari_frame *f) {
 
 void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
     double pose[13], omega[3];
-    spari_rung_pose(m, &m->after, pose);
+    spari_member_pose(m, &m->after, pose);
     spari_rotate_back(pose + 3, pose + 10, omega);
     assemble(f, f->K, 1, f->held, K);
     assemble(f, f->M, 1, f->held, M);
@@ -695,7 +695,7 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
 
 void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
     double pose[13];
-    spari_rung_pose(m, &m->after, pose);
+    spari_member_pose(m, &m->after, pose);
     memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
     if (f->basis) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n,
@@ -1068,7 +1068,7 @@ void spari_frame_accept(spari_frame *f) {
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
     memset(f->begin.root, 0, sizeof f->begin.root);
-    spari_rung_pose(m, &m->now, f->begin.root);
+    spari_member_pose(m, &m->now, f->begin.root);
     if (m->root == SPAR_ROOT_DRIVEN) {
         memcpy(f->begin.root + 13, m->now.a, 6 * sizeof(double));
     }
@@ -1120,7 +1120,6 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
                  spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
     }
     if (singular || failed) {
-        spari_member_reject(m);
         return spari_fail(m->session, SPAR_ERR_NUMERIC,
                           "spar_member_solve_static: '%s': the linear member has no equilibrium under these loads; the "
                           "state is as it was",

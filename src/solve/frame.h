@@ -18,7 +18,7 @@
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
-#include "../member/member.h"
+#include "../member/structure.h"
 #include "linear.h"
 
 enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */

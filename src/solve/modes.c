@@ -9,9 +9,9 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/edge.h"
-#include "../member/rung.h"
 #include "eigen.h"
 #include "frame.h"
+#include "rung.h"
 #include "solver.h"
 #include "turn.h"
 

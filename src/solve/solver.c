@@ -3,7 +3,7 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "../member/rung.h"
+#include "arms.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #define SPARI_SOLVER_H
 
 #include "../member/body.h"
-#include "../member/member.h"
+#include "../member/structure.h"
 #include "linear.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25

@@ -8,7 +8,7 @@
 #ifndef SPARI_TURN_H
 #define SPARI_TURN_H
 
-#include "../member/member.h"
+#include "../member/structure.h"
 
 typedef struct spari_turn {
     double w[3];         /* angular velocity */

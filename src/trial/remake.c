@@ -5,7 +5,8 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../member/rung.h"
+#include "../solve/life.h"
+#include "../solve/rung.h"
 
 #include <stdlib.h>
 #include <string.h>

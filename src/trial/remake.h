@@ -3,7 +3,7 @@
 #ifndef SPARI_REMAKE_H
 #define SPARI_REMAKE_H
 
-#include "../member/member.h"
+#include "../member/structure.h"
 
 struct spari_remake {
     int per_element; /* beams: nodes per element */

@@ -9,6 +9,8 @@
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
+#include "../solve/life.h"
+#include "../solve/reaction.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #include <stdio.h>
 
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 
 enum { MOST_NODES = 40, AXIS = 24 };
 

@@ -5,7 +5,7 @@
 #include "verification.h"
 
 #include "member/body.h"
-#include "member/member.h"
+#include "member/structure.h"
 
 enum { NODES = 8 };
 

@@ -3,7 +3,7 @@
 #ifndef SPARI_WORK_H
 #define SPARI_WORK_H
 
-#include "member.h"
+#include "../member/structure.h"
 
 /* The step is accepted: now -> after, before `after` becomes `now`. */
 void spari_work_step(spar_member *member);

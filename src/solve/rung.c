@@ -2,58 +2,16 @@
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"
-#include "../solve/frame.h"
-#include "../solve/solver.h"
-#include "applied.h"
-#include "beam.h"
-#include "body.h"
+#include "../member/applied.h"
+#include "../member/beam.h"
+#include "../member/body.h"
+#include "frame.h"
+#include "solver.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- loads on the arms of a rigid body ---- */
-
-void spari_arms_at(spari_arms *arms, double s) {
-    for (int i = 0; i < 9; i++) {
-        arms->Z[i] = (1 - s) * arms->begin[i] + s * arms->end[i];
-    }
-}
-
-/* Y = R Z = sum (R rho) f^T */
-static void turned(const spari_arms *arms, const double q[4], double Y[9]) {
-    for (int j = 0; j < 3; j++) {
-        double column[3] = {arms->Z[j], arms->Z[3 + j], arms->Z[6 + j]};
-        spari_rotate(q, column, column);
-        for (int i = 0; i < 3; i++) {
-            Y[3 * i + j] = column[i];
-        }
-    }
-}
-
-void spari_arms_residual(const spari_arms *arms, const double q[4], double r[3]) {
-    double Y[9];
-    turned(arms, q, Y);
-    r[0] -= Y[5] - Y[7];
-    r[1] -= Y[6] - Y[2];
-    r[2] -= Y[1] - Y[3];
-}
-
-/* (dtheta x r) x f = r (f . dtheta) - (r . f) dtheta, summed: Y - tr(Y) */
-void spari_arms_tangent(const spari_arms *arms, const double q[4], double S[36]) {
-    double Y[9];
-    turned(arms, q, Y);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            S[6 * (3 + i) + 3 + j] -= Y[3 * i + j] - (i == j ? Y[0] + Y[4] + Y[8] : 0);
-        }
-    }
-}
-
 /* ---- what a rung can serve ---- */
-
-int spari_rung_prescribed(const spar_member *m) {
-    return m->fidelity == SPAR_FIDELITY_PRESCRIBED;
-}
 
 int spari_rung_check(const spar_member *m) {
     const char *call = "spar_member_commit";
@@ -347,7 +305,7 @@ void spari_rung_restart(spar_member *m) {
 }
 
 int spari_rung_advance(spar_member *m, double dt) {
-    if (spari_rung_prescribed(m)) {
+    if (spari_member_is_prescribed(m)) {
         prescribed_advance(m);
         return SPAR_OK;
     }
@@ -385,7 +343,7 @@ int64_t spari_rung_state_size(const spar_member *m) {
     if (m->solver) {
         return spari_solver_state_size(m->solver);
     }
-    if (!m->rung || spari_rung_prescribed(m) || m->owner != spari_comm_rank(m->session->comm)) {
+    if (!m->rung || spari_member_is_prescribed(m) || m->owner != spari_comm_rank(m->session->comm)) {
         return 0;
     }
     return m->rung->core ? 19 + spari_solver_state_size(m->rung->core->solver) : spari_frame_state_size(m->rung->frame);
@@ -481,45 +439,4 @@ void spari_rung_reaction(const spar_member *m, double *room, double load[6]) {
 int spari_rung_energy(const spar_member *m, double energy[4]) {
     energy[1] = 0;
     return m->rung->frame ? spari_frame_energy(m->rung->frame, m, energy) : SPAR_OK;
-}
-
-/* ---- what a frame sees ---- */
-
-void spari_rung_pose(const spar_member *m, const spari_motion *nodes, double pose[13]) {
-    memset(pose, 0, 13 * sizeof *pose);
-    pose[3] = 1;
-    if (m->rung && spari_member_root_is_given(m)) {
-        memcpy(pose, nodes->q, 7 * sizeof *pose);
-    }
-    if (m->rung && m->root == SPAR_ROOT_DRIVEN) {
-        memcpy(pose + 7, nodes->v, 6 * sizeof *pose);
-    }
-}
-
-void spari_rung_deformation(const spar_member *m, const double pose[13], const spari_motion *nodes, int64_t node,
-                            double x[6], double rate[6]) {
-    const double *q = nodes->q + 7 * node, *v = nodes->v + 6 * node;
-    double arm[3], d[3], back[4], p[4], omega[3], turn[3], T[9];
-    for (int k = 0; k < 3; k++) {
-        arm[k] = m->xr[3 * node + k] - m->xr[k];
-        d[k] = arm[k] + q[k] - pose[k];
-    }
-    for (int k = 0; k < 6; k++) {
-        rate[k] = v[k] - pose[7 + k];
-    }
-    spari_rotate_back(pose + 3, d, d);
-    spari_rotate_back(pose + 3, pose + 10, omega);
-    spari_rotate_back(pose + 3, rate, rate);
-    spari_rotate_back(pose + 3, rate + 3, rate + 3);
-    spari_cross(omega, d, turn);
-    spari_quat_conj(pose + 3, back);
-    spari_quat_mul(back, q + 3, p);
-    spari_quat_log(p, x + 3);
-    spari_tangent_inverse(x + 3, T);
-    double spin[3] = {rate[3], rate[4], rate[5]};
-    for (int k = 0; k < 3; k++) {
-        x[k] = d[k] - arm[k];
-        rate[k] -= turn[k];
-        rate[3 + k] = T[3 * k] * spin[0] + T[3 * k + 1] * spin[1] + T[3 * k + 2] * spin[2];
-    }
 }

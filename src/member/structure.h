@@ -1,7 +1,7 @@
 /* A structural member: what point, rigid body, beam and external member share. Nodes are numbered element by element
    (elements * per_element of them, a joint stands twice), as in spar_beam_set_nodes. */
-#ifndef SPARI_MEMBER_H
-#define SPARI_MEMBER_H
+#ifndef SPARI_STRUCTURE_H
+#define SPARI_STRUCTURE_H
 
 #include "../base/scene.h"
 
@@ -15,11 +15,11 @@ typedef struct spari_motion {
 
 typedef struct spari_solver spari_solver;   /* src/solve: the owner's integrator */
 typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
-typedef struct spari_work spari_work;       /* src/member/work.h: the work done on a member */
+typedef struct spari_work spari_work;       /* src/solve/work.h: the work done on a member */
 typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
-typedef struct spari_rung spari_rung;       /* src/member/rung.h: a member of lower fidelity */
-typedef struct spari_arms spari_arms;       /* src/member/rung.h: loads on the arms of a rigid body */
-typedef struct spari_remake spari_remake;   /* src/member/remake.h: a member made anew for a trial */
+typedef struct spari_rung spari_rung;       /* src/solve/rung.h: a member of lower fidelity */
+typedef struct spari_arms spari_arms;       /* src/solve/rung.h: loads on the arms of a rigid body */
+typedef struct spari_remake spari_remake;   /* src/trial/remake.h: a member made anew for a trial */
 typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
 
 struct spar_member {
@@ -65,33 +65,6 @@ struct spar_member {
     spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 
-void spari_member_free(spar_member *member);
-/* All that commit makes of the description (nodes, body, loads at zero, solver or rung), its effects being in force; a
-   status and a message where it fails, which leaves parts to be released. */
-int spari_member_build(spar_member *m);
-/* Frees it; the description stays. */
-void spari_member_release(spar_member *m);
-/* The same without freeing: a copy of the struct has it. */
-void spari_member_disown(spar_member *m);
-/* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */
-int spari_member_effects(const spar_member *m);
-/* The motion now has been set anew: the latest iterate, the root and the solver start from it. */
-void spari_member_restart(spar_member *m);
-/* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
-void spari_member_solved(spar_member *member, const double *fluid);
-/* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.
- * Returns SPAR_ERR_MEMORY or 0. */
-int spari_member_reaction(const spar_member *member, double load[6]);
-/* The same with memory given beforehand: so many doubles. */
-int64_t spari_member_reaction_room(const spar_member *member);
-void spari_member_reaction_in(const spar_member *member, double *room, double load[6]);
-/* The latest iterate becomes the motion the clock stands at, as after a static solution. */
-void spari_member_settle(spar_member *member);
-/* The step under way is accepted, or given up. */
-void spari_member_accept(spar_member *member);
-void spari_member_reject(spar_member *member);
-/* Puts the session's gravity in force. */
-void spari_member_gravity(spar_member *member);
 /* The description as one number: all but the owner. */
 uint64_t spari_member_hash(const spar_member *member);
 /* Arrays of `width` doubles a node, from the public numbering (joints twice) to the unknowns' (joints once) and back.
@@ -102,6 +75,14 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
 double spari_member_length(const spar_member *member);
 /* Whether spar advances the member (not a point, not external). */
 int spari_member_is_solved(const spar_member *member);
+/* Whether its nodes follow its root without a solution. */
+static inline int spari_member_is_prescribed(const spar_member *member) {
+    return member->fidelity == SPAR_FIDELITY_PRESCRIBED;
+}
+/* Whether it is linear or modal: seen from a frame, its root's or one that stands (solve/frame.h). */
+static inline int spari_member_is_framed(const spar_member *member) {
+    return member->fidelity == SPAR_FIDELITY_LINEAR || member->fidelity == SPAR_FIDELITY_MODAL;
+}
 /* Whether the motion of the root is given, so that it carries the member; else it is one of the unknowns. */
 static inline int spari_member_root_is_given(const spar_member *member) {
     return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;

@@ -4,9 +4,9 @@
    the mu of the group that holds most of its strain energy, the third group gets their geometric mean. */
 #include "../base/quiet.h"
 #include "../math/rotation.h"
-#include "../solve/solver.h"
-#include "beam.h"
-#include "edge.h"
+#include "../member/beam.h"
+#include "../member/edge.h"
+#include "solver.h"
 
 #include <stdlib.h>
 #include <string.h>

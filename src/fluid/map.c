@@ -1,262 +1,13 @@
-#include "fluid.h"
+/* The map of a fluid's nodes: where their feet are, and what the host may ask of it. */
 #include "../base/quiet.h"
-
-#include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"
 #include "state.h"
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char *const set_name[2] = {"motion", "force"};
-
-int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...) {
-    char text[SPARI_MESSAGE_SIZE];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    return spari_fail(fluid->member->session, status, "%s: fluid '%s' of member '%s': %s", caller, fluid->name,
-                      fluid->member->name, text);
-}
-/* ---- life ---- */
-
-int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid) {
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "spar_fluid_create: the member is NULL; create it first");
-    spar_session *session = member->session;
-    SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_create: member '%s': the place for the handle is NULL",
-                  member->name);
-    SPARI_REQUIRE(session, !session->trial, SPAR_ERR_STATE,
-                  "spar_fluid_create: member '%s': a trial run is under way; create fluids before or after it",
-                  member->name);
-    SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
-                  "spar_fluid_create: member '%s': the fluid needs a name; messages use it", member->name);
-    spar_fluid *made = spari_zalloc(1, sizeof *made);
-    char *copy = spari_zalloc((int64_t)strlen(name) + 1, 1);
-    if (!made || !copy) {
-        free(made);
-        free(copy);
-        return spari_fail(session, SPAR_ERR_MEMORY, "spar_fluid_create: member '%s': no memory for a fluid",
-                          member->name);
-    }
-    strcpy(copy, name);
-    made->member = member, made->name = copy;
-    spar_fluid **end = &session->fluids; /* at the end: loads are added in order of creation */
-    while (*end) {
-        end = &(*end)->next;
-    }
-    *end = made;
-    *fluid = made;
-    return SPAR_OK;
-}
-
-static void clear_set(spari_node_set *set) {
-    free(set->x);
-    free(set->xi);
-    spari_nodes_free(set->nodes);
-    *set = (spari_node_set){0};
-}
-
-void spari_history_free(spari_history *h) {
-    if (!h) {
-        return;
-    }
-    free(h->after);
-    for (int i = 0; i < 3; i++) {
-        free(h->past[i]);
-    }
-    free(h);
-}
-
-spari_history *spari_history_create(int64_t n, int order) {
-    spari_history *h = spari_zalloc(1, sizeof *h);
-    if (!h) {
-        return NULL;
-    }
-    h->n = n;
-    h->after = spari_zalloc(3 * n, sizeof *h->after);
-    if (!h->after || spari_history_keep(h->past, 3 * n, order) != SPAR_OK) {
-        spari_history_free(h);
-        return NULL;
-    }
-    return h;
-}
-
-void spari_fluid_free(spar_fluid *fluid) {
-    if (!fluid) {
-        return;
-    }
-    clear_set(&fluid->set[0]);
-    clear_set(&fluid->set[1]);
-    spari_history_free(fluid->history);
-    spari_history_free(fluid->history_next);
-    double *all[] = {fluid->modal,   fluid->field[0], fluid->field[1],     fluid->reference,
-                     fluid->work,    fluid->load,     fluid->load_new,     fluid->load_accepted,
-                     fluid->mean[0], fluid->mean[1],  fluid->mean_next[0], fluid->mean_next[1]};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        free(all[i]);
-    }
-    free(fluid->why);
-    free(fluid->name);
-    free(fluid);
-}
-
-void spar_fluid_destroy(spar_fluid **fluid) {
-    if (!fluid || !*fluid || (*fluid)->member->session->trial) { /* what it was is needed after the trial */
-        return;
-    }
-    spar_fluid **at = &(*fluid)->member->session->fluids;
-    while (*at && *at != *fluid) {
-        at = &(*at)->next;
-    }
-    if (*at) {
-        *at = (*fluid)->next;
-    }
-    spari_fluid_free(*fluid);
-    *fluid = NULL;
-}
-
-spar_fluid *spari_fluid_next(const spar_fluid *fluid) {
-    return fluid->next;
-}
-
-spar_member *spari_fluid_member(const spar_fluid *fluid) {
-    return fluid->member;
-}
-
-spar_session *spari_fluid_session(const spar_fluid *fluid) {
-    return fluid->member->session;
-}
-
-const char *spari_fluid_name(const spar_fluid *fluid) {
-    return fluid->name;
-}
-
-/* ---- what the host gives ---- */
-
-static int check_idle(const spar_fluid *fluid, const char *caller) {
-    if (fluid->member->session->phase != SPARI_IDLE) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, caller,
-            "a step is under way; change nodes and maps after spar_step_accept or spar_step_reject");
-    }
-    if (fluid->member->session->trial) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "a trial run is under way; its fluids are not to be changed");
-    }
-    return SPAR_OK;
-}
-
-int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
-                             int width) {
-    int64_t bad = spari_first_nonfinite(x, n * width);
-    if (bad >= 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%s %lld, component %d, is %g; give finite numbers",
-                                  what, (long long)(bad / width), (int)(bad % width), x[bad]);
-    }
-    return SPAR_OK;
-}
-
-/* A copy of x [n], zeros for NULL. */
-static double *copy_of(const double *x, int64_t n) {
-    double *copy = spari_zalloc(n, sizeof *copy);
-    if (copy && x && n > 0) {
-        memcpy(copy, x, sizeof *copy * (size_t)n);
-    }
-    return copy;
-}
-
-static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
-    SPARI_TRY(check_idle(fluid, caller));
-    if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%lld nodes%s; give 0 to 2^40, and n x 3 places",
-                                  (long long)n, x ? "" : " without places");
-    }
-    SPARI_TRY(
-        spari_fluid_check_values(fluid, caller, which == SPAR_NODES_MOTION ? "motion node" : "force node", x, n, 3));
-    double *copy = copy_of(x, 3 * n);
-    if (!copy) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld nodes", (long long)n);
-    }
-    if (fluid->shared) { /* sections served both; the other set keeps them */
-        fluid->shared = 0;
-        if (which == SPAR_NODES_MOTION) {
-            fluid->set[SPAR_NODES_FORCE] = fluid->set[SPAR_NODES_MOTION];
-            fluid->set[SPAR_NODES_MOTION] = (spari_node_set){0};
-        }
-    }
-    clear_set(&fluid->set[which]);
-    fluid->set[which] = (spari_node_set){.pending = 1, .n = n, .x = copy};
-    return SPAR_OK;
-}
-
-int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    return set_places(fluid, SPAR_NODES_MOTION, n, x, __func__);
-}
-
-int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    return set_places(fluid, SPAR_NODES_FORCE, n, x, __func__);
-}
-
-int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n >= 0 && n <= SPARI_MOST && (n == 0 || xi), SPAR_ERR_ARGUMENT,
-                        "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
-                        xi ? "" : " without coordinates");
-    for (int64_t j = 0; j < n; j++) {
-        SPARI_FLUID_REQUIRE(fluid, xi[j] >= -1 && xi[j] <= 1, SPAR_ERR_ARGUMENT,
-                            "section %lld: xi = %g lies outside [-1,1]; xi = 2 eta - 1 over the whole beam",
-                            (long long)j, xi[j]);
-    }
-    if (offset) {
-        SPARI_TRY(spari_fluid_check_values(fluid, __func__, "offset of section", offset, n, 3));
-    }
-    double *copy = copy_of(offset, 3 * n), *at = copy_of(xi, n);
-    if (!copy || !at) {
-        free(copy);
-        free(at);
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for %lld sections", (long long)n);
-    }
-    clear_set(&fluid->set[0]);
-    clear_set(&fluid->set[1]);
-    fluid->shared = 1;
-    fluid->set[SPAR_NODES_MOTION] = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .xi = at};
-    return SPAR_OK;
-}
-
-int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, method == SPAR_PROJECT_BOUNDED || method == SPAR_PROJECT_RPOLY, SPAR_ERR_ARGUMENT,
-                        "projection method %d is not known; SPAR_PROJECT_BOUNDED or SPAR_PROJECT_RPOLY", method);
-    SPARI_FLUID_REQUIRE(fluid, !isnan(max_distance), SPAR_ERR_ARGUMENT,
-                        "max_distance is not a number; <= 0 means no limit");
-    fluid->method = method;
-    fluid->max_distance = max_distance;
-    return SPAR_OK;
-}
-
-int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, kind == SPAR_INTERPOLATE_NODAL || kind == SPAR_INTERPOLATE_CONSISTENT, SPAR_ERR_ARGUMENT,
-                        "interpolation %d is not known; SPAR_INTERPOLATE_NODAL or SPAR_INTERPOLATE_CONSISTENT", kind);
-    fluid->consistent = kind == SPAR_INTERPOLATE_CONSISTENT;
-    return SPAR_OK;
-}
-
-/* ---- the map ---- */
 
 /* Memory and coefficients that depend on the member alone; kept from map to map. */
 static int prepare_member(spar_fluid *fluid) {
@@ -441,7 +192,7 @@ static int keeps_forces(const spar_fluid *fluid) {
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     int sections = set->sections;
-    clear_set(set);
+    spari_node_set_clear(set);
     *set = (spari_node_set){.sections = sections, .n = nodes->n, .nodes = nodes};
 }
 
@@ -451,7 +202,7 @@ int spar_fluid_map(spar_fluid *fluid) {
     const spar_member *m = fluid->member;
     SPARI_FLUID_REQUIRE(fluid, m->committed, SPAR_ERR_STATE,
                         "the member is not committed; call spar_member_commit first");
-    SPARI_TRY(check_idle(fluid, __func__));
+    SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, prepare_member(fluid) == SPAR_OK, SPAR_ERR_MEMORY, "no memory to map");
     spari_line *line = spari_line_create(m->elements, m->per_element, m->xr);
     SPARI_FLUID_REQUIRE(fluid, line, SPAR_ERR_MEMORY, "no memory to map");

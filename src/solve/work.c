@@ -3,9 +3,9 @@
 
 #include "../base/scene.h"
 #include "../math/rotation.h"
-#include "applied.h"
-#include "edge.h"
-#include "rung.h"
+#include "../member/applied.h"
+#include "../member/edge.h"
+#include "reaction.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +30,7 @@ void spari_work_free(spari_work *work) {
 /* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
  */
 static int turns_linearly(const spar_member *m) {
-    return !(m->effects & SPAR_EFFECT_LARGE_ROTATION) || (m->rung && m->rung->frame && m->root != SPAR_ROOT_DRIVEN);
+    return !(m->effects & SPAR_EFFECT_LARGE_ROTATION) || (spari_member_is_framed(m) && m->root != SPAR_ROOT_DRIVEN);
 }
 
 /* Displacement and rotation vector of node i over the step */

@@ -1,0 +1,410 @@
+/* The life of a member: see life.h. */
+#include "life.h"
+
+#include "../base/quiet.h"
+
+#include "../comm/comm.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "../member/beam.h"
+#include "../member/edge.h"
+#include "rung.h"
+#include "solver.h"
+#include "work.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the motion at t^0 and the steps ---- */
+
+static int rigid_field(spar_member *m) {
+    const double *x0 = m->velocity[0], *v0 = m->velocity[1], *w = m->velocity[2];
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double r[3], *v = m->now.v + 6 * i, *a = m->now.a + 6 * i;
+        for (int c = 0; c < 3; c++) {
+            r[c] = m->xr[3 * i + c] + m->now.q[7 * i + c] - x0[c];
+        }
+        spari_cross(w, r, v);
+        spari_cross(
+            w, v,
+            a); /* centripetal: what a body turning steadily has; the solver replaces it by the balance of forces */
+        for (int c = 0; c < 3; c++) {
+            v[c] += v0[c];
+            v[3 + c] = w[c];
+            a[3 + c] = 0;
+        }
+    }
+    int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
+    SPARI_REQUIRE(
+        m->session, finite, SPAR_ERR_ARGUMENT,
+        "member '%s': its initial velocities are beyond the range of numbers; look at spar_member_set_velocity "
+        "and its units",
+        m->name);
+    return SPAR_OK;
+}
+
+static void copy_motion(const spar_member *m, const spari_motion *from, spari_motion *to) {
+    memcpy(to->q, from->q, (size_t)m->nodes * 7 * sizeof *to->q);
+    memcpy(to->v, from->v, (size_t)m->nodes * 6 * sizeof *to->v);
+    memcpy(to->a, from->a, (size_t)m->nodes * 6 * sizeof *to->a);
+}
+
+/* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
+void spari_member_restart(spar_member *m) {
+    copy_motion(m, &m->now, &m->after);
+    for (int k = 0; k < 2; k++) {
+        memcpy(m->drive[k], m->now.q, 7 * sizeof(double));
+        memcpy(m->drive[k] + 7, m->now.v, 6 * sizeof(double));
+        memcpy(m->drive[k] + 13, m->now.a, 6 * sizeof(double));
+    }
+    if (m->solver) {
+        spari_solver_restart(m->solver, m);
+    } else if (m->rung) {
+        spari_rung_restart(m);
+    }
+    if (m->work) {
+        spari_work_restart(m);
+    }
+}
+
+/* a's loads become b's */
+static void copy_solved(spar_member *m, int a, int b) {
+    memcpy(m->load_solved[b], m->load_solved[a], (size_t)(6 * m->nodes) * sizeof(double));
+}
+
+void spari_member_solved(spar_member *m, const double *fluid) {
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        m->load_solved[1][i] = m->dead[i] + fluid[i];
+    }
+}
+
+void spari_member_settle(spar_member *m) {
+    copy_motion(m, &m->after, &m->now);
+    copy_solved(m, 1, 0);
+    spari_member_restart(m);
+}
+
+void spari_member_accept(spar_member *m) {
+    if (m->work) {
+        spari_work_step(m);
+    }
+    copy_motion(m, &m->after, &m->now);
+    copy_solved(m, 1, 0);
+    memcpy(m->drive[0], m->drive[1], sizeof m->drive[0]);
+    m->drive_given = m->motion_given = 0;
+    m->dissipated += m->dissipated_step;
+    m->dissipated_step = 0;
+    if (m->solver) {
+        spari_solver_accept(m->solver);
+    } else if (m->rung) {
+        spari_rung_accept(m);
+    }
+}
+
+void spari_member_reject(spar_member *m) {
+    copy_motion(m, &m->now, &m->after);
+    copy_solved(m, 0, 1);
+    m->motion_given = 0;
+    m->dissipated_step = 0;
+    if (m->solver && m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
+        spari_solver_restart(m->solver, m);
+    } else if (m->rung && m->session->step == 0) {
+        spari_rung_restart(m);
+    }
+}
+
+int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]) {
+    SPARI_QUIET;
+    const char *call = "spar_member_set_velocity";
+    static const double zero[3] = {0, 0, 0};
+    SPARI_TRY(spari_need_member(member, call));
+    SPARI_REQUIRE(member->session, !member->session->started, SPAR_ERR_STATE,
+                  "%s: '%s': the clock has started; give initial velocities before the first step", call, member->name);
+    const double *in[3] = {x0 ? x0 : zero, v0 ? v0 : zero, omega ? omega : zero};
+    const char *what[3] = {"x0", "v0", "omega"};
+    for (int k = 0; k < 3; k++) {
+        SPARI_TRY(spari_need_finite(member->session, call, member->name, what[k], 3, in[k]));
+    }
+    double old[3][3];
+    memcpy(old, member->velocity, sizeof old);
+    for (int k = 0; k < 3; k++) {
+        memcpy(member->velocity[k], in[k], 3 * sizeof(double));
+    }
+    if (member->committed) {
+        int status = rigid_field(member);
+        if (status != SPAR_OK) {
+            memcpy(member->velocity, old, sizeof old);
+            copy_motion(member, &member->after, &member->now);
+            return status;
+        }
+        spari_member_restart(member);
+    }
+    member->velocity_given = 1;
+    return SPAR_OK;
+}
+
+/* ---- commit ---- */
+
+static int check_description(spar_member *m) {
+    if (m->kind == SPARI_BEAM) {
+        SPARI_REQUIRE(m->session, m->beam->eta || m->beam->node_x, SPAR_ERR_STATE,
+                      "spar_member_commit: '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
+        SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
+                      "spar_member_commit: '%s' has no sections; call spar_beam_set_sections", m->name);
+    }
+    SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
+                  "spar_member_commit: '%s': the clock has started; commit members before the first step", m->name);
+    SPARI_TRY(spari_rung_check(m));
+    return SPAR_OK;
+}
+
+/* What is in force: what was asked for (or everything), as far as the description gives it something to do. */
+int spari_member_effects(const spar_member *m) {
+    int e = m->effects_given ? m->effects : ~0;
+    int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = spari_member_is_solved(m);
+    int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
+    possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
+    possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
+    possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
+    possible |= m->effects_given ? SPAR_EFFECT_FLUID_HISTORY : 0; /* unasked it comes with the fluids that need it */
+    return spari_rung_effects(m, e & possible);
+}
+
+/* The arrays over the nodes, how many numbers a node has in each, and the least order of the predictor that needs it.
+ */
+static const struct {
+    size_t field;
+    int width, order;
+} node_arrays[] = {
+    {offsetof(spar_member, xr), 3, 0},
+    {offsetof(spar_member, qr), 4, 0},
+    {offsetof(spar_member, now.q), 7, 0},
+    {offsetof(spar_member, now.v), 6, 0},
+    {offsetof(spar_member, now.a), 6, 0},
+    {offsetof(spar_member, after.q), 7, 0},
+    {offsetof(spar_member, after.v), 6, 0},
+    {offsetof(spar_member, after.a), 6, 0},
+    {offsetof(spar_member, dead), 6, 0},
+    {offsetof(spar_member, load_used), 6, 0},
+    {offsetof(spar_member, load_pushed), 6, 0},
+    {offsetof(spar_member, load_before), 6, 0},
+    {offsetof(spar_member, load_history[0]), 6, 0},
+    {offsetof(spar_member, load_history[1]), 6, 1},
+    {offsetof(spar_member, load_history[2]), 6, 2},
+    {offsetof(spar_member, load_solved[0]), 6, 0},
+    {offsetof(spar_member, load_solved[1]), 6, 0},
+};
+enum { NODE_ARRAYS = sizeof node_arrays / sizeof *node_arrays };
+
+static double **node_array(spar_member *m, int k) {
+    return (double **)(void *)((char *)m + node_arrays[k].field);
+}
+
+static int allocate(spar_member *m) {
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        if (node_arrays[k].order > m->session->predictor) {
+            continue;
+        }
+        double *x = spari_zalloc(node_arrays[k].width * m->nodes, sizeof *x);
+        SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
+        *node_array(m, k) = x;
+    }
+    return SPAR_OK;
+}
+
+void spari_member_release(spar_member *m) {
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        free(*node_array(m, k));
+        *node_array(m, k) = NULL;
+    }
+    spari_work_free(m->work);
+    m->work = NULL;
+    spari_applied_free(m->applied);
+    spari_applied_free(m->applied_next);
+    m->applied = m->applied_next = NULL;
+    spari_rung_free(m->rung);
+    m->rung = NULL;
+    spari_solver_free(m->solver);
+    spari_body_free(m->body);
+    m->solver = NULL;
+    m->body = NULL;
+}
+
+void spari_member_disown(spar_member *m) {
+    for (int k = 0; k < NODE_ARRAYS; k++) {
+        *node_array(m, k) = NULL;
+    }
+    m->work = NULL;
+    m->applied = m->applied_next = NULL;
+    m->rung = NULL;
+    m->solver = NULL;
+    m->body = NULL;
+}
+
+int spari_member_build(spar_member *m) {
+    spar_session *session = m->session;
+    SPARI_TRY(allocate(m));
+    if (m->kind == SPARI_BEAM) {
+        SPARI_TRY(spari_beam_place_nodes(m));
+    } else {
+        memcpy(m->xr, m->place_x, sizeof m->place_x);
+        memcpy(m->qr, m->place_q, sizeof m->place_q);
+    }
+    for (int64_t i = 0; i < m->nodes; i++) {
+        m->now.q[7 * i + 3] = 1;
+    }
+    if (m->velocity_given) {
+        SPARI_TRY(rigid_field(m));
+    }
+    if (spari_member_is_solved(m)) {
+        SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, &m->body) : spari_rigid_build(m, &m->body));
+        m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
+        spari_member_gravity(m);
+        SPARI_TRY(spari_rung_create(m));
+        if (!m->rung && !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
+            SPARI_REQUIRE(session, spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY) == 0,
+                          SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
+        }
+        if (!m->rung && m->owner == spari_comm_rank(session->comm)) {
+            m->solver = spari_solver_create(m);
+            SPARI_REQUIRE(session, m->solver, SPAR_ERR_MEMORY, "spar_member_commit: no memory for the solver of '%s'",
+                          m->name);
+        }
+    } else if (spari_member_is_prescribed(m)) {
+        SPARI_TRY(spari_rung_create(m));
+    }
+    spari_member_restart(m);
+    return SPAR_OK;
+}
+
+void spari_member_gravity(spar_member *m) {
+    if (m->body) {
+        for (int i = 0; i < 3; i++) {
+            m->body->gravity[i] = m->effects & SPAR_EFFECT_GRAVITY ? m->session->gravity[i] : 0;
+        }
+        spari_body_gravity_changed(m->body);
+    }
+}
+
+/* Loads and motions of all members are stacked in the order of their creation. */
+static int place_of(const spar_member *member) {
+    int place = 0;
+    for (const spar_member *m = member->session->members; m && m != member; m = m->next) {
+        place++;
+    }
+    return place;
+}
+
+int spar_member_commit(spar_member *member) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_member(member, "spar_member_commit"));
+    spar_session *s = member->session;
+    int asked = member->effects, status;
+    if (member->committed) {
+        status = spari_fail(s, SPAR_ERR_STATE, "spar_member_commit: '%s' is committed already", member->name);
+    } else {
+        status = check_description(member);
+        if (status == SPAR_OK) {
+            member->effects = spari_member_effects(member);
+            status = spari_member_build(member);
+            if (status != SPAR_OK) {
+                spari_member_release(member);
+            }
+        }
+    }
+    const spari_alike alike[] = {spari_whole("places of it in the order of creation", place_of(member)),
+                                 spari_whole("owners of it", member->owner),
+                                 spari_hash("descriptions of it", spari_member_hash(member))};
+    int agreed = spari_member_enter(member, "spar_member_commit", alike, 3, status);
+    if (agreed != SPAR_OK) {
+        if (status == SPAR_OK) {
+            spari_member_release(member);
+        }
+        if (!member->committed) {
+            member->effects = asked;
+        }
+        return spari_named(s, "spar_member_commit", agreed);
+    }
+    member->committed = 1;
+    return SPAR_OK;
+}
+
+void spari_member_free(spar_member *member) {
+    if (!member) {
+        return;
+    }
+    spari_member_release(member);
+    spari_beam_free(member->beam);
+    free(member->advice);
+    free(member->name);
+    free(member);
+}
+
+int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {
+    SPARI_QUIET;
+    const char *call = "spar_member_set_motion";
+    SPARI_TRY(spari_need_committed(member, call));
+    spar_session *s = member->session;
+    int64_t n = member->nodes;
+    SPARI_REQUIRE(
+        s, member->external || member->kind == SPARI_POINT, SPAR_ERR_STATE,
+        "%s: spar solves for '%s' itself; set_motion is for points and external members (spar_member_set_external)",
+        call, member->name);
+    SPARI_REQUIRE(s, s->phase != SPARI_IDLE || !s->started, SPAR_ERR_STATE,
+                  "%s: '%s': no step is under way; give the motion at t^{n+1} after spar_step_begin", call,
+                  member->name);
+    if (q) {
+        SPARI_TRY(spari_need_finite(s, call, member->name, "q", 7 * n, q));
+        SPARI_TRY(spari_need_unit(s, call, member->name, "q", n, q + 3, 7));
+    }
+    if (v) {
+        SPARI_TRY(spari_need_finite(s, call, member->name, "v", 6 * n, v));
+    }
+    if (a) {
+        SPARI_TRY(spari_need_finite(s, call, member->name, "a", 6 * n, a));
+    }
+    spari_motion *to = s->phase == SPARI_IDLE ? &member->now : &member->after;
+    for (int64_t i = 0; q && i < n; i++) {
+        memcpy(to->q + 7 * i, q + 7 * i, 7 * sizeof *q);
+        spari_quat_normalise(to->q + 7 * i + 3);
+    }
+    if (v) {
+        memcpy(to->v, v, (size_t)n * 6 * sizeof *v);
+    }
+    if (a) {
+        memcpy(to->a, a, (size_t)n * 6 * sizeof *a);
+    }
+    if (s->phase == SPARI_IDLE) {
+        spari_member_restart(member);
+    } else {
+        member->motion_given = 1;
+    }
+    return SPAR_OK;
+}
+
+int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]) {
+    SPARI_QUIET;
+    static const double rest[6] = {0};
+    const char *call = "spar_member_drive_root";
+    SPARI_TRY(spari_need_committed(member, call));
+    spar_session *s = member->session;
+    SPARI_REQUIRE(s, member->kind == SPARI_POINT || (member->root == SPAR_ROOT_DRIVEN && !member->external),
+                  SPAR_ERR_STATE,
+                  "%s: the root of '%s' is not driven; call spar_member_set_root with SPAR_ROOT_DRIVEN before commit",
+                  call, member->name);
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: '%s': a step is under way; the root's motion at its end is given before spar_step_begin", call,
+                  member->name);
+    SPARI_TRY(spari_need_finite(s, call, member->name, "q", 7, q));
+    SPARI_TRY(spari_need_unit(s, call, member->name, "q", 1, q + 3, 7));
+    const double *in[2] = {v ? v : rest, a ? a : rest};
+    SPARI_TRY(spari_need_finite(s, call, member->name, "v", 6, in[0]));
+    SPARI_TRY(spari_need_finite(s, call, member->name, "a", 6, in[1]));
+    double *to = member->drive[1];
+    memcpy(to, q, 7 * sizeof *q);
+    memcpy(to + 7, in[0], 6 * sizeof *to);
+    memcpy(to + 13, in[1], 6 * sizeof *to);
+    spari_quat_normalise(to + 3);
+    member->drive_given = 1;
+    return SPAR_OK;
+}

@@ -1,0 +1,29 @@
+/* The life of a member: made by its commit, carried from step to step, released. */
+#ifndef SPARI_LIFE_H
+#define SPARI_LIFE_H
+
+#include "../member/structure.h"
+
+void spari_member_free(spar_member *member);
+/* All that commit makes of the description (nodes, body, loads at zero, solver or rung), its effects being in force; a
+   status and a message where it fails, which leaves parts to be released. */
+int spari_member_build(spar_member *m);
+/* Frees it; the description stays. */
+void spari_member_release(spar_member *m);
+/* The same without freeing: a copy of the struct has it. */
+void spari_member_disown(spar_member *m);
+/* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */
+int spari_member_effects(const spar_member *m);
+/* The motion now has been set anew: the latest iterate, the root and the solver start from it. */
+void spari_member_restart(spar_member *m);
+/* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
+void spari_member_solved(spar_member *member, const double *fluid);
+/* The latest iterate becomes the motion the clock stands at, as after a static solution. */
+void spari_member_settle(spar_member *member);
+/* The step under way is accepted, or given up. */
+void spari_member_accept(spar_member *member);
+void spari_member_reject(spar_member *member);
+/* Puts the session's gravity in force. */
+void spari_member_gravity(spar_member *member);
+
+#endif
