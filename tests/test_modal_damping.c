@@ -109,11 +109,33 @@ static void test_refusals(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A mode without strain, whose frequency is rounding, would give a damping that no step can be solved with. */
+static void test_rigid_modes(void **state) {
+    (void)state;
+    const double ratio[2] = {0.01, 0.01};
+    double K[36], M[36];
+    scene_diagonal(K, 1e6, 1e6, 1e6, 5000, 10, 40);
+    scene_diagonal(M, 2, 2, 2, 1e-3, 1e-3, 1e-3);
+    for (int free = 0; free < 2; free++) {
+        int64_t rigid[2] = {free ? 5 : 2, free ? 8 : 5}, good[2] = {free ? 6 : 3, free ? 7 : 4};
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "b", 1, 8, 3, K, M);
+        OK(s, spar_member_set_root(b, free ? SPAR_ROOT_FREE : SPAR_ROOT_PINNED));
+        OK(s, spar_member_commit(b));
+        assert_int_equal(spar_beam_set_modal_damping(b, rigid, ratio, NULL), SPAR_ERR_NUMERIC);
+        assert_non_null(strstr(spar_session_message(s), "as a rigid body"));
+        OK(s, spar_beam_set_modal_damping(b, good, ratio, NULL));
+        scene_run(s, 0.01, 2);
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_uncoupled),
         cmocka_unit_test(test_decay),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_rigid_modes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -427,7 +427,7 @@ SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequ
    shear y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as
    spar_member_get_modes gives them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not
    wanted. Between commit and the first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind;
-   SPAR_ERR_NUMERIC: no mu gives these ratios. */
+   SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a free or pinned beam as a rigid body). */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */

@@ -132,6 +132,11 @@ static int solve_ratios(const double share[2][GROUPS][GROUPS], const int own[2],
     return 1;
 }
 
+/* The lowest modes of a free or pinned beam, which move it without strain; what frequency they have is rounding. */
+static int rigid_modes(const spar_member *m) {
+    return m->root == SPAR_ROOT_FREE ? 6 : m->root == SPAR_ROOT_PINNED ? 3 : 0;
+}
+
 static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6]) {
     spar_session *s = m->session;
     int64_t most = 1 + (mode[0] > mode[1] ? mode[0] : mode[1]), u = m->body->unique,
@@ -142,6 +147,13 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
     int own[2] = {0, 0}, status = spar_member_get_modes(m, most, all, shapes);
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {
+        if (mode[k] < rigid_modes(m)) {
+            status = spari_fail(s, SPAR_ERR_NUMERIC,
+                                "%s: '%s': mode %lld moves it as a rigid body and cannot be damped; the first that "
+                                "can is %d",
+                                CALL, m->name, (long long)mode[k], rigid_modes(m));
+            break;
+        }
         omega[k] = 6.283185307179586 * all[mode[k]];
         if (!(omega[k] > 0) || !isfinite(omega[k])) {
             status = spari_fail(s, SPAR_ERR_NUMERIC, "%s: '%s': mode %lld has the frequency %g Hz and cannot be damped",

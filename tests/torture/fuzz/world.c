@@ -152,6 +152,7 @@ void fuzz_before(call *c) {
     if (c->asked == 0) {
         c->where[c->asked++] = NULL;
     }
+    c->w->failures += c->watched && c->w->depth > 0; /* what is asked in between leaves messages */
     c->taint = c->w->taint;
     c->room = c->session >= 0 ? c->w->session[c->session].room : 0;
     c->failures = c->w->failures;
