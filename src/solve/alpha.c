@@ -636,9 +636,13 @@ static void swap(spari_state *a, spari_state *b) {
 /* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
    stands in the root's axes. */
 static int begin_leap(spar_member *member, const scheme *c, ends *e, const spari_state *from) {
-    double *b = e->from.b;
-    int n6 = 6 * member->solver->n, turned = e->root != NULL;
-    double root[19];
+    spari_solver *s = member->solver;
+    double *b = e->from.b, root[19];
+    int n6 = 6 * s->n, turned = e->root != NULL;
+    if (s->h_leapt == c->h) { /* the coupling's next iteration begins where the last one did */
+        memcpy(b, s->leapt, (size_t)n6 * sizeof *b);
+        return SPAR_OK;
+    }
     root_of(from, root);
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate(root + 3, b + i, b + i);
@@ -650,6 +654,8 @@ static int begin_leap(spar_member *member, const scheme *c, ends *e, const spari
     SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
                   "member '%s': found a singular tangent at t = %g, the beginning of a longer step; take a smaller dt",
                   member->name, member->session->time);
+    memcpy(s->leapt, b, (size_t)n6 * sizeof *b);
+    s->h_leapt = c->h;
     return SPAR_OK;
 }
 

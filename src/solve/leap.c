@@ -92,16 +92,12 @@ static void subtract(const spar_member *m, const double *q, const rigid *g, cons
     }
 }
 
-/* r := M y: the forces that accelerations take beyond those at rest. Two arrays of the solver that are not in use
-   during a step serve as room. */
-static void times_mass(const spar_member *m, const double *q, const double *y, double *r) {
-    spari_solver *s = m->solver;
-    double *rest = s->tinv, *still = s->best;
-    int n6 = 6 * s->n;
-    memset(still, 0, (size_t)n6 * sizeof *still);
-    spari_body_residual(m->body, q, still, still, 0, rest, NULL);
+/* r := M y: the forces that accelerations take beyond those at rest. Arrays of the solver that are not in use at the
+   beginning of a step serve as room: `rest` for the forces at rest, `still` for velocities of zero. */
+static void times_mass(const spar_member *m, const double *q, const double *y, const double *still, const double *rest,
+                       double *r) {
     spari_body_residual(m->body, q, still, y, 0, r, NULL);
-    for (int i = 0; i < n6; i++) {
+    for (int i = 0; i < 6 * m->solver->n; i++) {
         r[i] -= rest[i];
     }
 }
@@ -123,9 +119,12 @@ int spari_leap(spar_member *m, const spari_state *at, double cm, double cv, doub
         b[i] -= y[i];
     }
     memcpy(s->dx, y, (size_t)n6 * sizeof *y);
+    double *rest = s->tinv, *still = s->best;
+    memset(still, 0, (size_t)n6 * sizeof *still);
+    spari_body_residual(m->body, q, still, still, 0, rest, NULL);
     int singular = spari_solver_factor(m, at->q, at->v, at->a, 1, cm, cv, NULL);
     for (int pass = 0; pass < SPARI_LEAP_PASSES && !singular; pass++) {
-        times_mass(m, q, y, s->r);
+        times_mass(m, q, y, still, rest, s->r);
         memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
         singular = spari_linear_solve(s->linear, s->r);
         for (int i = 0; i < n6; i++) {

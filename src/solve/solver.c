@@ -26,7 +26,7 @@ spari_solver *spari_solver_create(const spar_member *member) {
     for (int k = 0; k < 3; k++) {
         ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
     }
-    double **sixes[] = {&s->increment, &s->load, &s->load0, &s->load1, &s->r, &s->dx};
+    double **sixes[] = {&s->increment, &s->load, &s->load0, &s->load1, &s->r, &s->dx, &s->leapt};
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
         ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
     }
@@ -67,6 +67,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->load1);
     free(s->r);
     free(s->dx);
+    free(s->leapt);
     free(s->tinv);
     free(s->kept_q);
     free(s->turn);
@@ -83,7 +84,7 @@ void spari_solver_restart(spari_solver *s, const spar_member *member) {
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     s->started = 0;
-    s->h_begin = 0;
+    s->h_begin = s->h_leapt = 0;
     s->power = s->power_begin = 0;
 }
 
@@ -92,6 +93,7 @@ void spari_solver_accept(spari_solver *s) {
     s->begin = s->to;
     s->to = t;
     s->h_begin = s->h_solved;
+    s->h_leapt = 0;
     s->power_begin = s->power;
 }
 
@@ -168,23 +170,25 @@ void spari_solver_publish(spar_member *member, const spari_state *state, spari_m
     spari_member_from_unique(member, 6, state->a, to->a);
 }
 
-enum { STATE_HEAD = 11 };
+/* Of a node: 25 doubles at either end of the step, 4 of the kept turn, 6 of the leap. */
+enum { STATE_HEAD = 12, STATE_NODE = 60 };
 
 int64_t spari_solver_state_size(const spari_solver *s) {
-    return STATE_HEAD + 54 * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
+    return STATE_HEAD + STATE_NODE * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
 }
 
 void spari_solver_save(const spari_solver *s, double *state) {
-    const double head[STATE_HEAD] = {s->n,          s->factored, s->kept_cm,        s->kept_cv,         s->h_begin,
-                                     s->h_solved,   s->started,  (double)s->newton, (double)s->factors, s->power,
-                                     s->power_begin};
+    const double head[STATE_HEAD] = {s->n,           s->factored, s->kept_cm,        s->kept_cv,         s->h_begin,
+                                     s->h_solved,    s->started,  (double)s->newton, (double)s->factors, s->power,
+                                     s->power_begin, s->h_leapt};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
     memcpy(state += 25 * n, s->to.q, 25 * n * sizeof *state);
     memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
+    memcpy(state += 4 * n, s->leapt, 6 * n * sizeof *state);
     if (s->factored) {
-        spari_linear_save(s->linear, state + 4 * n);
+        spari_linear_save(s->linear, state + 6 * n);
     }
 }
 
@@ -194,7 +198,7 @@ static int is_count(double x) {
 }
 
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
-    int64_t own = STATE_HEAD + 54 * (int64_t)s->n, size = spari_linear_state_size(s->linear);
+    int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n, size = spari_linear_state_size(s->linear);
     if (count < STATE_HEAD || state[0] != s->n || !is_count(state[7]) || !is_count(state[8])) {
         return 0;
     }
@@ -209,10 +213,12 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
+    s->h_leapt = state[11];
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
     memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
+    memcpy(s->leapt, state += 4 * n, 6 * n * sizeof *state);
     if (s->factored) {
-        spari_linear_load(s->linear, state + 4 * n);
+        spari_linear_load(s->linear, state + 6 * n);
     }
 }

@@ -23,7 +23,9 @@ struct spari_solver {
     double *tinv;                 /* [n][9] inverse tangent operator of the rotation vector */
     double *load, *load0, *load1; /* [n][6] at a substep's end, at t^n and at t^{n+1} */
     double *r, *dx, *element;
-    double *best; /* static: state to go back to */
+    double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
+    double h_leapt; /* 0: none */
+    double *best;   /* static: state to go back to */
     spari_linear *linear;
     /* the factored tangent, kept while it contracts */
     int factored;
