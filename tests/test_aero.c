@@ -448,6 +448,13 @@ static void test_all_or_none(void **state) {
     for (int k = 0; k < 3; k++) {
         OK(spar_fluid_get_audit(s.fluid[k], before[k]));
     }
+    scene other; /* what is wrong with a blade of another session is told in that of blade 0 */
+    spar_aero *mixed = NULL;
+    begin(&other, 8.0, 9.16);
+    build(&other, 0, 1);
+    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_create(2, (spar_fluid *[]){s.fluid[0], other.fluid[0]}, &mixed),
+            "of another session");
+    end(&other);
     s.wind[0][0] += 1;            /* other loads on blade 0, */
     s.wind[2 * N + 5][1] = 1e308; /* none that can be taken on blade 2 */
     REFUSED(SPAR_ERR_NUMERIC, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), "blade 2, section ");

@@ -60,7 +60,7 @@ static int check_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
                       "spar_aero_create: the fluid of blade %d is NULL", b);
         spar_session *session = spari_fluid_session(fluid[b]);
         int64_t nodes, forces;
-        SPARI_REQUIRE(session, session == spari_fluid_session(fluid[0]), SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(spari_fluid_session(fluid[0]), session == spari_fluid_session(fluid[0]), SPAR_ERR_ARGUMENT,
                       "spar_aero_create: fluid '%s' of blade %d is of another session than blade 0",
                       spari_fluid_name(fluid[b]), b);
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_MOTION, &nodes));

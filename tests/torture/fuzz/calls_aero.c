@@ -205,7 +205,8 @@ void do_spar_aero_report_effects(call *c) {
     text(c, own ? ", its session" : "");
     c->session = l->s ? (int)(l - c->w->session) : -1;
     double dt = arg_dt(c);
-    int64_t steps = odd(c) ? arg_count(c, 7, 7) : 8;
+    int64_t steps = odd(c) ? 4 - 8 * below(c, 3) : 8;
+    text(c, ", %lld", (long long)steps);
     spar_fluid_solver solve;
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
