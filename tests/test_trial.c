@@ -1,6 +1,8 @@
 /* Trial runs go back to the bit, and say what theory says. */
 #include "scene.h"
 
+#include "trial/plan.h"
+
 #include <stdio.h>
 
 enum { NODES = 40 };
@@ -301,6 +303,33 @@ static void test_advice_is_kept(void **state) {
     advised(2e-2, 0.02);
 }
 
+/* Beams get one advice if they are copies, wherever they stand: equal counts are not enough. */
+static void test_copies_get_one_advice(void **state) {
+    (void)state;
+    static const struct {
+        double stiffer, x;
+        int groups;
+    } rows[] = {{1, 3, 1}, {1 + 1e-9, 0, 2}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        double K[36], M[36];
+        const double x[3] = {rows[k].x, 0, 0};
+        spar_session *s = scene_session();
+        scene_box(K, M);
+        OK(s, spar_member_commit(scene_beam(s, "one", 1, 4, 10, K, M)));
+        K[0] *= rows[k].stiffer;
+        spar_member *two = scene_beam(s, "two", 1, 4, 10, K, M);
+        OK(s, spar_member_set_placement(two, x, NULL));
+        OK(s, spar_member_commit(two));
+        spari_advisor d = {.session = s};
+        assert_int_equal(spari_plan_groups(&d), SPAR_OK);
+        assert_int_equal(d.groups, rows[k].groups);
+        assert_int_equal(d.group[1], rows[k].groups - 1);
+        free(d.group);
+        free(d.known);
+        spar_session_destroy(&s);
+    }
+}
+
 /* A body on a spring in a fluid that is nearly as heavy as explicit coupling can bear: m a + ma a + c v + k x = F sin.
    The explicit limit of order 1 is ma/m = 1/3, but for dt that the spring feels it is passed slowly: what is advised
    has to stay by the steady answer for two hundred times the trials. */
@@ -463,6 +492,7 @@ int main(void) {
         cmocka_unit_test(test_left_out_of_statics),
         cmocka_unit_test(test_fluid_rows),
         cmocka_unit_test(test_advice_is_kept),
+        cmocka_unit_test(test_copies_get_one_advice),
         cmocka_unit_test(test_advice_stays_stable),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),

@@ -664,10 +664,10 @@ enum {
    coupling; nothing is changed. tolerance: in, as SPAR_TRY_MOTION, in (0, 1). dt, steps: in, the host's dt, and how
    many of it the trials last: what happens later is not seen, but see the option advise.horizon. before, solve,
    context: in, as of spar_session_try, called with other dt too. advice: out, [SPAR_ADVICE_COUNT]; what it says of
-   beams: spar_member_get_advice. Members of one description (elements, nodes, fidelity, sections) get one advice. What
-   is kept as it is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. A log is told of each
-   trial at SPAR_LOG_INFO. SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges;
-   the message says what error was reached. */
+   beams: spar_member_get_advice. Beams of one make (all that is described but name, placement and initial velocity) get
+   one advice. What is kept as it is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. A
+   log is told of each trial at SPAR_LOG_INFO. SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or
+   nothing converges; the message says what error was reached. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
                                  spar_before_step before, spar_fluid_solver solve, void *context,
                                  double advice[SPAR_ADVICE_COUNT]);

@@ -363,16 +363,12 @@ static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
     return h;
 }
 
-uint64_t spari_member_hash(const spar_member *m) {
+uint64_t spari_member_make(const spar_member *m) {
     uint64_t h = UINT64_C(14695981039346656037);
-    int numbers[] = {m->kind,     m->external,    m->root,           m->effects,  m->effects_given,
-                     m->elements, m->per_element, m->velocity_given, m->fidelity, (int)m->modes};
-    h = hash_bytes(h, m->name, strlen(m->name));
+    int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,
+                     m->elements, m->per_element, m->fidelity, (int)m->modes};
     h = hash_bytes(h, numbers, sizeof numbers);
-    h = hash_bytes(h, m->place_x, sizeof m->place_x);
-    h = hash_bytes(h, m->place_q, sizeof m->place_q);
     h = hash_bytes(h, m->mass, sizeof m->mass);
-    h = hash_bytes(h, m->velocity, sizeof m->velocity);
     const spari_beam *b = m->beam;
     if (b) {
         size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);
@@ -388,4 +384,12 @@ uint64_t spari_member_hash(const spar_member *m) {
         h = b->mass ? hash_bytes(h, b->mass, 36 * s * d) : h;
     }
     return h;
+}
+
+uint64_t spari_member_hash(const spar_member *m) {
+    uint64_t h = hash_bytes(spari_member_make(m), m->name, strlen(m->name));
+    h = hash_bytes(h, m->place_x, sizeof m->place_x);
+    h = hash_bytes(h, m->place_q, sizeof m->place_q);
+    h = hash_bytes(h, &m->velocity_given, sizeof m->velocity_given);
+    return hash_bytes(h, m->velocity, sizeof m->velocity);
 }

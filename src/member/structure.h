@@ -67,6 +67,8 @@ struct spar_member {
 
 /* The description as one number: all but the owner. */
 uint64_t spari_member_hash(const spar_member *member);
+/* The same but for its name, placement and initial velocity: members of one make are copies of each other. */
+uint64_t spari_member_make(const spar_member *member);
 /* Arrays of `width` doubles a node, from the public numbering (joints twice) to the unknowns' (joints once) and back.
  */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);

@@ -23,12 +23,9 @@ static int is_varied(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external;
 }
 
-/* Whether two beams may be taken for copies of each other. */
+/* Whether two beams are copies of each other. */
 static int alike(const spar_member *a, const spar_member *b) {
-    return a->elements == b->elements && a->per_element == b->per_element && a->fidelity == b->fidelity &&
-           a->modes == b->modes && a->root == b->root && a->effects == b->effects &&
-           a->beam->section_count == b->beam->section_count && a->beam->axis_count == b->beam->axis_count &&
-           a->beam->rule == b->beam->rule && a->beam->points == b->beam->points;
+    return spari_member_make(a) == spari_member_make(b);
 }
 
 const spar_member *spari_plan_member(const spari_advisor *d, int group) {
