@@ -210,8 +210,8 @@ static void print_figures(const rotor_report *r, FILE *file) {
     }
     const double reference[] = {f.thrust, f.torque, f.power};
     static const char *const name[] = {"thrust, kN", "torque, kN m", "power, kW"};
-    fprintf(file, "\n  %-31s %12s %12s %12s\n", f.same ? "against AeroDyn 5" : "beside AeroDyn 5, rigid, flat", "spar",
-            "AeroDyn", "difference");
+    fprintf(file, "\n  %-31s %12s %12s %12s\n", f.same ? "against AeroDyn 5" : "beside a rigid, flat rotor", "spar",
+            "AeroDyn 5", f.same ? "difference" : "effect");
     for (int i = 0; i < 3; i++) {
         double s[3];
         statistics(r, ROTOR_THRUST + i, 0, s);
@@ -224,8 +224,12 @@ static void print_figures(const rotor_report *r, FILE *file) {
         most = fmax(most, f.lumped[i]);
     }
     if (f.axial > 0) {
-        fprintf(file, "  axial load of the sections: off by %.4f kN at most, %.3f%% of the largest\n", worst * 1e-3,
-                100 * worst / most);
+        fprintf(file, "  axial load of the sections: %s by %.4f kN at most, %.3f%% of the largest\n",
+                f.same ? "off" : "other", worst * 1e-3, 100 * worst / most);
+    }
+    if (!f.same) {
+        fprintf(file, "  effect: what bending, tilt and cone change; like is compared with like by --rigid --tilt 0 "
+                      "--precone 0\n");
     }
 }
 
