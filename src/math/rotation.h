@@ -18,6 +18,13 @@ static inline double spari_norm(const double a[3]) {
     return sqrt(spari_dot(a, a));
 }
 
+/* s x = a x x, row-major */
+static inline void spari_skew(const double a[3], double s[9]) {
+    s[0] = s[4] = s[8] = 0;
+    s[1] = -a[2], s[2] = a[1], s[5] = -a[0];
+    s[3] = a[2], s[6] = -a[1], s[7] = a[0];
+}
+
 /* c = a b; c may be a or b */
 static inline void spari_quat_mul(const double a[4], const double b[4], double c[4]) {
     double w = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];

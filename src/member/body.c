@@ -18,11 +18,6 @@ static void body_spin(const double q[4], double l[3][4]) {
     memcpy(l, m, sizeof m);
 }
 
-static void skew(const double a[3], double s[3][3]) {
-    double m[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};
-    memcpy(s, m, sizeof m);
-}
-
 /* Im(a* b) */
 static void imag_conj_mul(const double a[4], const double b[4], double c[3]) {
     for (int i = 0; i < 3; i++) {
@@ -537,7 +532,7 @@ static void strain_gradient(const point_state *s, double J[6][14]) {
     memset(J, 0, sizeof(double) * 6 * 14);
     body_spin(s->r, L);
     body_spin(s->p, Lp);
-    skew(s->T, Tx);
+    spari_skew(s->T, *Tx);
     spari_quat_matrix(s->r, R);
     add_product(&J[0][AT_Q], 14, 2 / s->N, (const double(*)[3])Tx, (const double(*)[4])L);
     for (int i = 0; i < 3; i++) {
@@ -558,9 +553,9 @@ static void strain_rate_gradient(const point_state *s, const double J[6][14], do
     body_spin(s->r, L);
     body_spin(s->d, Ld);
     body_spin(s->z, Lz);
-    skew(s->T, Tx);
-    skew(s->omega, Wx);
-    skew(s->t_rate, tx);
+    spari_skew(s->T, *Tx);
+    spari_skew(s->omega, *Wx);
+    spari_skew(s->t_rate, *tx);
     /* d(R^T u'-dot) = t_rate x dtheta; dT x W = -W x dT; T x dW with dW = (-2 Ld - 2 W r^T)/N dQ */
     add_product(&G[0][AT_Q], 14, 2 / s->N, (const double(*)[3])tx, (const double(*)[4])L);
     double dW[3][4];
@@ -590,7 +585,7 @@ static void add_geometric(const point_state *s, double w, double *K) {
     double L[3][4], Sx[3][3], R[9], RS[3][3], mixed[3][4] = {{0}};
     double in = 1 / s->N, in2 = in * in;
     body_spin(s->r, L);
-    skew(s->s, Sx);
+    spari_skew(s->s, *Sx);
     spari_quat_matrix(s->r, R);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -709,9 +704,9 @@ static void add_inertia(const spari_body *body, int k, double w, const point_sta
     }
     double J[3][3] = {{Js[0], Js[1], Js[2]}, {Js[1], Js[3], Js[4]}, {Js[2], Js[4], Js[5]}};
     double cx[3][3], hx[3][3], yx[3][3];
-    skew(mc, cx);
-    skew(n->h, hx);
-    skew(n->y, yx);
+    spari_skew(mc, *cx);
+    spari_skew(n->h, *hx);
+    spari_skew(n->y, *yx);
     double R[9], Rc[3][3], Ry[3][3], cRt[3][3], ch[3][3];
     double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}},
            mQdd[3][4] = {{0}};
@@ -719,9 +714,9 @@ static void add_inertia(const spari_body *body, int k, double w, const point_sta
     spari_quat_matrix(s->r, R);
     if (body->gyroscopic) {
         double Wx[3][3], JWx[3][3], Wcx[3][3], mW[3][3], fW[3][3], RfW[3][3];
-        skew(s->omega, Wx);
-        skew(n->JW, JWx);
-        skew(n->Wc, Wcx);
+        spari_skew(s->omega, *Wx);
+        spari_skew(n->JW, *JWx);
+        spari_skew(n->Wc, *Wcx);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
                 double wj = 0, wc = 0;
@@ -790,8 +785,8 @@ static void add_weight(const spari_body *body, int k, double w, const point_stat
                        point_matrices *m) {
     double L[3][4], cx[3][3], hx[3][3], ch[3][3], mQ[3][4] = {{0}};
     body_spin(s->r, L);
-    skew(body->mass + 10 * (int64_t)k + 1, cx);
-    skew(n->h, hx);
+    spari_skew(body->mass + 10 * (int64_t)k + 1, *cx);
+    spari_skew(n->h, *hx);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             ch[i][j] = cx[i][0] * hx[0][j] + cx[i][1] * hx[1][j] + cx[i][2] * hx[2][j];
@@ -989,7 +984,7 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         double c[4], p[4], wx[3][3];
         spari_quat_conj(z + ROW * i + Q, c);
         spari_quat_mul(g + 4 * i, c, p);
-        skew(p + 1, wx);
+        spari_skew(p + 1, *wx);
         for (int r = 0; r < 3; r++) {
             for (int col = 0; col < 3; col++) {
                 S[stride * (6 * i + 3 + r) + 6 * i + 3 + col] -= 0.25 * ((r == col ? p[0] : 0) + wx[r][col]);

@@ -73,6 +73,18 @@ uint64_t spari_member_make(const spar_member *member);
  */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);
 void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes);
+/* Where the reference has a node of the unknowns, and its arm from the root. */
+static inline const double *spari_member_place(const spar_member *member, int unique) {
+    int P = member->per_element;
+    return member->xr +
+           3 * (unique + (P > 1 && unique > 0 ? (unique - 1) / (P - 1) : 0)); /* joints stand twice there */
+}
+static inline void spari_member_arm(const spar_member *member, int unique, double arm[3]) {
+    const double *place = spari_member_place(member, unique);
+    for (int k = 0; k < 3; k++) {
+        arm[k] = place[k] - member->xr[k];
+    }
+}
 /* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
 double spari_member_length(const spar_member *member);
 /* Whether spar advances the member (not a point, not external). */

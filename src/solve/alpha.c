@@ -5,33 +5,12 @@
 #include "../member/applied.h"
 #include "arms.h"
 #include "leap.h"
+#include "scheme.h"
 #include "solver.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct scheme {
-    double h, alpha_m, alpha_f, beta, gamma;
-    double cm, cv; /* d a / d x and d v / d x of the Newton increments */
-    int still;     /* no inertia: equilibrium at each time, rates from the increments */
-} scheme;
-
-static scheme scheme_of(const spar_member *member, double rho, double h) {
-    scheme c = {.h = h};
-    c.alpha_m = (2 * rho - 1) / (rho + 1);
-    c.alpha_f = rho / (rho + 1);
-    c.gamma = 0.5 + c.alpha_f - c.alpha_m;
-    c.beta = 0.25 * (0.5 + c.gamma) * (0.5 + c.gamma);
-    c.still = !(member->effects & SPAR_EFFECT_INERTIA);
-    if (c.still) {
-        c.cm = 0, c.cv = member->body->D ? 1 / h : 0;
-    } else {
-        c.cm = (1 - c.alpha_m) / (h * h * c.beta * (1 - c.alpha_f));
-        c.cv = c.gamma / (h * c.beta);
-    }
-    return c;
-}
 
 /* ---- seen from a driven root ---- */
 
@@ -43,13 +22,6 @@ typedef struct ends {
     double carried;     /* how far the root takes the member along, as size_of */
 } ends;
 
-static void arm_of(const spar_member *m, int node, double arm[3]) {
-    int P = m->per_element, element = P > 1 && node > 0 ? (node - 1) / (P - 1) : 0; /* joints stand twice there */
-    for (int k = 0; k < 3; k++) {
-        arm[k] = m->xr[3 * (node + element) + k] - m->xr[k];
-    }
-}
-
 /* Motion of all nodes as seen from a root with q, v, a; b is so already. */
 static void look_from(const spar_member *m, const double *root, const spari_state *s, spari_state *own) {
     double W[3], A[3], back[4];
@@ -58,7 +30,7 @@ static void look_from(const spar_member *m, const double *root, const spari_stat
     spari_rotate_back(root + 3, root + 16, A);
     for (int i = 0; i < m->solver->n; i++) {
         double arm[3], d[3], c1[3], c2[3], c3[3], *v = own->v + 6 * i, *a = own->a + 6 * i, *q = own->q + 7 * i;
-        arm_of(m, i, arm);
+        spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
             d[k] = arm[k] + s->q[7 * i + k] - root[k];
         }
@@ -102,7 +74,7 @@ static void show(const spar_member *m, ends *e) {
         const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
         double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
                                                   *B = e->seen.a + 6 * i;
-        arm_of(m, i, arm);
+        spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
             d[k] = arm[k] + e->to.q[7 * i + k];
         }
@@ -145,7 +117,7 @@ static void lose_jump(const spar_member *m, double h, const double *from, const 
     spari_quat_exp(less, back);
     for (int i = 1; i < m->solver->n; i++) {
         double *q = own->q + 7 * i, *v = own->v + 6 * i, d[3], c1[3], c2[3];
-        arm_of(m, i, d);
+        spari_member_arm(m, i, d);
         for (int k = 0; k < 3; k++) {
             d[k] += q[k];
         }
@@ -167,14 +139,7 @@ static void root_of(const spari_state *s, double root[19]) {
     memcpy(root + 13, s->a, 6 * sizeof *root);
 }
 
-/* The distance of b from a is that of another step: see stretch_for. */
-static void stretch(int n, double ratio, spari_state *s) {
-    for (int i = 0; i < 6 * n && ratio != 1; i++) {
-        s->b[i] = s->a[i] + ratio * (s->b[i] - s->a[i]);
-    }
-}
-
-static ends ends_of(const spar_member *m, const scheme *c, const double *root, double ratio, spari_state *from,
+static ends ends_of(const spar_member *m, const spari_scheme *c, const double *root, double ratio, spari_state *from,
                     spari_state *to) {
     spari_solver *s = m->solver;
     ends e = {*from, *to, *to, NULL, 0};
@@ -192,7 +157,7 @@ static ends ends_of(const spar_member *m, const scheme *c, const double *root, d
         look_from(m, before, from, &e.from);
         lose_jump(m, c->h, before, root, &e.from);
     }
-    stretch(s->n, ratio, &e.from);
+    spari_scheme_stretch_by(ratio, 6 * s->n, e.from.a, e.from.b);
     return e;
 }
 
@@ -201,7 +166,7 @@ static ends ends_of(const spar_member *m, const scheme *c, const double *root, d
 /* State of `to` from the increments: place, and without inertia the rates. The rotation vector is the increment plus
    h^2/12 omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly: the scheme stays of
    second order and reversible, and a fast spin about an axis that turns no longer drifts off its axis. */
-static void place_node(const scheme *c, const spari_state *from, const spari_state *to, const double *x, int i) {
+static void place_node(const spari_scheme *c, const spari_state *from, const spari_state *to, const double *x, int i) {
     double p[4], psi[3] = {x[6 * i + 3], x[6 * i + 4], x[6 * i + 5]};
     if (!c->still) {
         double turn[3];
@@ -227,7 +192,7 @@ typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
 
 /* Starting values of Newton. Smooth motion: the acceleration stays. Where stiff parts ring, their acceleration says
    nothing of the next: the velocity stays. Where the step is longer than the motion lasts: the place stays. */
-static void predict(const spar_member *member, const scheme *c, guess stays, ends *e, double *x) {
+static void predict(const spar_member *member, const spari_scheme *c, guess stays, ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int n = member->solver->n;
     double h = c->h;
@@ -250,16 +215,15 @@ static void predict(const spar_member *member, const scheme *c, guess stays, end
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
-static void carry(const spar_member *member, const scheme *c, const double *root, const double turn[4], const ends *e,
-                  double *x) {
+static void carry(const spar_member *member, const spari_scheme *c, const double *root, const double turn[4],
+                  const ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     const spari_solver *s = member->solver;
-    int P = member->per_element, driven = member->root == SPAR_ROOT_DRIVEN;
+    int driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
     spari_quat_log(turn, psi);
     for (int i = 0; i < s->n; i++) {
-        int element = P > 1 ? (i > 0 ? (i - 1) / (P - 1) : 0) : 0;
-        const double *place = member->xr + 3 * (i + element); /* node of the public numbering, joints twice */
+        const double *place = spari_member_place(member, i);
         double arm[3], turned[3];
         for (int k = 0; k < 3; k++) {
             arm[k] = place[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
@@ -305,7 +269,7 @@ static void impose_root(const spar_member *member, const double *root, const end
 
 /* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
  * relative to. */
-static double balance(spar_member *member, const scheme *c, const spari_state *s, double *r) {
+static double balance(spar_member *member, const spari_scheme *c, const spari_state *s, double *r) {
     spari_solver *solver = member->solver;
     int n = solver->n, first, end;
     double scale = spari_body_residual(member->body, s->q, c->still && !member->body->D ? NULL : s->v,
@@ -369,7 +333,7 @@ static void turn_matrix(const double q[4], double T[9]) {
 
 /* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
    d x = I - k omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
-static void update_tangent_operators(const spari_solver *s, const scheme *c, const ends *e, const double *x) {
+static void update_tangent_operators(const spari_solver *s, const spari_scheme *c, const ends *e, const double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     double k = c->still ? 0 : c->h * c->h * c->cv / 12;
     for (int i = 0; i < s->n; i++) {
@@ -395,7 +359,7 @@ static void update_tangent_operators(const spari_solver *s, const scheme *c, con
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply(const spar_member *member, const scheme *c, ends *e, double longest, double *x, double *dx) {
+static double apply(const spar_member *member, const spari_scheme *c, ends *e, double longest, double *x, double *dx) {
     const spari_state *to = &e->to;
     const spari_solver *s = member->solver;
     double largest = 0, length = member->body->length;
@@ -412,14 +376,13 @@ static double apply(const spar_member *member, const scheme *c, ends *e, double 
         largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
     }
     double cut = largest > longest ? longest / largest : 1;
-    double to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
     for (int i = 0; i < s->n; i++) {
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             double step = -cut * dx[k];
             x[k] += step;
             to->v[k] += c->cv * step;
             to->a[k] += c->cm * step;
-            to->b[k] += to_b * step;
+            to->b[k] += c->cb * step;
         }
         place_node(c, &e->from, to, x, i);
     }
@@ -449,7 +412,7 @@ enum { PATIENCE = 5 };
 /* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
 typedef enum effort { KEPT, FRESH, FULL } effort;
 
-static int form_tangent(spar_member *member, const scheme *c, const spari_state *to) {
+static int form_tangent(spar_member *member, const spari_scheme *c, const spari_state *to) {
     const double *v = c->still && !member->body->D ? NULL : to->v;
     return spari_solver_factor(member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, member->solver->tinv);
 }
@@ -462,8 +425,8 @@ static int close_to(double x, double kept) {
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
    what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
    that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spar_member *member, const scheme *c, const double *root, effort how, ends *e, double *x,
-                           int *iterations) {
+static const char *attempt(spar_member *member, const spari_scheme *c, const double *root, effort how, ends *e,
+                           double *x, int *iterations) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
     double last = 0, longest = how == FULL ? 0.5 : INFINITY;
@@ -507,7 +470,8 @@ static const char *attempt(spar_member *member, const scheme *c, const double *r
 }
 
 /* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spar_member *member, const scheme *c, const double *root, const double turn[4], ends *e, double *x) {
+static int newton(spar_member *member, const spari_scheme *c, const double *root, const double turn[4], ends *e,
+                  double *x) {
     const char *wrong = NULL;
     int iterations = 0;
     static const struct {
@@ -574,7 +538,7 @@ void spari_solver_root_at(const spar_member *member, double s, double dt, double
    keeps 1 - (z / (1 + z))^4 of its acceleration. */
 enum { START_REFINEMENTS = 3 };
 
-static int start(spar_member *member, const scheme *c) {
+static int start(spar_member *member, const spari_scheme *c) {
     spari_solver *s = member->solver;
     spari_state *b = &s->begin;
     int n = s->n, first, end;
@@ -620,13 +584,6 @@ static int start(spar_member *member, const scheme *c) {
     return SPAR_OK;
 }
 
-/* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its
-   distance from a^n scales. Without this a sequence of uneven steps is of first order. A much larger step gets no more
-   than four times the distance: it is mostly what an unresolved part left there. */
-static double stretch_for(const spari_solver *s, double h) {
-    return s->h_begin > 0 && h != s->h_begin ? fmin(h / s->h_begin, 4) : 1;
-}
-
 static void swap(spari_state *a, spari_state *b) {
     spari_state t = *a;
     *a = *b;
@@ -635,7 +592,7 @@ static void swap(spari_state *a, spari_state *b) {
 
 /* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
    stands in the root's axes. */
-static int begin_leap(spar_member *member, const scheme *c, ends *e, const spari_state *from) {
+static int begin_leap(spar_member *member, const spari_scheme *c, ends *e, const spari_state *from) {
     spari_solver *s = member->solver;
     double *b = e->from.b, root[19];
     int n6 = 6 * s->n, turned = e->root != NULL;
@@ -662,21 +619,15 @@ static int begin_leap(spar_member *member, const scheme *c, ends *e, const spari
 int spari_solver_advance(spar_member *member, double dt) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
-    int A = session->substeps, n6 = 6 * s->n;
+    int A = session->substeps;
     double root[19], before[19];
-    spari_solver_gather(member, member->load_history[0], s->load0);
-    spari_solver_gather(member, member->load_used, s->load1);
-    spari_solver_gather(member, member->dead, s->load);
-    for (int i = 0; i < n6; i++) {
-        s->load0[i] += s->load[i];
-        s->load1[i] += s->load[i];
-    }
-    scheme c = scheme_of(member, session->rho_inf, dt / A);
+    spari_scheme_loads(member, s->load0, s->load1, s->load);
+    spari_scheme c = spari_scheme_of(member, dt / A);
     if (!s->started && !c.still) {
         SPARI_TRY(start(member, &c));
     }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-    double ratio = stretch_for(s, c.h);
+    double ratio = spari_scheme_stretch(s->h_begin, c.h);
     int leaps = !c.still && spari_is_leap(s->h_begin, c.h);
     s->h_solved = c.h;
     memcpy(before, member->drive[0], sizeof before);
@@ -685,9 +636,7 @@ int spari_solver_advance(spar_member *member, double dt) {
     for (int k = 1; k <= A; k++) {
         double f = (double)k / A, conj[4], turn[4] = {1, 0, 0, 0};
         swap(&s->from, &s->to);
-        for (int i = 0; i < n6; i++) {
-            s->load[i] = (1 - f) * s->load0[i] + f * s->load1[i];
-        }
+        spari_scheme_load_at(f, 6 * s->n, s->load0, s->load1, s->load);
         if (member->arms) {
             spari_arms_at(member->arms, f);
         }

@@ -8,6 +8,7 @@
 #include "../member/pose.h"
 #include "eigen.h"
 #include "leap.h"
+#include "scheme.h"
 #include "solver.h"
 #include "turn.h"
 
@@ -24,11 +25,6 @@ static int pair_of(int k, int l) {
 }
 
 /* ---- matrices from the exact member's tangents at the reference ---- */
-
-static void skew(const double a[3], double s[9]) {
-    const double m[9] = {0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0};
-    memcpy(s, m, sizeof m);
-}
 
 static void product3(const double a[9], const double b[9], double c[9]) {
     for (int i = 0; i < 3; i++) {
@@ -76,7 +72,7 @@ static void turn_matrices(const spari_frame *f, const setup *w, const double ome
     int m = w->m;
     int64_t mm = (int64_t)m * m;
     double W[9], WW[9], W2[9];
-    skew(omega, W);
+    spari_skew(omega, W);
     product3(W, W, WW);
     for (int i = 0; i < 9; i++) {
         W2[i] = 2 * W[i];
@@ -259,7 +255,7 @@ static void assemble(const spari_frame *f, const double *X, double scale, int fr
 static void rigid_columns(spari_frame *f, const double *arm, int cols) {
     for (int i = 0; i < f->nodes; i++) {
         double W[9], *at = f->basis + (int64_t)6 * i * cols;
-        skew(arm + 3 * i, W);
+        spari_skew(arm + 3 * i, W);
         for (int r = 0; r < 3; r++) {
             at[r * cols + r] = at[(3 + r) * cols + 3 + r] = 1;
             for (int c = 0; c < 3; c++) {
@@ -614,7 +610,6 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
  * derivatives to first order. */
 static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
                      double *a) {
-    int P = m->per_element;
     int64_t n6 = 6 * (int64_t)f->nodes;
     const double *x[3] = {s->y, s->v, s->a};
     for (int k = 0; k < 3 && f->basis; k++) {
@@ -627,12 +622,11 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
     spari_rotate_back(root + 3, root + 10, omega);
     spari_rotate_back(root + 3, root + 16, alpha);
     for (int i = 0; i < f->nodes; i++) {
-        int64_t at = m->elements == 1 ? i : i == 0 ? 0 : i + (i - 1) / (P - 1);
         const double *w = x[0] + 6 * i, *wd = x[1] + 6 * i, *wdd = x[2] + 6 * i;
         double arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
         double *qn = q + 7 * i, *vn = v + 6 * i, *an = a + 6 * i;
+        spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
-            arm[k] = m->xr[3 * at + k] - m->xr[k];
             d[k] = arm[k] + w[k];
         }
         spari_quat_exp(w + 3, p);
@@ -709,24 +703,6 @@ void spari_frame_shape(const spari_frame *f, const spar_member *m, const double 
 }
 
 /* ---- time ---- */
-
-typedef struct scheme {
-    double h, alpha_m, alpha_f, beta, gamma, cm, cv;
-    int still;
-} scheme;
-
-/* The coefficients of alpha.c: the members of a session are integrated alike. */
-static scheme scheme_of(const spari_frame *f, const spar_member *m, double rho, double h) {
-    scheme c = {.h = h};
-    c.alpha_m = (2 * rho - 1) / (rho + 1);
-    c.alpha_f = rho / (rho + 1);
-    c.gamma = 0.5 + c.alpha_f - c.alpha_m;
-    c.beta = 0.25 * (0.5 + c.gamma) * (0.5 + c.gamma);
-    c.still = !(m->effects & SPAR_EFFECT_INERTIA);
-    c.cm = c.still ? 0 : (1 - c.alpha_m) / (h * h * c.beta * (1 - c.alpha_f));
-    c.cv = c.still ? (f->D ? 1 / h : 0) : c.gamma / (h * c.beta);
-    return c;
-}
 
 /* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
 static void combine(spari_frame *f, const double omega[3]) {
@@ -829,7 +805,7 @@ static void balance(const spari_frame *f, const spari_frame_state *s, int still,
     memset(r, 0, (size_t)f->held * sizeof *r);
 }
 
-static int factor(spari_frame *f, const scheme *c) {
+static int factor(spari_frame *f, const spari_scheme *c) {
     int singular;
     factor_into(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, c->cm, f->element, &singular);
     f->factored = !singular;
@@ -847,7 +823,7 @@ static double largest(const spari_frame *f, const double *x) {
 }
 
 /* Starting values: the accelerations stay. */
-static void predict(const spari_frame *f, const scheme *c, const spari_frame_state *from, spari_frame_state *to) {
+static void predict(const spari_frame *f, const spari_scheme *c, const spari_frame_state *from, spari_frame_state *to) {
     double h = c->h;
     for (int k = f->held; k < f->n; k++) {
         double b = from->b[k], a = from->a[k];
@@ -868,7 +844,6 @@ static void predict(const spari_frame *f, const scheme *c, const spari_frame_sta
 static void lose_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
-    int P = m->per_element;
     spari_solver_jump(from->root, to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
@@ -877,11 +852,8 @@ static void lose_jump(const spari_frame *f, const spar_member *m, double h, spar
             x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
         }
         for (int i = 1; i < f->nodes && !f->basis; i++) {
-            int64_t at = m->elements == 1 ? i : i + (i - 1) / (P - 1);
             double arm[3], turn[3];
-            for (int k = 0; k < 3; k++) {
-                arm[k] = m->xr[3 * at + k] - m->xr[k];
-            }
+            spari_member_arm(m, i, arm);
             spari_cross(J + 3, arm, turn);
             for (int k = 0; k < 3; k++) {
                 x[6 * i + k] -= J[k] + turn[k];
@@ -892,7 +864,7 @@ static void lose_jump(const spari_frame *f, const spar_member *m, double h, spar
 }
 
 /* As spari_leap, with the matrix of the step itself, which is kept for it. */
-static int leap(spari_frame *f, const scheme *c, spari_frame_state *from) {
+static int leap(spari_frame *f, const spari_scheme *c, spari_frame_state *from) {
     double *y = f->increment;
     if (!f->factored && factor(f, c)) {
         return 1;
@@ -916,9 +888,9 @@ enum { MOST_ITERATIONS = 30 };
 
 /* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
    other turn, or with loads that follow, the corrections shrink until they are rounding. */
-static int substep(spari_frame *f, spar_member *m, const scheme *c, int leaps, spari_frame_state *from,
+static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int leaps, spari_frame_state *from,
                    spari_frame_state *to) {
-    double omega[3], last = 0, to_b = c->cm * (1 - c->alpha_f) / (1 - c->alpha_m);
+    double omega[3], last = 0;
     spari_rotate_back(to->root + 3, to->root + 10, omega);
     combine(f, omega);
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
@@ -949,7 +921,7 @@ static int substep(spari_frame *f, spar_member *m, const scheme *c, int leaps, s
             to->y[k] -= f->dx[k];
             to->v[k] -= c->still ? f->dx[k] / c->h : c->cv * f->dx[k];
             to->a[k] -= c->cm * f->dx[k];
-            to->b[k] -= to_b * f->dx[k];
+            to->b[k] -= c->cb * f->dx[k];
         }
         double step = largest(f, f->dx), theta = last > 0 ? step / last : 0;
         if (exact || step <= m->session->newton_atol + m->session->newton_rtol * largest(f, to->y) ||
@@ -965,7 +937,7 @@ static int substep(spari_frame *f, spar_member *m, const scheme *c, int leaps, s
 }
 
 /* As start() of alpha.c: accelerations at t^0 through M + K / cm. */
-static int start(spari_frame *f, spar_member *m, const scheme *c) {
+static int start(spari_frame *f, spar_member *m, const spari_scheme *c) {
     spari_frame_state *b = &f->begin;
     double omega[3];
     int singular;
@@ -1017,23 +989,12 @@ static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
 }
 
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
-    int A = m->session->substeps, n6 = 6 * f->nodes;
-    spari_solver_gather(m, m->load_history[0], f->load0);
-    spari_solver_gather(m, m->load_used, f->load1);
-    spari_solver_gather(m, m->dead, f->load);
-    for (int i = 0; i < n6; i++) {
-        f->load0[i] += f->load[i];
-        f->load1[i] += f->load[i];
-    }
-    scheme c = scheme_of(f, m, m->session->rho_inf, dt / A);
+    int A = m->session->substeps;
+    spari_scheme_loads(m, f->load0, f->load1, f->load);
+    spari_scheme c = spari_scheme_of(m, dt / A);
     int failed = !f->started && !c.still && start(f, m, &c);
     copy_state(f, &f->begin, &f->to);
-    if (f->h_begin > 0 && f->h_begin != c.h) { /* the algorithmic acceleration of another step: see alpha.c */
-        double ratio = fmin(c.h / f->h_begin, 4);
-        for (int i = 0; i < f->n; i++) {
-            f->to.b[i] = f->to.a[i] + ratio * (f->to.b[i] - f->to.a[i]);
-        }
-    }
+    spari_scheme_stretch_by(spari_scheme_stretch(f->h_begin, c.h), f->n, f->to.a, f->to.b);
     int leaps = !c.still && spari_is_leap(f->h_begin, c.h);
     f->h_solved = c.h;
     m->dissipated_step = 0;
@@ -1041,9 +1002,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     for (int k = 1; k <= A && !failed; k++) {
         double s = (double)k / A;
         swap(&f->from, &f->to);
-        for (int i = 0; i < n6; i++) {
-            f->load[i] = (1 - s) * f->load0[i] + s * f->load1[i];
-        }
+        spari_scheme_load_at(s, 6 * f->nodes, f->load0, f->load1, f->load);
         root_at(f, m, s, dt);
         failed = substep(f, m, &c, k == 1 && leaps, &f->from, &f->to);
         double before = power;
@@ -1094,7 +1053,7 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
     for (int i = 0; i < 6 * f->nodes; i++) {
         f->load[i] += f->load1[i];
     }
-    scheme c = {.cm = 0, .cv = 0};
+    spari_scheme c = {.cm = 0, .cv = 0};
     copy_state(f, &f->begin, &f->to);
     memset(f->to.root + (turning ? 16 : 7), 0, (turning ? 3 : 12) * sizeof(double)); /* steady, or at rest */
     spari_rotate_back(f->to.root + 3, f->to.root + 10, omega);
@@ -1150,7 +1109,7 @@ int spari_frame_is_state(const spari_frame *f, const double *state, int64_t coun
 
 /* The kept factors are those of the kept turn and coefficients, to the last bit. */
 void spari_frame_load(spari_frame *f, const double *state) {
-    scheme c = {.cm = state[2], .cv = state[3]};
+    spari_scheme c = {.cm = state[2], .cv = state[3]};
     f->factored = 0;
     f->combined = 0;
     if (state[1] != 0) {

@@ -11,10 +11,10 @@ typedef struct rigid {
 } rigid;
 
 /* Place of a node now, from the middle. */
-static void arm_of(const spar_member *m, const double *q, int i, const double middle[3], double r[3]) {
-    int P = m->per_element, element = P > 1 && i > 0 ? (i - 1) / (P - 1) : 0; /* joints stand twice there */
+static void arm_now(const spar_member *m, const double *q, int i, const double middle[3], double r[3]) {
+    const double *place = spari_member_place(m, i);
     for (int k = 0; k < 3; k++) {
-        r[k] = m->xr[3 * (i + element) + k] + q[7 * i + k] - middle[k];
+        r[k] = place[k] + q[7 * i + k] - middle[k];
     }
 }
 
@@ -43,7 +43,7 @@ static void means(const spar_member *m, const double *q, const double *v, const 
     memset(g, 0, sizeof *g);
     for (int i = 0; i < n; i++) {
         double x[3];
-        arm_of(m, q, i, zero, x);
+        arm_now(m, q, i, zero, x);
         for (int k = 0; k < 3; k++) {
             g->middle[k] += x[k] / n;
             g->omega[k] += v[6 * i + 3 + k] / n;
@@ -60,7 +60,7 @@ static void fit(const spar_member *m, const double *q, const double *v, const do
     means(m, q, v, b, g);
     for (int i = 0; i < n; i++) {
         double r[3], c[3], t[3];
-        arm_of(m, q, i, g->middle, r);
+        arm_now(m, q, i, g->middle, r);
         centripetal(g, r, c);
         for (int k = 0; k < 3; k++) {
             c[k] = b[6 * i + k] - c[k];
@@ -82,7 +82,7 @@ static void fit(const spar_member *m, const double *q, const double *v, const do
 static void subtract(const spar_member *m, const double *q, const rigid *g, const double *b, double *y) {
     for (int i = 0; i < m->solver->n; i++) {
         double r[3], c[3], t[3];
-        arm_of(m, q, i, g->middle, r);
+        arm_now(m, q, i, g->middle, r);
         centripetal(g, r, c);
         spari_cross(g->alpha, r, t);
         for (int k = 0; k < 3; k++) {
