@@ -104,15 +104,16 @@ static void step(writer *w) {
     part(w, 80, CALL_spar_step_accept);
 }
 
+/* Advice makes hundreds of runs, a report dozens: they are asked for seldom, or all the time is theirs. */
 static void what_if(writer *w) {
-    int k = roll(w, 100);
+    int k = roll(w, 1000);
     put(w, CALL_spar_step_reject, STYLE_GOOD | STYLE_RECENT);
     part(w, 100,
-         k < 35   ? CALL_spar_session_try
-         : k < 55 ? CALL_spar_session_report_effects
-         : k < 88 ? CALL_spar_aero_report_effects
-                  : CALL_spar_session_advise);
-    part(w, 50, k < 35 ? CALL_spar_session_try : CALL_spar_member_get_advice);
+         k < 500   ? CALL_spar_session_try
+         : k < 550 ? CALL_spar_session_report_effects
+         : k < 975 ? CALL_spar_aero_report_effects
+                   : CALL_spar_session_advise);
+    part(w, 50, k < 500 ? CALL_spar_session_try : CALL_spar_member_get_advice);
 }
 
 static int any_call(writer *w) {
