@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "aero/element.h"
-#include "math/rotation.h"
 #include "base/scene.h"
+#include "math/rotation.h"
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846
@@ -58,7 +58,7 @@ static scene scene_of(int effects) {
 static spari_element solve(const scene *s) {
     gsl_interp_accel accel = {0, 0, 0};
     spari_section section = {3.5, cos(s->twist), sin(s->twist), spari_polar_share(polar)};
-    spari_station station = {s->x, s->q, s->v, s->wind, spari_rotor_radius(&s->rotor, s->x), &accel};
+    spari_centre station = {s->x, s->q, s->v, s->wind, spari_rotor_radius(&s->rotor, s->x), &accel};
     spari_element e;
     spari_element_solve(&s->rotor, &section, &station, 1.225, solver, &e);
     spari_table_release(section.table);

@@ -37,7 +37,7 @@ void spar_aero_destroy(spar_aero **aero) {
     }
 }
 
-static int allocate(spar_aero *aero) {
+static int make_arrays(spar_aero *aero) {
     int64_t all = count(aero);
     aero->fluid = spari_zalloc(aero->blades, sizeof(spar_fluid *));
     aero->section = spari_zalloc(aero->n, sizeof *aero->section);
@@ -54,7 +54,7 @@ static int allocate(spar_aero *aero) {
 }
 
 /* All fluids there, of one session, made of n >= 2 sections each. */
-static int check_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
+static int check_blade_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
     for (int b = 0; b < blades; b++) {
         SPARI_REQUIRE(b > 0 ? spari_fluid_session(fluid[0]) : NULL, fluid[b], SPAR_ERR_ARGUMENT,
                       "spar_aero_create: the fluid of blade %d is NULL", b);
@@ -79,7 +79,7 @@ static int check_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
 }
 
 /* Reference places of the aerodynamic centres and the lengths between them. */
-static int measure(spar_aero *aero) {
+static int find_centres(spar_aero *aero) {
     for (int b = 0; b < aero->blades; b++) {
         double *x = aero->place + 3 * b * aero->n;
         SPARI_TRY(spar_fluid_get_feet(aero->fluid[b], SPAR_NODES_MOTION, x, NULL, aero->x));
@@ -103,7 +103,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
                   "spar_aero_create: %d blades%s; give one fluid per blade", blades, sections ? "" : " without fluids");
     int64_t n = 0;
-    SPARI_TRY(check_fluids(blades, sections, &n));
+    SPARI_TRY(check_blade_fluids(blades, sections, &n));
     spar_session *session = blades > 0 ? spari_fluid_session(sections[0]) : NULL;
     spar_aero *made = spari_zalloc(1, sizeof *made);
     SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "spar_aero_create: no memory");
@@ -112,14 +112,14 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     made->blades = blades;
     made->n = n;
     made->rotor = (spari_rotor){.turn = 1, .blades = blades, .effects = SPAR_AERO_DRAG};
-    int status = allocate(made);
+    int status = make_arrays(made);
     if (status != SPAR_OK) {
         spari_fail(session, status, "spar_aero_create: no memory for %d blades of %lld sections", blades, (long long)n);
     } else {
         for (int b = 0; b < blades; b++) {
             made->fluid[b] = sections[b];
         }
-        status = measure(made);
+        status = find_centres(made);
     }
     if (status != SPAR_OK) {
         aero_free(made);
@@ -306,7 +306,7 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
     return check_blades(aero);
 }
 
-static int pull(spar_aero *aero, double theta) {
+static int pull_centres(spar_aero *aero, double theta) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = b * aero->n;
         double *omega = aero->rotor_given ? aero->omega + 3 * at : NULL;
@@ -344,17 +344,17 @@ static int check_loads(const spar_aero *aero, const double *load, const char *wh
     return SPAR_OK;
 }
 
-static int solve(spar_aero *aero, double density, const double *inflow, double theta) {
+static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_TRY(check_solve(aero, density, inflow, theta));
     aero->solved = 0;
-    SPARI_TRY(pull(aero, theta));
+    SPARI_TRY(pull_centres(aero, theta));
     int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0;
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;
             double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
-            spari_station station = {aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss,
-                                     aero->accel + k};
+            spari_centre station = {aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss,
+                                    aero->accel + k};
             spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
         }
         lump(aero, b, 0, aero->force);
@@ -377,7 +377,7 @@ static int solve(spar_aero *aero, double density, const double *inflow, double t
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
-    int status = spari_named(aero->session, "spar_aero_solve", solve(aero, density, inflow, theta));
+    int status = spari_named(aero->session, "spar_aero_solve", solve_elements(aero, density, inflow, theta));
     if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
         return spari_fluid_refuse_push(aero->fluid[0], status);
     }

@@ -45,7 +45,7 @@ static int is_at_end(const spari_rotor *rotor, double radius) {
 
 /* Turns the flow in the section's plane, flow[0] along the chord and flow[1] along the normal, into that with
  * induction. */
-static void induce(const spari_rotor *rotor, const spari_section *section, const spari_station *station, const frame *f,
+static void induce(const spari_rotor *rotor, const spari_section *section, const spari_centre *station, const frame *f,
                    gsl_root_fsolver *solver, double flow[2], spari_element *element) {
     double along = spari_dot(rotor->axis, f->span), p[3], s[3];
     double sine = sqrt(fmax(0.0, 1.0 - along * along)), radius = spari_rotor_radius(rotor, station->x);
@@ -89,7 +89,7 @@ static void induce(const spari_rotor *rotor, const spari_section *section, const
     flow[1] = wx * to_s - wy * to_p;
 }
 
-void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_station *station,
+void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
                          double density, gsl_root_fsolver *solver, spari_element *element) {
     frame f = section_frame(rotor, section, station->q);
     double wind[3] = {station->wind[0] - station->v[0], station->wind[1] - station->v[1],

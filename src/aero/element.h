@@ -18,11 +18,11 @@ typedef struct spari_section {
     spari_table *table; /* NULL: not set yet */
 } spari_section;
 
-typedef struct spari_station {
+typedef struct spari_centre {
     const double *x, *q, *v, *wind; /* place, orientation, velocity of the aerodynamic centre; wind there */
     double loss_radius;             /* distance from the axis in the reference configuration */
     gsl_interp_accel *accel;
-} spari_station;
+} spari_centre;
 
 typedef struct spari_element {
     double alpha, cl, cd, a, a_tangential;
@@ -32,7 +32,7 @@ typedef struct spari_element {
 
 /* Distance of x from the shaft axis. */
 double spari_rotor_radius(const spari_rotor *rotor, const double x[3]);
-void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_station *station,
+void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
                          double density, gsl_root_fsolver *solver, spari_element *element);
 
 #endif

@@ -62,7 +62,7 @@ static int is_sound(const spari_annulus *annulus, double phi, double *speed) {
 }
 
 /* Root between lo and hi, where the residual is of opposite signs. */
-static double refine(const spari_annulus *annulus, gsl_root_fsolver *solver, double lo, double hi) {
+static double refine_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, double lo, double hi) {
     gsl_function f = {residual, (void *)annulus};
     if (gsl_root_fsolver_set(solver, &f, lo, hi)) {
         return NAN;
@@ -81,14 +81,14 @@ static double refine(const spari_annulus *annulus, gsl_root_fsolver *solver, dou
 }
 
 /* Tries the interval from a to b in `parts` pieces that lie closer towards a; takes the first sound root. */
-static int search(const spari_annulus *annulus, gsl_root_fsolver *solver, const double range[2], int parts, double *phi,
-                  double *speed) {
+static int search_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, const double range[2], int parts,
+                          double *phi, double *speed) {
     double x0 = range[0], r0 = residual(x0, (void *)annulus);
     for (int i = 1; i <= parts; i++) {
         double t = (double)i / parts;
         double x1 = range[0] + (range[1] - range[0]) * t * t, r1 = residual(x1, (void *)annulus);
         if ((r0 < 0.0 && r1 >= 0.0) || (r0 > 0.0 && r1 <= 0.0)) {
-            *phi = refine(annulus, solver, fmin(x0, x1), fmax(x0, x1));
+            *phi = refine_bracket(annulus, solver, fmin(x0, x1), fmax(x0, x1));
             if (is_sound(annulus, *phi, speed)) {
                 return 1;
             }
@@ -122,7 +122,7 @@ int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver,
     int first = annulus->vy < 0.0 ? 3 : 0;
     for (int parts = 1; parts <= SPARI_SCAN; parts += SPARI_SCAN - 1) {
         for (int i = 0; i < 6; i++) {
-            if (search(annulus, solver, range[(first + i) % 6], parts, &phi, &speed)) {
+            if (search_bracket(annulus, solver, range[(first + i) % 6], parts, &phi, &speed)) {
                 *wx = (annulus->vx < 0.0 ? -speed : speed) * sin(phi);
                 *wy = speed * cos(phi);
                 return 0;

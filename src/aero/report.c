@@ -7,13 +7,13 @@
 #include <spar/spar_aero.h>
 #include <string.h>
 
-typedef struct row {
+typedef struct aero_row {
     const char *name;
     int effect;
     int needs; /* without which it means nothing */
-} row;
+} aero_row;
 
-static const row rows[SPAR_AERO_ROW_COUNT] = {
+static const aero_row rows[SPAR_AERO_ROW_COUNT] = {
     {"induction", SPAR_AERO_INDUCTION, 0},
     {"tip loss", SPAR_AERO_TIP_LOSS, SPAR_AERO_INDUCTION},
     {"hub loss", SPAR_AERO_HUB_LOSS, SPAR_AERO_INDUCTION},
@@ -57,14 +57,14 @@ static int find_rows(spar_session *s, const spar_aero *aero, double in_force[SPA
 }
 
 /* A run that begins beside its own balance iterates more, which is no price of the effect: the time of one solution. */
-static double cost(const double report[SPAR_TRY_COUNT]) {
+static double cost_of_try(const double report[SPAR_TRY_COUNT]) {
     return report[SPAR_TRY_SECONDS] / fmax(report[SPAR_TRY_SOLUTIONS], 1);
 }
 
 /* The effects come back as they were, whatever fails. Times are the least of three, with and without in turn. */
-static int try_row(spar_session *s, spar_aero *aero, const spari_run *t, int r, const double *base, double *out) {
+static int try_without(spar_session *s, spar_aero *aero, const spari_run *t, int r, const double *base, double *out) {
     enum { REPEATS = 3 };
-    double with = cost(base), without = INFINITY, report[SPAR_TRY_COUNT];
+    double with = cost_of_try(base), without = INFINITY, report[SPAR_TRY_COUNT];
     const int effects = aero->rotor.effects;
     for (int k = 0; k < REPEATS; k++) {
         aero->rotor.effects = effects & ~rows[r].effect;
@@ -77,28 +77,29 @@ static int try_row(spar_session *s, spar_aero *aero, const spari_run *t, int r, 
         out[SPAR_COLUMN_SIZE] = report[SPAR_TRY_LOAD];
         out[SPAR_COLUMN_MOTION] = report[SPAR_TRY_MOTION];
         out[SPAR_COLUMN_REACTION] = report[SPAR_TRY_REACTION];
-        without = fmin(without, cost(report));
+        without = fmin(without, cost_of_try(report));
         SPARI_TRY(try_once(s, t, 1, report));
-        with = fmin(with, cost(report));
+        with = fmin(with, cost_of_try(report));
     }
     out[SPAR_COLUMN_SHARE] = with > 0 ? 1 - without / with : 0;
     return SPAR_OK;
 }
 
-static int fill_table(spar_session *s, spar_aero *aero, const spari_run *t, double (*table)[SPAR_COLUMN_COUNT]) {
+static int try_all(spar_session *s, spar_aero *aero, const spari_run *t, double (*table)[SPAR_COLUMN_COUNT]) {
     double in_force[SPAR_AERO_ROW_COUNT + 1], base[SPAR_TRY_COUNT];
     SPARI_TRY(find_rows(s, aero, in_force));
     SPARI_TRY(try_once(s, t, 0, base));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
         if (in_force[r] > 0) {
             table[r][SPAR_COLUMN_IN_FORCE] = 1;
-            SPARI_TRY(try_row(s, aero, t, r, base, table[r]));
+            SPARI_TRY(try_without(s, aero, t, r, base, table[r]));
         }
     }
     return SPAR_OK;
 }
 
-static int check(spar_session *s, const spar_aero *aero, const spari_run *t, const void *table, const char *call) {
+static int check_arguments(spar_session *s, const spar_aero *aero, const spari_run *t, const void *table,
+                           const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
                   "%s: the blades are of another session; give theirs", call);
@@ -117,9 +118,9 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     spari_run t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
-    SPARI_TRY(spari_trial_enter(s, call, &t, 0, 0, check(s, aero, &t, table, call)));
+    SPARI_TRY(spari_trial_enter(s, call, &t, 0, 0, check_arguments(s, aero, &t, table, call)));
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, call, fill_table(s, aero, &t, made)));
+    SPARI_TRY(spari_named(s, call, try_all(s, aero, &t, made)));
     memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;

@@ -16,7 +16,7 @@ static int failure(char *why, size_t size, const char *path, int reason) {
     return SPAR_ERR_IO;
 }
 
-static int no_memory(char *why, size_t size, const char *path) {
+static int no_memory_to_write(char *why, size_t size, const char *path) {
     (void)snprintf(why, size, "no memory to write '%.300s'", path);
     return SPAR_ERR_MEMORY;
 }
@@ -37,7 +37,7 @@ static int refuse_kind(char *why, size_t size, const char *path, unsigned mode) 
 /* ---- the place ---- */
 
 /* Where a link leads; NULL, with errno, where it cannot be read. */
-static char *follow(const char *link) {
+static char *follow_link(const char *link) {
     char to[LONGEST];
     ssize_t n = readlink(link, to, sizeof to);
     if (n < 0 || (size_t)n == sizeof to) {
@@ -64,13 +64,13 @@ static int find_place(const char *path, char **place, struct stat *old, char *wh
         if (lstat(at, old) != 0 || !S_ISLNK(old->st_mode)) {
             break;
         }
-        char *next = follow(at);
+        char *next = follow_link(at);
         reason = next ? reason : errno;
         free(at);
         at = next;
     }
     if (!at) {
-        return reason == ENOMEM ? no_memory(why, size, path) : failure(why, size, path, reason);
+        return reason == ENOMEM ? no_memory_to_write(why, size, path) : failure(why, size, path, reason);
     }
     int there = lstat(at, old) == 0, status = SPAR_OK;
     if (!there) {
@@ -174,7 +174,7 @@ static int open_stream(spari_file *file, const struct stat *old, char *why, size
     if (!file->stream) {
         (void)unlink(file->temporary);
         (void)close(fd);
-        return no_memory(why, size, file->temporary);
+        return no_memory_to_write(why, size, file->temporary);
     }
     return SPAR_OK;
 }
@@ -191,7 +191,7 @@ int spari_file_begin(spari_file *file, const char *path, const char *suffix, cha
             memcpy(file->temporary + n, suffix, m);
             status = open_stream(file, &old, why, size);
         } else {
-            status = no_memory(why, size, path);
+            status = no_memory_to_write(why, size, path);
         }
     }
     if (status != SPAR_OK) {

@@ -79,13 +79,13 @@ int spari_image_is_text(spari_image *image, const char *text) {
 
 /* ---- bytes ---- */
 
-static void put_bytes(unsigned char *to, uint64_t word) {
+static void put_word(unsigned char *to, uint64_t word) {
     for (int i = 0; i < 8; i++) {
         to[i] = (unsigned char)(word >> (8 * i));
     }
 }
 
-static uint64_t get_bytes(const unsigned char *from) {
+static uint64_t get_word(const unsigned char *from) {
     uint64_t word = 0;
     for (int i = 0; i < 8; i++) {
         word |= (uint64_t)from[i] << (8 * i);
@@ -125,12 +125,12 @@ int spari_image_write(const spari_image *image, const char *path, char *why, siz
         return SPAR_ERR_MEMORY;
     }
     memcpy(bytes, magic, sizeof magic);
-    put_bytes(bytes + 8, VERSION);
-    put_bytes(bytes + 16, (uint64_t)image->count);
+    put_word(bytes + 8, VERSION);
+    put_word(bytes + 16, (uint64_t)image->count);
     for (int64_t i = 0; i < image->count; i++) {
-        put_bytes(bytes + HEAD_BYTES + 8 * i, image->word[i]);
+        put_word(bytes + HEAD_BYTES + 8 * i, image->word[i]);
     }
-    put_bytes(bytes + n, crc64(bytes, n));
+    put_word(bytes + n, crc64(bytes, n));
     int status = spari_file_begin(&file, path, ".new", why, size);
     if (status == SPAR_OK) {
         (void)fwrite(bytes, 1, n + CHECK_BYTES, file.stream); /* how that went is asked at the end */
@@ -142,16 +142,16 @@ int spari_image_write(const spari_image *image, const char *path, char *why, siz
 
 /* got: of the head, so many bytes; n: of the file. */
 static int check_head(const char *path, const unsigned char *head, size_t got, uint64_t n, char *why, size_t size) {
-    uint64_t words = got == HEAD_BYTES ? get_bytes(head + 16) : 0;
+    uint64_t words = got == HEAD_BYTES ? get_word(head + 16) : 0;
     if (got < sizeof magic || memcmp(head, magic, sizeof magic) != 0) {
         (void)snprintf(why, size, "'%s' is no saved session", path);
     } else if (got < HEAD_BYTES || n < HEAD_BYTES + CHECK_BYTES) {
         (void)snprintf(why, size, "'%s' is cut off after %llu bytes; take an older file", path, (unsigned long long)n);
-    } else if (get_bytes(head + 8) != VERSION) {
+    } else if (get_word(head + 8) != VERSION) {
         (void)snprintf(
             why, size,
             "'%s' has version %llu of the format, this library reads %d; load it with the spar that wrote it", path,
-            (unsigned long long)get_bytes(head + 8), VERSION);
+            (unsigned long long)get_word(head + 8), VERSION);
     } else if (words != (n - HEAD_BYTES - CHECK_BYTES) / 8 || n % 8 != 0) {
         (void)snprintf(why, size,
                        "'%s' is cut off or has grown: it has %llu bytes and should have %llu; take an older file", path,
@@ -163,7 +163,7 @@ static int check_head(const char *path, const unsigned char *head, size_t got, u
 }
 
 /* How many bytes the file has. What is none could go on for ever, or wait. */
-static int measure(FILE *f, const char *path, uint64_t *n, char *why, size_t size) {
+static int measure_file(FILE *f, const char *path, uint64_t *n, char *why, size_t size) {
     struct stat there;
     if (fstat(fileno(f), &there) != 0) {
         return io_failure(why, size, "cannot read", path);
@@ -181,7 +181,7 @@ static int measure(FILE *f, const char *path, uint64_t *n, char *why, size_t siz
 static int slurp(FILE *f, const char *path, unsigned char **bytes, size_t *n, char *why, size_t size) {
     unsigned char head[HEAD_BYTES];
     uint64_t there = 0;
-    SPARI_TRY(measure(f, path, &there, why, size));
+    SPARI_TRY(measure_file(f, path, &there, why, size));
     size_t got = fread(head, 1, sizeof head, f);
     if (ferror(f)) {
         return io_failure(why, size, "cannot read", path);
@@ -199,7 +199,7 @@ static int slurp(FILE *f, const char *path, unsigned char **bytes, size_t *n, ch
         errno = ferror(f) ? errno : EIO; /* it has become shorter meanwhile */
         return io_failure(why, size, "cannot read", path);
     }
-    if (get_bytes(*bytes + *n - CHECK_BYTES) != crc64(*bytes, *n - CHECK_BYTES)) {
+    if (get_word(*bytes + *n - CHECK_BYTES) != crc64(*bytes, *n - CHECK_BYTES)) {
         (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
         return SPAR_ERR_IO;
     }
@@ -219,10 +219,10 @@ int spari_image_read(spari_image *image, const char *path, char *why, size_t siz
     }
     int status = slurp(f, path, &bytes, &n, why, size);
     if (status == SPAR_OK) {
-        image->room = image->count = (int64_t)get_bytes(bytes + 16);
+        image->room = image->count = (int64_t)get_word(bytes + 16);
         image->word = spari_zalloc(image->count, sizeof *image->word);
         for (int64_t i = 0; image->word && i < image->count; i++) {
-            image->word[i] = get_bytes(bytes + HEAD_BYTES + 8 * i);
+            image->word[i] = get_word(bytes + HEAD_BYTES + 8 * i);
         }
         if (!image->word) {
             (void)snprintf(why, size, "no memory to read '%s'", path);

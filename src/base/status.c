@@ -1,6 +1,7 @@
 #include "status.h"
 
 #include <gsl/gsl_errno.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,11 +92,31 @@ int64_t spari_first_nonfinite(const double *x, int64_t n) {
     return -1;
 }
 
+int spari_is_count(double x) {
+    return x >= 0 && x < 1e15 && x == floor(x);
+}
+
 void *spari_zalloc(int64_t n, size_t size) {
     if (n < 0 || (uint64_t)n > SIZE_MAX) {
         return NULL;
     }
     return calloc(n > 0 && size > 0 ? (size_t)n : 1, size > 0 ? size : 1);
+}
+
+double *spari_copy(const double *x, int64_t n) {
+    double *copy = spari_zalloc(n, sizeof *copy);
+    if (copy && x && n > 0) {
+        memcpy(copy, x, (size_t)n * sizeof *copy);
+    }
+    return copy;
+}
+
+uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size) {
+    const unsigned char *byte = data;
+    for (size_t i = 0; i < size; i++) {
+        hash = (hash ^ byte[i]) * UINT64_C(1099511628211);
+    }
+    return hash;
 }
 
 /* GSL has one error handler for the whole process and its default one aborts. gsl_set_error_handler_off answers with

@@ -29,8 +29,18 @@ enum { SPARI_MESSAGE_SIZE = 1024 };
 /* Index of the first entry of x[n] that is not finite, or -1. */
 int64_t spari_first_nonfinite(const double *x, int64_t n);
 
+/* Whether x is a count that was saved as a double. */
+int spari_is_count(double x);
+
 /* Zeroed memory for n items, never NULL for n = 0; NULL when there is none left. Free with free(). */
 void *spari_zalloc(int64_t n, size_t size);
+
+/* A copy of x[n], likewise; zeros where x is NULL. */
+double *spari_copy(const double *x, int64_t n);
+
+/* Bytes into a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
+#define SPARI_HASH_BEGIN UINT64_C(14695981039346656037)
+uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size);
 
 /* GSL's default error handler aborts: turns it off, once for the process; a handler that a user has set stays. */
 void spari_gsl_quiet(void);

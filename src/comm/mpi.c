@@ -55,7 +55,7 @@ static int check_up(const mpi_comm *c, char *message, size_t size) {
 /* ---- the table ---- */
 
 /* The text of rank `from`, the lowest that failed, for those that did not fail themselves. */
-static int tell(mpi_comm *c, int from, int status, char *message, size_t size) {
+static int tell_all(mpi_comm *c, int from, int status, char *message, size_t size) {
     char text[SPARI_MESSAGE_SIZE] = "";
     if (c->base.rank == from) {
         (void)snprintf(text, sizeof text, "%s", message);
@@ -88,16 +88,6 @@ static int is_same(const int64_t *pair) {
 }
 
 /* FNV-1a, which may begin with a hash and go on. */
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t n) {
-    const unsigned char *byte = data;
-    for (size_t i = 0; i < n; i++) {
-        hash = (hash ^ byte[i]) * UINT64_C(1099511628211);
-    }
-    return hash;
-}
-
-static const uint64_t hash_of_nothing = UINT64_C(14695981039346656037);
-
 static int64_t as_word(const spari_alike *a) {
     int64_t word = a->whole;
     if (a->kind == SPARI_REAL) {
@@ -107,10 +97,10 @@ static int64_t as_word(const spari_alike *a) {
 }
 
 static int64_t key_of(const spari_alike *alike, int count) {
-    uint64_t hash = hash_of_nothing;
+    uint64_t hash = SPARI_HASH_BEGIN;
     for (int i = 0; i < count; i++) {
         int64_t word = as_word(alike + i);
-        hash = hash_bytes(hash, &word, sizeof word);
+        hash = spari_hash_bytes(hash, &word, sizeof word);
     }
     return (int64_t)hash;
 }
@@ -157,7 +147,7 @@ static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int cou
     int64_t mine[WORDS], all[WORDS];
     SPARI_TRY(check_up(c, message, size));
     mine[FAILED] = status == SPAR_OK ? NOBODY : c->base.rank;
-    put_pair(mine + NAME, call ? (int64_t)hash_bytes(hash_of_nothing, call, strlen(call)) : 0);
+    put_pair(mine + NAME, call ? (int64_t)spari_hash_bytes(SPARI_HASH_BEGIN, call, strlen(call)) : 0);
     put_pair(mine + KEY, key_of(alike, count));
     TRY_MPI(MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle));
     if (all[FAILED] == LEAVING) {
@@ -171,7 +161,7 @@ static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int cou
         return SPAR_ERR_COMM;
     }
     if (all[FAILED] != NOBODY) {
-        return tell(c, (int)all[FAILED], status, message, size);
+        return tell_all(c, (int)all[FAILED], status, message, size);
     }
     return !alike || is_same(all + KEY) ? SPAR_OK : tell_difference(c, call, alike, count, message, size);
 }
@@ -232,7 +222,7 @@ static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int stat
     TRY_MPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, c->counts, c->offsets, MPI_DOUBLE, c->handle));
     for (int r = 0; r < comm->size; r++) {
         if (x[first[r + 1] - 1] != 0) {
-            return tell(c, r, status, message, size);
+            return tell_all(c, r, status, message, size);
         }
     }
     return SPAR_OK;

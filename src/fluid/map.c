@@ -54,7 +54,7 @@ static int prepare_member(spar_fluid *fluid) {
 }
 
 /* sum_k T_k(xi) c[k][offset .. offset + n) */
-static void field_at(const double *c, int modes, int offset, int n, double xi, double *out) {
+static void series_at(const double *c, int modes, int offset, int n, double xi, double *out) {
     double t0 = 1, t1 = xi;
     memset(out, 0, sizeof *out * (size_t)n);
     for (int k = 0; k < modes; k++) {
@@ -70,8 +70,8 @@ static void field_at(const double *c, int modes, int offset, int n, double xi, d
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
     int modes = fluid->member->per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
-    field_at(c, modes, SPARI_F_PLACE, 3, xi, x);
-    field_at(c, modes, SPARI_F_QUAT, 4, xi, q);
+    series_at(c, modes, SPARI_F_PLACE, 3, xi, x);
+    series_at(c, modes, SPARI_F_QUAT, 4, xi, q);
     spari_quat_normalise(q);
 }
 

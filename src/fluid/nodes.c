@@ -158,14 +158,6 @@ int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const 
 }
 
 /* A copy of x [n], zeros for NULL. */
-static double *copy_of(const double *x, int64_t n) {
-    double *copy = spari_zalloc(n, sizeof *copy);
-    if (copy && x && n > 0) {
-        memcpy(copy, x, sizeof *copy * (size_t)n);
-    }
-    return copy;
-}
-
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
     if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
@@ -174,7 +166,7 @@ static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, 
     }
     SPARI_TRY(
         spari_fluid_check_values(fluid, caller, which == SPAR_NODES_MOTION ? "motion node" : "force node", x, n, 3));
-    double *copy = copy_of(x, 3 * n);
+    double *copy = spari_copy(x, 3 * n);
     if (!copy) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld nodes", (long long)n);
     }
@@ -217,7 +209,7 @@ int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, cons
     if (offset) {
         SPARI_TRY(spari_fluid_check_values(fluid, __func__, "offset of section", offset, n, 3));
     }
-    double *copy = copy_of(offset, 3 * n), *at = copy_of(xi, n);
+    double *copy = spari_copy(offset, 3 * n), *at = spari_copy(xi, n);
     if (!copy || !at) {
         free(copy);
         free(at);

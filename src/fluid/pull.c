@@ -160,7 +160,7 @@ static void emit(const spari_nodes *s, int64_t first, const states *t, int row, 
     }
 }
 
-static void put(sink out, int64_t node, int width, const double *x) {
+static void put_values(sink out, int64_t node, int width, const double *x) {
     if (out.d) {
         memcpy(out.d + node * width, x, (size_t)width * sizeof *x);
     }
@@ -225,8 +225,8 @@ static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int
                 matrix_of(q, w->convention, m);
             }
         }
-        put(w->q, node, 4, q);
-        put(w->matrix, node, 9, m);
+        put_values(w->q, node, 4, q);
+        put_values(w->matrix, node, 9, m);
     }
 }
 
@@ -238,13 +238,13 @@ static int parts_of(const wanted *w, double theta) {
 static void zero(sink *out, int64_t n) {
     const double none[3] = {0, 0, 0};
     for (int64_t j = 0; j < n && is_wanted(*out); j++) {
-        put(*out, j, 3, none);
+        put_values(*out, j, 3, none);
     }
     *out = (sink){0};
 }
 
 /* Answers what a trial run leaves out, and takes it off the list. */
-static void leave_out(const spar_fluid *fluid, const spari_nodes *s, wanted *w) {
+static void mute_parts(const spar_fluid *fluid, const spari_nodes *s, wanted *w) {
     if (fluid->mute & SPARI_MUTE_VELOCITY) {
         zero(&w->v, s->n);
     }
@@ -254,9 +254,9 @@ static void leave_out(const spar_fluid *fluid, const spari_nodes *s, wanted *w) 
     for (int64_t p = 0; p < s->n && (is_wanted(w->q) || is_wanted(w->matrix)); p++) {
         double x[3], q[4], m[9];
         spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
-        put(w->q, spari_nodes_node(s, p), 4, q);
+        put_values(w->q, spari_nodes_node(s, p), 4, q);
         matrix_of(q, w->convention, m);
-        put(w->matrix, spari_nodes_node(s, p), 9, m);
+        put_values(w->matrix, spari_nodes_node(s, p), 9, m);
     }
     w->q = w->matrix = (sink){0};
     zero(&w->omega, s->n);
@@ -271,7 +271,7 @@ static double (*second_tile(const spar_fluid *fluid))[SPARI_ROW] {
 }
 
 /* All pulls: the nodes of one set at t^n + theta dt. */
-static int pull(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
+static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
     states t = {.buf = {a, second_tile(fluid)}, .reference = c};
     const spari_nodes *s;
@@ -311,10 +311,10 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
     if (fluid->mute) {
         SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, caller, &s));
         if (s) {
-            leave_out(fluid, s, &left);
+            mute_parts(fluid, s, &left);
         }
     }
-    return pull(fluid, SPAR_NODES_MOTION, theta, &left, caller);
+    return pull_set(fluid, SPAR_NODES_MOTION, theta, &left, caller);
 }
 
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
@@ -425,7 +425,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     double *right = spari_zalloc(9 * n, sizeof *right);
     SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
     wanted w = {.matrix.d = right, .convention = convention};
-    int status = pull(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
+    int status = pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
     for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
         const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
         if (why) {
@@ -439,7 +439,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
 
 int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q) {
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    return pull(fluid, which, 1, &w, "spar_fluid_write_vtk");
+    return pull_set(fluid, which, 1, &w, "spar_fluid_write_vtk");
 }
 
 int spari_fluid_has_sections(const spar_fluid *fluid) {

@@ -116,8 +116,8 @@ static int check_source(const spar_fluid *fluid, const char *caller, const char 
 }
 
 /* The load of the nodes in load_new; SPAR_OK if it can be used. */
-static int gather(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, spari_audit *audit,
-                  const char *caller) {
+static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment,
+                        spari_audit *audit, const char *caller) {
     const spar_member *m = fluid->member;
     spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
                      audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
@@ -145,7 +145,7 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     if (!(fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT)) {
         moment = (spari_source){0};
     }
-    SPARI_TRY(gather(fluid, s, force, moment, audited ? &audit : NULL, caller));
+    SPARI_TRY(gather_loads(fluid, s, force, moment, audited ? &audit : NULL, caller));
     double *old = fluid->load;
     fluid->load = fluid->load_new, fluid->load_new = old;
     if (audited) {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int no_memory(const spar_fluid *fluid) {
+static int no_memory_for_trial(const spar_fluid *fluid) {
     return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, "trial", "no memory for a trial run");
 }
 
@@ -21,12 +21,12 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     *set = (spari_node_set){.pending = 1, .sections = from->sections, .n = s->n};
     if (!from->sections) {
         set->x = spari_fluid_places(old, s);
-        return set->x ? SPAR_OK : no_memory(old);
+        return set->x ? SPAR_OK : no_memory_for_trial(old);
     }
     set->x = spari_zalloc(3 * s->n, sizeof *set->x);
     set->xi = spari_zalloc(s->n, sizeof *set->xi);
     if (!set->x || !set->xi) {
-        return no_memory(old);
+        return no_memory_for_trial(old);
     }
     for (int64_t p = 0; p < s->n; p++) {
         int64_t j = spari_nodes_node(s, p);
@@ -72,7 +72,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         f->load_new = spari_zalloc(n, sizeof(double));
         f->load_accepted = spari_zalloc(n, sizeof(double));
         if (!f->load || !f->load_new || !f->load_accepted) {
-            return no_memory(f);
+            return no_memory_for_trial(f);
         }
     } else {
         f->modal = f->reference = f->work = f->field[0] = f->field[1] = NULL;
@@ -84,14 +84,14 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         spari_history_free(f->history); /* the map has begun it with zeros */
     }
     int order = f->member->session->predictor;
-    return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory(f);
+    return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory_for_trial(f);
 }
 
 int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {
     spar_fluid *copy = spari_zalloc(1, sizeof *copy), was;
     *old = NULL;
     if (!copy) {
-        return no_memory(fluid);
+        return no_memory_for_trial(fluid);
     }
     *old = copy;
     *copy = *fluid;
@@ -118,7 +118,7 @@ int spari_fluid_asked(const spar_fluid *fluid) {
     return fluid->asked;
 }
 
-static void drop(double *made, const double *was) {
+static void drop_copy(double *made, const double *was) {
     if (made != was) {
         free(made);
     }
@@ -132,18 +132,18 @@ void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
             spari_nodes_free(f->set[which].nodes);
         }
     }
-    drop(f->modal, old->modal);
-    drop(f->reference, old->reference);
-    drop(f->work, old->work);
+    drop_copy(f->modal, old->modal);
+    drop_copy(f->reference, old->reference);
+    drop_copy(f->work, old->work);
     for (int k = 0; k < 2; k++) {
-        drop(f->field[k], old->field[k]);
+        drop_copy(f->field[k], old->field[k]);
     }
-    drop(f->load, old->load);
-    drop(f->load_new, old->load_new);
-    drop(f->load_accepted, old->load_accepted);
+    drop_copy(f->load, old->load);
+    drop_copy(f->load_new, old->load_new);
+    drop_copy(f->load_accepted, old->load_accepted);
     for (int k = 0; k < 2; k++) {
-        drop(f->mean[k], old->mean[k]);
-        drop(f->mean_next[k], old->mean_next[k]);
+        drop_copy(f->mean[k], old->mean[k]);
+        drop_copy(f->mean_next[k], old->mean_next[k]);
     }
     if (f->history != old->history) {
         spari_history_free(f->history);

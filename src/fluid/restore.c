@@ -1,6 +1,8 @@
 /* A fluid's part of save and load. */
 #include "state.h"
 
+#include "../base/status.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,12 +66,8 @@ int spari_fluid_save(const spar_fluid *fluid, double *state) {
     return SPAR_OK;
 }
 
-static int is_count(double x) {
-    return x >= 0 && x < 1e15 && x == floor(x);
-}
-
 int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
-    return count >= S_HEAD && is_count(state[S_NODES]) && is_count(state[S_PUSHES]) &&
+    return count >= S_HEAD && spari_is_count(state[S_NODES]) && spari_is_count(state[S_PUSHES]) &&
            count == state_size(fluid, state);
 }
 

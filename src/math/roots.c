@@ -44,7 +44,7 @@ static void divide(int n, const double *p, double u, double v, double *q, double
 }
 
 /* Zeros of a x^2 + b x + c, the smaller first, without cancellation and without overflow. */
-static void quadratic(double a, double b, double c, double re[2], double im[2]) {
+static void roots_of_quadratic(double a, double b, double c, double re[2], double im[2]) {
     re[0] = re[1] = im[0] = im[1] = 0;
     if (a == 0) {
         re[0] = b != 0 ? -c / b : 0;
@@ -165,7 +165,7 @@ static int quadratic_iteration(finder *w, double u, double v) {
     double before = 0, step = 0;
     w->u = u, w->v = v;
     for (int j = 0; j <= 20;) {
-        quadratic(1, w->u, w->v, w->re, w->im);
+        roots_of_quadratic(1, w->u, w->v, w->re, w->im);
         if (fabs(fabs(w->re[0]) - fabs(w->re[1])) > 0.01 * fabs(w->re[1])) {
             return 0; /* two real zeros apart: found better one by one */
         }
@@ -336,7 +336,7 @@ static void no_shift(finder *w) {
 }
 
 /* Coefficients of extreme size are brought nearer to 1 by a power of two, which rounds nothing. */
-static void scale(finder *w) {
+static void scale_coefficients(finder *w) {
     double most = 0, least = HUGE_VAL;
     for (int i = 0; i <= w->n; i++) {
         double x = fabs(w->p[i]);
@@ -390,10 +390,10 @@ static double lower_bound(const finder *w) {
 
 /* The next one or two zeros of p; 0: none came out of twenty shifts. Each shift is turned by 94 degrees from the last.
  */
-static int search(finder *w) {
+static int search_roots(finder *w) {
     const double turn_c = -0.069756473744125, turn_s = 0.997564050259824; /* cos, sin of 94 degrees */
     double c = 0.707106781186547524, s = -c, first[SIZE];
-    scale(w);
+    scale_coefficients(w);
     double bound = lower_bound(w);
     no_shift(w);
     memcpy(first, w->k, sizeof *first * (size_t)w->n);
@@ -481,7 +481,7 @@ int spari_roots(int degree, const double *c, double *re, double *im) {
         w.p[i] = c[degree - i];
     }
     while (w.n > 2) {
-        int found = search(&w);
+        int found = search_roots(&w);
         if (!found) {
             return count;
         }
@@ -492,7 +492,7 @@ int spari_roots(int degree, const double *c, double *re, double *im) {
         memcpy(w.p, w.qp, sizeof *w.p * (size_t)(w.n + 1));
     }
     if (w.n == 2) {
-        quadratic(w.p[0], w.p[1], w.p[2], re + count, im + count);
+        roots_of_quadratic(w.p[0], w.p[1], w.p[2], re + count, im + count);
         count += 2;
     } else if (w.n == 1) {
         re[count] = -w.p[1] / w.p[0], im[count] = 0;

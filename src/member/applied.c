@@ -226,7 +226,7 @@ static void point_tangent(const double *load, int follows, const double r[4], do
 }
 
 /* B [P][7][4 P] -> S: rows and columns of nodal quaternions through dq = E dtheta */
-static void project(int P, const double *B, double E[][4][3], double factor, double *S) {
+static void project_nodes(int P, const double *B, double E[][4][3], double factor, double *S) {
     int stride = 6 * P;
     for (int i = 0; i < P; i++) {
         for (int j = 0; j < P; j++) {
@@ -281,7 +281,7 @@ static void line_tangent(const spar_member *m, const line_load *line, int follow
             }
         }
     }
-    project(P, B, E, factor, S);
+    project_nodes(P, B, E, factor, S);
     /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
     line_forces(m, line, follows, e, z, g);
     for (int l = 0; l < P; l++) {
@@ -503,7 +503,7 @@ int spar_member_add_follower(spar_member *member, int64_t node, const double loa
 
 /* Pieces of element e between load stations, and their Gauss points; NULL s: only counts. A point's eta and weight go
    beside it. */
-static int line_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
+static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
                        double *at) {
     double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->elements;
     int count = 0, whole = n == 1;
@@ -534,7 +534,7 @@ static int line_build(const spar_member *m, int64_t n, const double *eta, const 
                       line_load *line) {
     int E = m->elements, P = m->per_element, points = 0;
     for (int e = 0; e < E; e++) {
-        points += line_points(m, e, n, eta, NULL, NULL, NULL);
+        points += load_points(m, e, n, eta, NULL, NULL, NULL);
     }
     spari_station *s = spari_zalloc(points, sizeof *s);
     double *w = spari_zalloc(2 * (int64_t)points, sizeof *w), *at = w + points;
@@ -544,7 +544,7 @@ static int line_build(const spar_member *m, int64_t n, const double *eta, const 
     line->room = room_for(m);
     int ok = s && w && line->first && line->phi && line->load && line->room;
     for (int e = 0; e < E && ok; e++) {
-        int k = line->first[e], count = line_points(m, e, n, eta, s + k, w + k, at + k);
+        int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
         ok = count >= 0;
         line->first[e + 1] = k + count;
     }

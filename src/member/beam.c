@@ -28,7 +28,7 @@ void spari_beam_free(spari_beam *beam) {
 
 /* ---- the line: nodes from axis points ---- */
 
-static int no_memory(const spar_member *member, const char *what) {
+static int no_memory_for(const spar_member *member, const char *what) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for %s", member->name, what);
 }
 
@@ -164,7 +164,7 @@ static int fit_axis(spar_member *member, const double *gll, const double *bary, 
     gsl_spline_free(spline);
     free(column);
     free(spline_x);
-    return bad ? no_memory(member, "the fit of its axis") : SPAR_OK;
+    return bad ? no_memory_for(member, "the fit of its axis") : SPAR_OK;
 }
 
 /* ---- frames ---- */
@@ -275,7 +275,7 @@ static int make_framing(const spar_member *member, const double *gll, const doub
     }
     f->y = spari_zalloc(3 * member->nodes, sizeof *f->y);
     if (!f->y) {
-        return no_memory(member, "its frames");
+        return no_memory_for(member, "its frames");
     }
     line_at(P, gll, bary, x, -1, &p);
     if (level_y(p.t, y) * NEAR_VERTICAL < 1) {
@@ -560,7 +560,7 @@ int spari_beam_build(spar_member *member, spari_body **body) {
            *x = spari_zalloc(3 * member->nodes, sizeof *x);
     double *q = spari_zalloc(4 * member->nodes, sizeof *q);
     framing f = {0, NULL};
-    int status = b && xi && w && x && q ? SPAR_OK : no_memory(member, "its quadrature points");
+    int status = b && xi && w && x && q ? SPAR_OK : no_memory_for(member, "its quadrature points");
     if (status == SPAR_OK && !beam->node_q) {
         status = own_nodes(member, gll, bary, x, q);
         status = status == SPAR_OK ? make_framing(member, gll, bary, x, &f) : status;
@@ -568,7 +568,7 @@ int spari_beam_build(spar_member *member, spari_body **body) {
     for (int e = 0, k = 0; e < E && status == SPAR_OK; e++) {
         int n = element_points(beam, E, e, P, xi, w);
         if (n < 0) {
-            status = no_memory(member, "its quadrature");
+            status = no_memory_for(member, "its quadrature");
             break;
         }
         for (int i = 0; i < n; i++, k++) {
@@ -596,7 +596,7 @@ int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) 
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], back[4];
     double *x = spari_zalloc(3 * member->nodes, sizeof *x);
     if (!x) {
-        return no_memory(member, "its frames");
+        return no_memory_for(member, "its frames");
     }
     spari_gll(P, gll, NULL, bary);
     spari_quat_conj(member->place_q, back);

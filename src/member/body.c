@@ -116,7 +116,7 @@ void spari_body_free(spari_body *body) {
 
 /* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. Neighbours are brought into one
    hemisphere, so that an element may turn by more than half a revolution from end to end. */
-static void gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
+static void gather_fields(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
     int P = body->per_element;
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)e * (P - 1) + l;
@@ -464,7 +464,7 @@ double spari_body_residual(const spari_body *body, const double *q, const double
     for (int e = 0; e < body->elements; e++) {
         int first = body->first[e], n = body->first[e + 1] - first;
         double *back = f + (int64_t)n * POINT_ROW;
-        gather(body, e, q, v, a, z);
+        gather_fields(body, e, q, v, a, z);
         interpolate(body, e, z, how.moving, f);
         for (int k = 0; k < n; k++) {
             double size =
@@ -835,8 +835,8 @@ static void node_maps(const double *zn, const double *v, const double *a, double
 
 /* S_ij (6 x 6 at row stride `stride`) += E_i^T X E_j for one of K, B, M; X is 7 x 7; the translational factor of column
  * j is `cu`. */
-static void project(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S,
-                    int64_t stride) {
+static void project_block(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S,
+                          int64_t stride) {
     double XE[7][6];
     for (int i = 0; i < 7; i++) {
         for (int j = 0; j < 3; j++) {
@@ -886,7 +886,7 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     double *z = body->scratch, *f = z + (int64_t)P * (ROW + BACK), *K7 = f + (int64_t)n * (POINT_ROW + BACK_ROW),
            *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
     double *XK = g + pp, *XB = XK + 2 * n * row, *table = XB + 2 * n * row;
-    gather(body, e, q, v, a, z);
+    gather_fields(body, e, q, v, a, z);
     interpolate(body, e, z, how.moving, f);
     memset(g, 0, (size_t)P * 4 * sizeof *g);
     double *XM = XB + n * row; /* B has no slopes unless damped: its second half is then free for M */
@@ -972,12 +972,12 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
         for (int j = 0; j < P; j++) {
             double *Sij = S + stride * 6 * i + 6 * j;
             int64_t at = ((int64_t)i * P + j) * 49;
-            project(K7 + at, (const double(*)[3])E[i], (const double(*)[3])E[j], 1, Sij, stride);
+            project_block(K7 + at, (const double(*)[3])E[i], (const double(*)[3])E[j], 1, Sij, stride);
             if (rates) {
-                project(B7 + at, (const double(*)[3])E[i], (const double(*)[3])F[j], cv, Sij, stride);
+                project_block(B7 + at, (const double(*)[3])E[i], (const double(*)[3])F[j], cv, Sij, stride);
             }
             if (masses) {
-                project(M7 + at, (const double(*)[3])E[i], (const double(*)[3])H[j], cm, Sij, stride);
+                project_block(M7 + at, (const double(*)[3])E[i], (const double(*)[3])H[j], cm, Sij, stride);
             }
         }
         /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
@@ -1006,7 +1006,7 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
         return;
     }
     for (int e = 0; e < body->elements; e++) {
-        gather(body, e, q, v, NULL, z);
+        gather_fields(body, e, q, v, NULL, z);
         interpolate(body, e, z, moving, f);
         for (int k = body->first[e]; k < body->first[e + 1]; k++) {
             point_state s;
@@ -1097,7 +1097,7 @@ int spari_body_linearise(spari_body *body, int heavy) {
 }
 
 /* v . B v of one element */
-static double quadratic(int n, const double *B, const double *v, double *work) {
+static double quadratic_form(int n, const double *B, const double *v, double *work) {
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, B, n, v, 1, 0, work, 1));
     return cblas_ddot(n, v, 1, work, 1);
 }
@@ -1116,9 +1116,9 @@ static void linear_energy(const spari_body *body, const double *q, const double 
     for (int e = 0; e < body->elements; e++) {
         int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
         displacements(P, q + 7 * first, x);
-        energy[1] += 0.5 * quadratic(n, body->linear[0] + at, x, x + n);
-        energy[0] += body->linear[2] && v ? 0.5 * quadratic(n, body->linear[2] + at, v + 6 * first, x + n) : 0;
-        energy[3] += body->linear[1] && v ? quadratic(n, body->linear[1] + at, v + 6 * first, x + n) : 0;
+        energy[1] += 0.5 * quadratic_form(n, body->linear[0] + at, x, x + n);
+        energy[0] += body->linear[2] && v ? 0.5 * quadratic_form(n, body->linear[2] + at, v + 6 * first, x + n) : 0;
+        energy[3] += body->linear[1] && v ? quadratic_form(n, body->linear[1] + at, v + 6 * first, x + n) : 0;
         for (int i = e > 0 ? 6 : 0; i < n && body->weights; i++) { /* a joint counts once */
             energy[2] += body->weights[6 * first + i] * x[i];
         }
@@ -1139,7 +1139,7 @@ static double linear_residual(const spari_body *body, const double *q, const dou
         for (int k = 0; k < 3; k++) {
             if (in[k] && body->linear[k] && (k != 1 || body->D)) {
                 if (k == 1) {
-                    damped += quadratic(n, body->linear[1] + at, in[1], x + n);
+                    damped += quadratic_form(n, body->linear[1] + at, in[1], x + n);
                 }
                 SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, body->linear[k] + at, n, in[k], 1, 1,
                                        r + 6 * first, 1));

@@ -11,14 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double *copy_of(const double *x, int64_t n) {
-    double *c = spari_zalloc(n, sizeof *c);
-    if (c && n > 0) {
-        memcpy(c, x, (size_t)n * sizeof *c);
-    }
-    return c;
-}
-
 /* ---- create ---- */
 
 static int member_create(spar_session *session, const char *call, const char *name, int kind, spar_member **out) {
@@ -65,7 +57,7 @@ static int check_place(spar_session *session, const char *call, const char *name
     return SPAR_OK;
 }
 
-static void place(spar_member *m, const double x[3], const double q[4]) {
+static void set_place(spar_member *m, const double x[3], const double q[4]) {
     if (x) {
         memcpy(m->place_x, x, sizeof m->place_x);
     }
@@ -82,7 +74,7 @@ int spar_point_create(spar_session *session, const char *name, const double x[3]
     SPARI_TRY(check_place(session, "spar_point_create", name ? name : "", x, q));
     spar_member *m;
     SPARI_TRY(member_create(session, "spar_point_create", name, SPARI_POINT, member ? &m : NULL));
-    place(m, x, q);
+    set_place(m, x, q);
     *member = m;
     return SPAR_OK;
 }
@@ -100,7 +92,7 @@ int spar_rigid_create(spar_session *session, const char *name, const double x[3]
                   label, wrong);
     spar_member *m;
     SPARI_TRY(member_create(session, call, name, SPARI_RIGID, member ? &m : NULL));
-    place(m, x, q);
+    set_place(m, x, q);
     memcpy(m->mass, mass, sizeof m->mass);
     *member = m;
     return SPAR_OK;
@@ -148,7 +140,7 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
     if (twist) {
         SPARI_TRY(spari_need_finite(session, call, beam->name, "twist", n, twist));
     }
-    double *copies[3] = {copy_of(eta, n), copy_of(xyz, 3 * n), twist ? copy_of(twist, n) : NULL};
+    double *copies[3] = {spari_copy(eta, n), spari_copy(xyz, 3 * n), twist ? spari_copy(twist, n) : NULL};
     if (!copies[0] || !copies[1] || (twist && !copies[2])) {
         free(copies[0]), free(copies[1]), free(copies[2]);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the axis", call, beam->name);
@@ -186,7 +178,7 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
                           (long long)i - 1, (long long)i);
         }
     }
-    double *copies[2] = {copy_of(x, 3 * n), q ? copy_of(q, 4 * n) : NULL};
+    double *copies[2] = {spari_copy(x, 3 * n), q ? spari_copy(q, 4 * n) : NULL};
     if (!copies[0] || (q && !copies[1])) {
         free(copies[0]), free(copies[1]);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the nodes", call, beam->name);
@@ -249,7 +241,7 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
                       "%s: '%s': the mass of section %lld is not that of a rigid section: %s", call, beam->name,
                       (long long)i, wrong);
     }
-    double *copies[3] = {copy_of(eta, n), copy_of(stiffness, 36 * n), mass ? copy_of(mass, 36 * n) : NULL};
+    double *copies[3] = {spari_copy(eta, n), spari_copy(stiffness, 36 * n), mass ? spari_copy(mass, 36 * n) : NULL};
     if (!copies[0] || !copies[1] || (mass && !copies[2])) {
         free(copies[0]), free(copies[1]), free(copies[2]);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the sections", call, beam->name);
@@ -296,7 +288,7 @@ int spar_member_set_placement(spar_member *member, const double x[3], const doub
     const char *call = "spar_member_set_placement";
     SPARI_TRY(spari_need_open(member, call));
     SPARI_TRY(check_place(member->session, call, member->name, x, q));
-    place(member, x, q);
+    set_place(member, x, q);
     return SPAR_OK;
 }
 
@@ -355,41 +347,33 @@ int spar_member_set_owner(spar_member *member, int rank) {
 }
 
 /* FNV-1a over what the ranks must agree on. */
-static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
-    const unsigned char *p = data;
-    for (size_t i = 0; i < size; i++) {
-        h = (h ^ p[i]) * UINT64_C(1099511628211);
-    }
-    return h;
-}
-
 uint64_t spari_member_make(const spar_member *m) {
-    uint64_t h = UINT64_C(14695981039346656037);
+    uint64_t h = SPARI_HASH_BEGIN;
     int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,
                      m->elements, m->per_element, m->fidelity, (int)m->modes};
-    h = hash_bytes(h, numbers, sizeof numbers);
-    h = hash_bytes(h, m->mass, sizeof m->mass);
+    h = spari_hash_bytes(h, numbers, sizeof numbers);
+    h = spari_hash_bytes(h, m->mass, sizeof m->mass);
     const spari_beam *b = m->beam;
     if (b) {
         size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);
         int more[] = {b->rule,           b->points,         b->eta != NULL, b->twist != NULL,
                       b->node_x != NULL, b->node_q != NULL, b->mass != NULL};
-        h = hash_bytes(h, more, sizeof more);
-        h = hash_bytes(h, b->mu, sizeof b->mu);
-        h = b->eta ? hash_bytes(hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
-        h = b->twist ? hash_bytes(h, b->twist, n * d) : h;
-        h = b->node_x ? hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;
-        h = b->node_q ? hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
-        h = b->section_eta ? hash_bytes(hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
-        h = b->mass ? hash_bytes(h, b->mass, 36 * s * d) : h;
+        h = spari_hash_bytes(h, more, sizeof more);
+        h = spari_hash_bytes(h, b->mu, sizeof b->mu);
+        h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
+        h = b->twist ? spari_hash_bytes(h, b->twist, n * d) : h;
+        h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;
+        h = b->node_q ? spari_hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
+        h = b->section_eta ? spari_hash_bytes(spari_hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
+        h = b->mass ? spari_hash_bytes(h, b->mass, 36 * s * d) : h;
     }
     return h;
 }
 
 uint64_t spari_member_hash(const spar_member *m) {
-    uint64_t h = hash_bytes(spari_member_make(m), m->name, strlen(m->name));
-    h = hash_bytes(h, m->place_x, sizeof m->place_x);
-    h = hash_bytes(h, m->place_q, sizeof m->place_q);
-    h = hash_bytes(h, &m->velocity_given, sizeof m->velocity_given);
-    return hash_bytes(h, m->velocity, sizeof m->velocity);
+    uint64_t h = spari_hash_bytes(spari_member_make(m), m->name, strlen(m->name));
+    h = spari_hash_bytes(h, m->place_x, sizeof m->place_x);
+    h = spari_hash_bytes(h, m->place_q, sizeof m->place_q);
+    h = spari_hash_bytes(h, &m->velocity_given, sizeof m->velocity_given);
+    return spari_hash_bytes(h, m->velocity, sizeof m->velocity);
 }

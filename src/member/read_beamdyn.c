@@ -58,7 +58,7 @@ static const char CALL[] = "spar_beam_read_beamdyn";
 
 #define FAIL(r, status, ...) spari_fail((r)->session, status, "spar_beam_read_beamdyn: " __VA_ARGS__)
 
-static int no_memory(const reader *r) {
+static int no_memory_to_read(const reader *r) {
     return FAIL(r, SPAR_ERR_MEMORY, "'%s': no memory for %s", r->beam, r->path);
 }
 
@@ -186,7 +186,7 @@ static int read_primary(reader *r, blade *b) {
     b->count = spari_zalloc(b->members, sizeof *b->count);
     b->key = spari_zalloc(4 * (int64_t)b->points, sizeof *b->key);
     if (!b->count || !b->key) {
-        return no_memory(r);
+        return no_memory_to_read(r);
     }
     for (int i = 0; i < b->members; i++) {
         SPARI_TRY(next_line(r, "the number of key points of a member"));
@@ -217,7 +217,7 @@ static int read_primary(reader *r, blade *b) {
     folder = word[0] != '/' && slash ? (size_t)(slash - r->path) + 1 : 0;
     b->file = spari_zalloc((int64_t)(folder + size), 1);
     if (!b->file) {
-        return no_memory(r);
+        return no_memory_to_read(r);
     }
     memcpy(b->file, r->path, folder);
     memcpy(b->file + folder, word, size);
@@ -278,7 +278,7 @@ static int read_blade(reader *r, blade *b) {
     b->mass = spari_zalloc(36 * n, sizeof *b->mass);
     b->line = spari_zalloc(n, sizeof *b->line);
     if (!b->eta || !b->stiffness || !b->mass || !b->line) {
-        return no_memory(r);
+        return no_memory_to_read(r);
     }
     for (int64_t i = 0; i < n; i++) {
         SPARI_TRY(skip_blank(r, "the place of a station"));
@@ -299,7 +299,7 @@ static int read_blade(reader *r, blade *b) {
 /* ours[i] = BeamDyn's [from[i]] */
 static const int FROM[6] = {2, 0, 1, 5, 3, 4};
 
-static void turn_matrix(double *M) {
+static void permute_axes(double *M) {
     double old[36];
     memcpy(old, M, sizeof old);
     for (int i = 0; i < 6; i++) {
@@ -411,19 +411,19 @@ static int make_axis(const blade *b, axis *a) {
 }
 
 /* Hands it to the beam; what the beam had before stays when something is refused. */
-static int describe(spar_member *m, const reader *r, blade *b) {
+static int describe_blade(spar_member *m, const reader *r, blade *b) {
     double mu[6];
     axis a = {0};
     for (int64_t i = 0; i < b->stations; i++) {
-        turn_matrix(b->stiffness + 36 * i);
-        turn_matrix(b->mass + 36 * i);
+        permute_axes(b->stiffness + 36 * i);
+        permute_axes(b->mass + 36 * i);
     }
     for (int i = 0; i < 6; i++) {
         mu[i] = b->damped ? b->mu[FROM[i]] : 0;
     }
     SPARI_TRY(check_sections(r, b));
     spari_beam *fresh = spari_zalloc(1, sizeof *fresh), *old = m->beam;
-    int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : no_memory(r);
+    int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : no_memory_to_read(r);
     if (status == SPAR_OK) {
         fresh->rule = old->rule, fresh->points = old->points;
         m->beam = fresh;
@@ -458,7 +458,7 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
         status = read_blade(r, &b);
         fclose(r->file);
     }
-    status = status == SPAR_OK ? describe(beam, r, &b) : status;
+    status = status == SPAR_OK ? describe_blade(beam, r, &b) : status;
     blade_free(&b);
     free(r);
     return status;

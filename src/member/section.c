@@ -24,7 +24,7 @@ static void imaginary(const double a[4], const double b[4], double c[3]) { /* 2 
     }
 }
 
-static void field_at(const spar_member *m, const spari_station *s, section_field *f) {
+static void section_at(const spar_member *m, const spari_station *s, section_field *f) {
     int P = m->per_element;
     const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
     double last[4] = {0}, Q[4] = {0};
@@ -127,7 +127,7 @@ static void section_output(const spar_member *m, const spari_station *s, double 
                            double *x, double *q) {
     section_field f;
     double e[6], ed[6], local[6], rate[6], C[36], q0[4];
-    field_at(m, s, &f);
+    section_at(m, s, &f);
     if (is_linear(m)) {
         linear_strains(m, s, e, ed);
     } else {

@@ -90,7 +90,7 @@ static int64_t draw_lines(const spar_fluid *fluid, const sketch *s) {
     return lines;
 }
 
-static int write_picture(const spar_fluid *fluid, const sketch *s, const char *path) {
+static int write_nodes(const spar_fluid *fluid, const sketch *s, const char *path) {
     spari_vtk_field field[FIELDS];
     for (int f = 0; f < FIELDS; f++) {
         field[f] = (spari_vtk_field){field_of[f].name, field_of[f].components, at(s, field_of[f].column, 1, 0)};
@@ -114,7 +114,7 @@ static int draw(const spar_fluid *fluid, const sketch *s, const char *path) {
         SPARI_TRY(fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s));
     }
     copy_to_feet(s);
-    return write_picture(fluid, s, path);
+    return write_nodes(fluid, s, path);
 }
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {

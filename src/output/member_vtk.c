@@ -44,7 +44,7 @@ typedef struct nodal {
     double *chain, *frame;    /* [nodes][4]: q and the reference orientation, signs chained along each element */
 } nodal;
 
-static void put(const sampled *s, int column, int components, int64_t sample, const double *value) {
+static void put_columns(const sampled *s, int column, int components, int64_t sample, const double *value) {
     memcpy(s->table + (int64_t)column * s->n + sample * components, value, (size_t)components * sizeof *value);
 }
 
@@ -68,7 +68,7 @@ static void put_axes(const sampled *s, int64_t sample, int n, const double *phi,
     for (int i = 0; i < 3; i++) {
         double axis[3];
         spari_rotate(now, unit[i], axis);
-        put(s, AXES + 3 * i, 3, sample, axis);
+        put_columns(s, AXES + 3 * i, 3, sample, axis);
     }
 }
 
@@ -84,18 +84,18 @@ static void put_sample(const sampled *s, const spar_member *m, const nodal *at, 
     for (int i = 0; i < 3; i++) {
         x[i] += u[i];
     }
-    put(s, X, 3, sample, x);
-    put(s, U, 3, sample, u);
+    put_columns(s, X, 3, sample, x);
+    put_columns(s, U, 3, sample, u);
     put_axes(s, sample, n, phi, at->chain + 4 * first, at->frame + 4 * first);
     blend(n, phi, 6, at->v + 6 * first, 6, rate);
-    put(s, V, 3, sample, rate);
-    put(s, OMEGA, 3, sample, rate + 3);
+    put_columns(s, V, 3, sample, rate);
+    put_columns(s, OMEGA, 3, sample, rate + 3);
     blend(n, phi, 6, at->a + 6 * first, 6, rate);
-    put(s, A, 3, sample, rate);
-    put(s, ALPHA, 3, sample, rate + 3);
-    put(s, FORCE, 3, sample, load);
-    put(s, MOMENT, 3, sample, load + 3);
-    put(s, NODE, 1, sample, &number);
+    put_columns(s, A, 3, sample, rate);
+    put_columns(s, ALPHA, 3, sample, rate + 3);
+    put_columns(s, FORCE, 3, sample, load);
+    put_columns(s, MOMENT, 3, sample, load + 3);
+    put_columns(s, NODE, 1, sample, &number);
 }
 
 static void sample_member(const sampled *s, const spar_member *m, const nodal *at) {
@@ -130,7 +130,7 @@ static int fill_nodal(const spar_member *m, nodal *at) {
     return SPAR_OK;
 }
 
-static int write_picture(const spar_member *m, const sampled *s, const char *path) {
+static int write_member(const spar_member *m, const sampled *s, const char *path) {
     spari_vtk_field field[FIELDS];
     for (int i = 0; i < FIELDS; i++) {
         field[i] = (spari_vtk_field){field_of[i].name, field_of[i].components, s->table + field_of[i].column * s->n};
@@ -171,7 +171,7 @@ int spar_member_write_vtk(const spar_member *member, const char *path) {
     }
     if (status == SPAR_OK) {
         sample_member(&s, member, &at);
-        status = write_picture(member, &s, path);
+        status = write_member(member, &s, path);
     }
     free(work);
     free(s.table);

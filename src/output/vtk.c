@@ -7,13 +7,13 @@
 
 /* ---- base64 (RFC 4648) of a stream of bytes ---- */
 
-typedef struct stream {
+typedef struct encoder {
     FILE *file;
     unsigned char group[3];
     int held; /* bytes waiting in group */
-} stream;
+} encoder;
 
-static void put_group(stream *s) {
+static void put_group(encoder *s) {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const unsigned char *g = s->group;
     char text[4] = {digit[g[0] >> 2], digit[(g[0] & 3) << 4 | g[1] >> 4], digit[(g[1] & 15) << 2 | g[2] >> 6],
@@ -26,7 +26,7 @@ static void put_group(stream *s) {
     s->held = 0;
 }
 
-static void put_bytes(stream *s, const void *data, size_t size) {
+static void put_bytes(encoder *s, const void *data, size_t size) {
     const unsigned char *byte = data;
     for (size_t i = 0; i < size; i++) {
         s->group[s->held++] = byte[i];
@@ -36,35 +36,35 @@ static void put_bytes(stream *s, const void *data, size_t size) {
     }
 }
 
-static void put_int64(stream *s, int64_t value) {
+static void put_int64(encoder *s, int64_t value) {
     put_bytes(s, &value, sizeof value);
 }
 
 /* ---- XML ---- */
 
 /* An array begins with its size in bytes, in the same base64 text as the numbers. */
-static void begin_array(stream *s, const char *type, const char *name, int components, int64_t tuples, size_t item) {
+static void begin_array(encoder *s, const char *type, const char *name, int components, int64_t tuples, size_t item) {
     int64_t bytes = tuples * components * (int64_t)item;
     fprintf(s->file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
             components);
     put_int64(s, bytes);
 }
 
-static void end_array(stream *s) {
+static void end_array(encoder *s) {
     if (s->held > 0) {
         put_group(s);
     }
     fputs("</DataArray>\n", s->file);
 }
 
-static void put_field(stream *s, const spari_vtk_field *f, int64_t tuples) {
+static void put_field(encoder *s, const spari_vtk_field *f, int64_t tuples) {
     begin_array(s, "Float64", f->name, f->components, tuples, sizeof(double));
     put_bytes(s, f->value, (size_t)tuples * (size_t)f->components * sizeof(double));
     end_array(s);
 }
 
 /* What belongs to the whole picture: NumberOfTuples is required here, where no number of points implies it. */
-static void put_fact(stream *s, const spari_vtk_field *f) {
+static void put_fact(encoder *s, const spari_vtk_field *f) {
     fprintf(s->file,
             "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" NumberOfTuples=\"1\" format=\"binary\">",
             f->name, f->components);
@@ -73,7 +73,7 @@ static void put_fact(stream *s, const spari_vtk_field *f) {
     end_array(s);
 }
 
-static void put_facts(stream *s, const spari_vtk_picture *p) {
+static void put_facts(encoder *s, const spari_vtk_picture *p) {
     fputs("<FieldData>\n", s->file);
     put_fact(s, &(spari_vtk_field){"TimeValue", 1, &p->time});
     for (int i = 0; i < p->facts; i++) {
@@ -82,7 +82,7 @@ static void put_facts(stream *s, const spari_vtk_picture *p) {
     fputs("</FieldData>\n", s->file);
 }
 
-static void put_points(stream *s, const spari_vtk_picture *p) {
+static void put_points(encoder *s, const spari_vtk_picture *p) {
     fputs("<PointData>\n", s->file);
     for (int i = 0; i < p->fields; i++) {
         put_field(s, &p->field[i], p->points);
@@ -92,29 +92,29 @@ static void put_points(stream *s, const spari_vtk_picture *p) {
     fputs("</Points>\n", s->file);
 }
 
-static int64_t line_points(const spari_vtk_picture *p) {
+static int64_t count_line_points(const spari_vtk_picture *p) {
     return p->lines > 0 ? p->line_end[p->lines - 1] : 0;
 }
 
-static void put_vert_numbers(stream *s, const spari_vtk_picture *p) {
+static void put_vert_numbers(encoder *s, const spari_vtk_picture *p) {
     for (int64_t i = 0; i < p->verts; i++) {
         put_int64(s, p->vert ? p->vert[i] : i);
     }
 }
 
-static void put_count(stream *s, int64_t first, int64_t n) {
+static void put_count(encoder *s, int64_t first, int64_t n) {
     for (int64_t i = 0; i < n; i++) {
         put_int64(s, first + i);
     }
 }
 
-static void put_line_numbers(stream *s, const spari_vtk_picture *p) {
-    for (int64_t i = 0; i < line_points(p); i++) {
+static void put_line_numbers(encoder *s, const spari_vtk_picture *p) {
+    for (int64_t i = 0; i < count_line_points(p); i++) {
         put_int64(s, p->line_point ? p->line_point[i] : i);
     }
 }
 
-static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
+static void put_poly_cells(encoder *s, const spari_vtk_picture *p) {
     fputs("<Verts>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, p->verts, 8);
     put_vert_numbers(s, p);
@@ -123,7 +123,7 @@ static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
     put_count(s, 1, p->verts);
     end_array(s);
     fputs("</Verts>\n<Lines>\n", s->file);
-    begin_array(s, "Int64", "connectivity", 1, line_points(p), 8);
+    begin_array(s, "Int64", "connectivity", 1, count_line_points(p), 8);
     put_line_numbers(s, p);
     end_array(s);
     begin_array(s, "Int64", "offsets", 1, p->lines, 8);
@@ -132,10 +132,10 @@ static void put_poly_cells(stream *s, const spari_vtk_picture *p) {
     fputs("</Lines>\n", s->file);
 }
 
-static void put_grid_cells(stream *s, const spari_vtk_picture *p) {
+static void put_grid_cells(encoder *s, const spari_vtk_picture *p) {
     enum { VERTEX = 1, POLY_LINE = 4 }; /* VTK's numbers of the cell types */
     fputs("<Cells>\n", s->file);
-    begin_array(s, "Int64", "connectivity", 1, p->verts + line_points(p), 8);
+    begin_array(s, "Int64", "connectivity", 1, p->verts + count_line_points(p), 8);
     put_vert_numbers(s, p);
     put_line_numbers(s, p);
     end_array(s);
@@ -162,7 +162,7 @@ static const char *byte_order(void) {
 }
 
 static void put_picture(FILE *file, const spari_vtk_picture *p, int grid) {
-    stream s = {.file = file};
+    encoder s = {.file = file};
     const char *kind = grid ? "UnstructuredGrid" : "PolyData";
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n",

@@ -117,7 +117,7 @@ static double *slot_w(const spari_accelerator *a, int slot) {
 /* ---- weights ---- */
 
 /* Sizes of forces and moments, as the root of the sum of squares of loads used and loads that came back. */
-static void measure(const spari_accelerator *a, const double *x, const double *g, double size[2]) {
+static void measure_kinds(const spari_accelerator *a, const double *x, const double *g, double size[2]) {
     double s[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
@@ -136,7 +136,7 @@ static void measure(const spari_accelerator *a, const double *x, const double *g
  */
 static int weigh(spari_accelerator *a, const double *x, const double *g) {
     double size[2];
-    measure(a, x, g, size);
+    measure_kinds(a, x, g, size);
     if (a->iteration > 1 && size[0] <= 10 * a->size[0] && size[1] <= 10 * a->size[1]) {
         return 0;
     }
@@ -148,7 +148,7 @@ static int weigh(spari_accelerator *a, const double *x, const double *g) {
 }
 
 /* out = in, each entry over the size of its kind */
-static void scale(const spari_accelerator *a, const double *in, double *out) {
+static void over_sizes(const spari_accelerator *a, const double *in, double *out) {
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
             out[i + k] = a->weight[k >= a->split] * in[i + k];
@@ -166,7 +166,7 @@ static int append(spari_accelerator *a, int slot) {
         return 0;
     }
     double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns;
-    scale(a, slot_v(a, slot), q);
+    over_sizes(a, slot_v(a, slot), q);
     double whole = sqrt(dot(q, q, a->n));
     for (int j = 0; j < k; j++) {
         r[j] = 0;
@@ -202,19 +202,19 @@ static int newest_before(const spari_accelerator *a, int64_t serial) {
 }
 
 /* Out of use: a column of this step for good, an older one until it is known whether the step is accepted. */
-static void drop(spari_accelerator *a, int slot) {
+static void drop_column(spari_accelerator *a, int slot) {
     a->column[slot].state = a->column[slot].step == a->step ? FREE : DROPPED;
 }
 
 /* Factors anew, the newest columns first, so that the filter and the limit on their number take out old ones. */
-static void factor(spari_accelerator *a) {
+static void factor_columns(spari_accelerator *a) {
     int64_t serial = a->serial + 1;
     a->used = 0;
     for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
         serial = a->column[s].serial;
         int full = a->used == a->set.columns;
         if (!append(a, s)) {
-            drop(a, s);
+            drop_column(a, s);
             a->dropped += !full;
         }
     }
@@ -230,7 +230,7 @@ static int free_slot(const spari_accelerator *a) {
 }
 
 /* The columns of this step, at most all but one: the oldest goes. */
-static void make_room(spari_accelerator *a) {
+static void limit_columns(spari_accelerator *a) {
     int count = 0, oldest = -1;
     for (int s = 0; s < a->slots; s++) {
         const column *c = a->column + s;
@@ -240,14 +240,14 @@ static void make_room(spari_accelerator *a) {
         }
     }
     if (count == a->set.columns) {
-        drop(a, oldest);
-        factor(a);
+        drop_column(a, oldest);
+        factor_columns(a);
     }
 }
 
 /* The column of the last two iterations. */
 static void add_column(spari_accelerator *a, const double *x, const double *g) {
-    make_room(a);
+    limit_columns(a);
     int s = free_slot(a), moved = 0;
     double *v = slot_v(a, s), *w = slot_w(a, s);
     for (int64_t i = 0; i < a->n; i++) {
@@ -261,7 +261,7 @@ static void add_column(spari_accelerator *a, const double *x, const double *g) {
     }
     a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt};
     if (!append(a, s)) {
-        factor(a);
+        factor_columns(a);
     }
 }
 
@@ -361,7 +361,7 @@ void spari_accelerator_next(spari_accelerator *a, const double *x, const double 
     a->iteration++;
     int reweighed = weigh(a, x, g);
     if (reweighed && a->slots > 0) {
-        factor(a);
+        factor_columns(a);
     }
     if (a->iteration > 1) {
         estimate_ratio(a, x, g);
@@ -477,10 +477,6 @@ static int whole_below(double x, double end) {
     return x >= 0 && x < end && x == floor(x);
 }
 
-static int is_count(double x) {
-    return whole_below(x, 1e15);
-}
-
 /* Columns in slots of their own, not more of this step nor of older ones than there can be. */
 static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
     int64_t width = COLUMN_HEAD + 2 * a->n, of_step = 0;
@@ -489,7 +485,7 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
         int now = c[2] == step;
         of_step += now;
         if (!whole_below(c[0], a->slots) || !(c[1] == LIVE || (!now && (c[1] == RESTING || c[1] == DROPPED))) ||
-            !whole_below(c[2], step + 1) || !is_count(c[3])) {
+            !whole_below(c[2], step + 1) || !spari_is_count(c[3])) {
             return 0;
         }
         for (const double *other = first; other != c; other += width) {
@@ -502,7 +498,7 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
 }
 
 int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count) {
-    if (count < HEAD || !is_count(state[1]) || !is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
+    if (count < HEAD || !spari_is_count(state[1]) || !spari_is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
         !whole_below(state[4], INT_MAX) || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
         !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
         return 0;

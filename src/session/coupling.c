@@ -31,7 +31,7 @@ static int wants_motion(const spar_session *s) {
     return s->motion_atol > 0 || s->motion_rtol > 0;
 }
 
-static int allocate(const spar_session *s, spari_coupling *c) {
+static int make_vectors(const spar_session *s, spari_coupling *c) {
     int iterated = s->scheme != SPAR_COUPLING_EXPLICIT;
     int64_t n = iterated ? c->n : 0;
     spari_accelerator_settings set = {s->scheme, s->relaxation, s->coupling_columns, s->coupling_reuse,
@@ -72,7 +72,7 @@ int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
     }
-    if (!c || !allocate(s, c)) {
+    if (!c || !make_vectors(s, c)) {
         spari_coupling_free(&c);
         return spari_fail(s, SPAR_ERR_MEMORY,
                           "spar_step_begin: no memory for the coupling; ask for fewer columns "

@@ -23,12 +23,12 @@
 
 /* ---- what is there on every rank: the same code writes, checks and reads ---- */
 
-typedef struct stream {
+typedef struct passage {
     spari_image *image;
     enum { WRITE, CHECK, READ } mode;
-} stream;
+} passage;
 
-static void pass(stream *t, void *words, int64_t n) {
+static void pass(passage *t, void *words, int64_t n) {
     if (t->mode == WRITE) {
         spari_image_put(t->image, words, n);
     } else {
@@ -39,7 +39,7 @@ static void pass(stream *t, void *words, int64_t n) {
     }
 }
 
-static void pass_int(stream *t, int *x) {
+static void pass_int(passage *t, int *x) {
     int64_t word = *x;
     pass(t, &word, 1);
     if (t->mode == READ) {
@@ -47,7 +47,7 @@ static void pass_int(stream *t, int *x) {
     }
 }
 
-static void pass_clock(stream *t, spar_session *s) {
+static void pass_clock(passage *t, spar_session *s) {
     int phase = (int)s->phase;
     pass(t, &s->time, 1);
     pass(t, &s->dt, 1);
@@ -67,7 +67,7 @@ static void pass_clock(stream *t, spar_session *s) {
 }
 
 /* What may not be kept here, or was not there: zeros in the file. */
-static void pass_kept(stream *t, double *words, int64_t n) {
+static void pass_kept(passage *t, double *words, int64_t n) {
     double zero = 0;
     if (words) {
         pass(t, words, n);
@@ -81,7 +81,7 @@ static void pass_kept(stream *t, double *words, int64_t n) {
 }
 
 /* Of a motion that is only checked: numbers, and rotations where they are. */
-static void check_motion(stream *t, const double *words, int width, int64_t n) {
+static void check_pose_words(passage *t, const double *words, int width, int64_t n) {
     int ok = words && spari_first_nonfinite(words, width * n) < 0;
     for (int64_t i = 0; i < n && ok && width == 7; i++) {
         const double *q = words + 7 * i + 3;
@@ -91,7 +91,7 @@ static void check_motion(stream *t, const double *words, int width, int64_t n) {
     t->image->failed |= !ok;
 }
 
-static void pass_member(stream *t, spar_member *m) {
+static void pass_member(passage *t, spar_member *m) {
     int64_t n = m->nodes;
     double *motions[] = {m->now.q, m->now.v, m->now.a, m->after.q, m->after.v, m->after.a};
     static const int width[] = {7, 6, 6, 7, 6, 6};
@@ -108,7 +108,7 @@ static void pass_member(stream *t, spar_member *m) {
         const double *there = (const double *)(const void *)(t->image->word + t->image->at);
         pass(t, motions[k], width[k] * n);
         if (t->mode == CHECK) {
-            check_motion(t, t->image->failed ? NULL : there, width[k], n);
+            check_pose_words(t, t->image->failed ? NULL : there, width[k], n);
         }
     }
     for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
@@ -129,7 +129,7 @@ static void pass_member(stream *t, spar_member *m) {
 }
 
 /* c: of the settings in the image; never only checked */
-static void pass_coupling(stream *t, spari_coupling *c) {
+static void pass_coupling(passage *t, spari_coupling *c) {
     pass_int(t, &c->iterations);
     c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
     pass(t, c->residual, c->iterations);
@@ -166,7 +166,7 @@ static void put_coupling(spari_image *image, spar_session *s) {
     int64_t at = image->count;
     spari_image_put_int(image, 0);
     if (spari_coupling_fits(s)) {
-        stream t = {image, WRITE};
+        passage t = {image, WRITE};
         spari_coupling_settings(s, settings);
         spari_image_put(image, settings, SPARI_COUPLING_SETTINGS);
         pass_coupling(&t, s->own->coupling);
@@ -242,17 +242,17 @@ static int agree(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-static int no_memory(spar_session *s, const char *call) {
+static int no_memory_for_state(spar_session *s, const char *call) {
     return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the state of the session", call);
 }
 
 /* The words of all ranks, rank by rank, each followed by a word of the exchange: rank r has all[first[r]] to
    all[first[r + 1] - 2]. */
-static int gather(spar_session *s, const spari_image *mine, double **all, int64_t **first) {
+static int gather_images(spar_session *s, const spari_image *mine, double **all, int64_t **first) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     double *sizes = spari_zalloc(2 * ranks, sizeof *sizes);
     *first = spari_zalloc(ranks + 1, sizeof **first);
-    int status = agree(s, sizes && *first ? SPAR_OK : no_memory(s, "spar_session_save"));
+    int status = agree(s, sizes && *first ? SPAR_OK : no_memory_for_state(s, "spar_session_save"));
     if (status == SPAR_OK) {
         for (int r = 0; r < ranks; r++) {
             (*first)[r + 1] = 2 * (r + 1);
@@ -265,7 +265,7 @@ static int gather(spar_session *s, const spari_image *mine, double **all, int64_
             (*first)[r + 1] = (*first)[r] + (int64_t)sizes[2 * r] + 1;
         }
         *all = spari_zalloc((*first)[ranks], sizeof **all);
-        status = agree(s, *all ? SPAR_OK : no_memory(s, "spar_session_save"));
+        status = agree(s, *all ? SPAR_OK : no_memory_for_state(s, "spar_session_save"));
     }
     free(sizes);
     SPARI_TRY(status);
@@ -276,7 +276,7 @@ static int gather(spar_session *s, const spari_image *mine, double **all, int64_
 /* ---- save ---- */
 
 static void put_common(spari_image *image, spar_session *s) {
-    stream t = {image, WRITE};
+    passage t = {image, WRITE};
     spari_image_put_int(image, spari_comm_size(s->comm));
     spari_image_put_int(image, s->member_count);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -300,7 +300,7 @@ static int write_file(spar_session *s, const double *all, const int64_t *first, 
         spari_image_put_int(&image, n);
         spari_image_put(&image, all + first[r], n);
     }
-    int status = image.failed ? no_memory(s, "spar_session_save") : SPAR_OK;
+    int status = image.failed ? no_memory_for_state(s, "spar_session_save") : SPAR_OK;
     if (status == SPAR_OK) {
         status = spari_image_write(&image, path, why, sizeof why);
         if (status != SPAR_OK) {
@@ -333,9 +333,9 @@ int spar_session_save(const spar_session *session, const char *path) {
     status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
     SPARI_TRY(spari_enter_alike(s, call, NULL, 0, status));
     status = put_own(&own, s);
-    status = agree(s, status == SPAR_OK && own.failed ? no_memory(s, call) : status);
+    status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s, call) : status);
     if (status == SPAR_OK) {
-        status = gather(s, &own, &all, &first);
+        status = gather_images(s, &own, &all, &first);
     }
     if (status == SPAR_OK) {
         status = agree(s, spari_comm_rank(s->comm) == 0 ? write_file(s, all, first, path) : SPAR_OK);
@@ -356,7 +356,7 @@ typedef struct record {
     int64_t count;
 } record;
 
-typedef struct loading {
+typedef struct reading {
     spari_image image;
     int64_t common;        /* where the clock begins */
     int phase;             /* where the step stood */
@@ -369,9 +369,9 @@ typedef struct loading {
     int *takes_loads;         /* [fluids here] */
     int64_t fluid_count;      /* here */
     spari_coupling *coupling; /* made from the image; NULL: none that fits */
-} loading;
+} reading;
 
-static void end_loading(loading *l) {
+static void end_loading(reading *l) {
     spari_image_free(&l->image);
     free(l->solver);
     free(l->records);
@@ -385,7 +385,7 @@ static int broken(spar_session *s) {
     return spari_fail(s, SPAR_ERR_IO, "spar_session_load: the file does not hold what it should; take an older file");
 }
 
-static int check_description(spar_session *s, loading *l) {
+static int compare_scene(spar_session *s, reading *l) {
     const char *call = "spar_session_load";
     l->ranks = (int)spari_image_get_int(&l->image);
     int64_t members = spari_image_get_int(&l->image);
@@ -415,8 +415,8 @@ static int is_within(int64_t x, int64_t least, int64_t most) {
 }
 
 /* A clock that can go on, read into a copy of the session. */
-static int check_clock(spar_session *s, loading *l) {
-    stream t = {&l->image, READ};
+static int check_clock(spar_session *s, reading *l) {
+    passage t = {&l->image, READ};
     spar_session then = *s;
     pass_clock(&t, &then);
     int phase = (int)then.phase, within = phase > SPARI_IDLE;
@@ -433,7 +433,7 @@ static int check_clock(spar_session *s, loading *l) {
 }
 
 /* What of the coupling fits the settings in force, in memory of its own. */
-static int check_coupling(spar_session *s, loading *l) {
+static int check_coupling(spar_session *s, reading *l) {
     int64_t count = spari_image_get_int(&l->image), end;
     if (count == 0 && !l->image.failed) {
         return SPAR_OK;
@@ -446,7 +446,7 @@ static int check_coupling(spar_session *s, loading *l) {
     spari_coupling_settings(s, settings);
     if (saved && memcmp(saved, settings, sizeof settings) == 0) {
         SPARI_TRY(spari_coupling_create(s, &l->coupling));
-        stream t = {&l->image, READ};
+        passage t = {&l->image, READ};
         pass_coupling(&t, l->coupling);
         if (l->coupling->accelerator) {
             int64_t n = spari_image_get_int(&l->image);
@@ -467,7 +467,7 @@ static int check_coupling(spar_session *s, loading *l) {
     return SPAR_OK;
 }
 
-static int check_solvers(spar_session *s, loading *l) {
+static int check_solvers(spar_session *s, reading *l) {
     int64_t solvers = spari_image_get_int(&l->image);
     for (int64_t i = 0; i < solvers && !l->image.failed; i++) {
         int64_t k = spari_image_get_int(&l->image), n = spari_image_get_int(&l->image);
@@ -489,12 +489,12 @@ static int check_solvers(spar_session *s, loading *l) {
     return SPAR_OK;
 }
 
-static int check_fluids(spar_session *s, loading *l, int rank) {
+static int compare_fluids(spar_session *s, reading *l, int rank) {
     int64_t fluids = spari_image_get_int(&l->image);
     for (int64_t i = 0; i < fluids && !l->image.failed; i++) {
         record *more = realloc(l->records, (size_t)(l->record_count + 1) * sizeof *more);
         if (!more) {
-            return no_memory(s, "spar_session_load");
+            return no_memory_for_state(s, "spar_session_load");
         }
         l->records = more;
         record *r = more + l->record_count++;
@@ -508,10 +508,10 @@ static int check_fluids(spar_session *s, loading *l, int rank) {
     return l->image.failed ? broken(s) : SPAR_OK;
 }
 
-static int check_own(spar_session *s, loading *l) {
+static int check_own(spar_session *s, reading *l) {
     l->solver = spari_zalloc(s->member_count, sizeof *l->solver);
     if (!l->solver) {
-        return no_memory(s, "spar_session_load");
+        return no_memory_for_state(s, "spar_session_load");
     }
     for (int rank = 0; rank < l->ranks; rank++) {
         int64_t count = spari_image_get_int(&l->image), end;
@@ -519,7 +519,7 @@ static int check_own(spar_session *s, loading *l) {
             return broken(s);
         }
         SPARI_TRY(check_solvers(s, l));
-        SPARI_TRY(check_fluids(s, l, rank));
+        SPARI_TRY(compare_fluids(s, l, rank));
         if (l->image.at != end) {
             return broken(s);
         }
@@ -533,15 +533,15 @@ static int check_own(spar_session *s, loading *l) {
     return l->image.at == l->image.count ? SPAR_OK : broken(s);
 }
 
-static int check_image(spar_session *s, loading *l) {
-    stream t = {&l->image, CHECK};
-    SPARI_TRY(check_description(s, l));
+static int check_image(spar_session *s, reading *l) {
+    passage t = {&l->image, CHECK};
+    SPARI_TRY(compare_scene(s, l));
     l->common = l->image.at;
     SPARI_TRY(check_clock(s, l));
     for (spar_member *m = s->members; m; m = m->next) {
         pass_member(&t, m);
         if (l->image.no_memory) {
-            return no_memory(s, "spar_session_load");
+            return no_memory_for_state(s, "spar_session_load");
         }
     }
     if (l->image.failed) {
@@ -551,13 +551,13 @@ static int check_image(spar_session *s, loading *l) {
     return check_own(s, l);
 }
 
-static int is_record_of(loading *l, const record *r, const spar_session *s, const spar_fluid *f) {
+static int is_record_of(reading *l, const record *r, const spar_session *s, const spar_fluid *f) {
     l->image.at = r->name;
     return r->member == member_index(s, spari_fluid_member(f)) && spari_image_is_text(&l->image, spari_fluid_name(f));
 }
 
 /* Whether the fluids here are those of this rank in the file, one by one. */
-static int same_fluids(const spar_session *s, loading *l) {
+static int same_fluids(const spar_session *s, reading *l) {
     int rank = spari_comm_rank(s->comm);
     const spar_fluid *f = s->fluids;
     for (int64_t i = 0; i < l->record_count; i++) {
@@ -573,10 +573,10 @@ static int same_fluids(const spar_session *s, loading *l) {
 
 /* Which ranks have a fluid like each record's: what is a sum goes to the first of them. [records][ranks], and one more.
  */
-static int find_takers(spar_session *s, loading *l, double **takers) {
+static int find_takers(spar_session *s, reading *l, double **takers) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     *takers = spari_zalloc(l->record_count * ranks + 1, sizeof **takers);
-    SPARI_TRY(agree(s, *takers ? SPAR_OK : no_memory(s, "spar_session_load")));
+    SPARI_TRY(agree(s, *takers ? SPAR_OK : no_memory_for_state(s, "spar_session_load")));
     for (int64_t i = 0; i < l->record_count; i++) {
         for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
             if (is_record_of(l, l->records + i, s, f)) {
@@ -601,7 +601,7 @@ static int find_takers(spar_session *s, loading *l, double **takers) {
 }
 
 /* The records that make up each fluid here. exact: this rank's, in their order. */
-static int assign_records(spar_session *s, loading *l, int exact, const double *takers) {
+static int assign_records(spar_session *s, reading *l, int exact, const double *takers) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     int64_t k = 0, own = 0, at = 0;
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
@@ -611,7 +611,7 @@ static int assign_records(spar_session *s, loading *l, int exact, const double *
     l->state_count = spari_zalloc(l->fluid_count, sizeof *l->state_count);
     l->takes_loads = spari_zalloc(l->fluid_count, sizeof *l->takes_loads);
     if (!l->states || !l->state_count || !l->takes_loads) {
-        return no_memory(s, "spar_session_load");
+        return no_memory_for_state(s, "spar_session_load");
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         l->takes_loads[k] = exact;
@@ -637,7 +637,7 @@ static int assign_records(spar_session *s, loading *l, int exact, const double *
     return SPAR_OK;
 }
 
-static int check_all_fluids(spar_session *s, loading *l) {
+static int check_all_fluids(spar_session *s, reading *l) {
     double other[2] = {!same_fluids(s, l), 0}, *takers = NULL;
     SPARI_TRY(spari_comm_sum(s->comm, other, 1, SPAR_OK, s->message, sizeof s->message));
     int exact = other[0] == 0;
@@ -651,8 +651,8 @@ static int check_all_fluids(spar_session *s, loading *l) {
 
 /* ---- load: second pass ---- */
 
-static void apply(spar_session *s, loading *l) {
-    stream t = {&l->image, READ};
+static void put_in_force(spar_session *s, reading *l) {
+    passage t = {&l->image, READ};
     int64_t at = 0, k = 0;
     l->image.at = l->common;
     pass_clock(&t, s);
@@ -676,7 +676,7 @@ static void apply(spar_session *s, loading *l) {
 }
 
 /* Rank 0 reads, all get the words. */
-static int fetch(spar_session *s, loading *l, const char *path) {
+static int fetch(spar_session *s, reading *l, const char *path) {
     char why[SPARI_MESSAGE_SIZE / 2] = "";
     int root = spari_comm_rank(s->comm) == 0, status = SPAR_OK;
     if (root) {
@@ -690,7 +690,7 @@ static int fetch(spar_session *s, loading *l, const char *path) {
     if (!root) {
         l->image.word = spari_zalloc(l->image.count, sizeof *l->image.word);
     }
-    SPARI_TRY(agree(s, l->image.word ? SPAR_OK : no_memory(s, "spar_session_load")));
+    SPARI_TRY(agree(s, l->image.word ? SPAR_OK : no_memory_for_state(s, "spar_session_load")));
     return spari_comm_broadcast(s->comm, l->image.word, 8 * l->image.count, s->message, sizeof s->message);
 }
 
@@ -699,7 +699,7 @@ int spar_session_load(spar_session *session, const char *path) {
     const char *call = "spar_session_load";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     spar_session *s = session;
-    loading l = {0};
+    reading l = {0};
     int status = check_call(s, call, path);
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", call);
@@ -716,7 +716,7 @@ int spar_session_load(spar_session *session, const char *path) {
         status = spari_session_seal(s, SPAR_OK);
     }
     if (status == SPAR_OK) {
-        apply(s, &l);
+        put_in_force(s, &l);
     }
     end_loading(&l);
     return status;

@@ -118,7 +118,7 @@ static int solve_member(spar_member *m, double dt) {
 }
 
 /* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
-static int check_motion(const spar_member *m) {
+static int check_finite(const spar_member *m) {
     const spari_motion *x = &m->after;
     const struct {
         const double *value;
@@ -147,7 +147,7 @@ int spar_step_solve(spar_session *session) {
     SPARI_TRY(spari_enter(s, "spar_step_solve", status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
-        status = status == SPAR_OK && is_moved(m) ? check_motion(m) : status;
+        status = status == SPAR_OK && is_moved(m) ? check_finite(m) : status;
     }
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
@@ -170,7 +170,7 @@ int spar_step_solve(spar_session *session) {
 /* ---- check ---- */
 
 /* status: of what this rank's host has done since the solution */
-static int check(spar_session *s, int status, int *done) {
+static int check_iteration(spar_session *s, int status, int *done) {
     int ended = 0, solved = s->phase == SPARI_SOLVED;
     if (s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
@@ -201,7 +201,7 @@ static int check(spar_session *s, int status, int *done) {
 int spar_step_check(spar_session *session, int *done) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
-    return check(session, SPAR_OK, done);
+    return check_iteration(session, SPAR_OK, done);
 }
 
 /* ---- accept and reject ---- */
@@ -297,7 +297,7 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
                                     answer, s->iteration, told ? ": " : "", told ? s->message : "");
             }
         }
-        SPARI_TRY(check(s, status, &done));
+        SPARI_TRY(check_iteration(s, status, &done));
     }
     return SPAR_OK;
 }

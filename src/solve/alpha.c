@@ -292,7 +292,7 @@ static double balance(spar_member *member, const spari_scheme *c, const spari_st
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
    in fixed axes. */
-static int correct(const spar_member *member, const double *q, const double *r, double *dx) {
+static int solve_turned(const spar_member *member, const double *q, const double *r, double *dx) {
     spari_solver *s = member->solver;
     if (member->body->linear[0]) {
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
@@ -359,7 +359,8 @@ static void update_tangent_operators(const spari_solver *s, const spari_scheme *
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply(const spar_member *member, const spari_scheme *c, ends *e, double longest, double *x, double *dx) {
+static double apply_correction(const spar_member *member, const spari_scheme *c, ends *e, double longest, double *x,
+                               double *dx) {
     const spari_state *to = &e->to;
     const spari_solver *s = member->solver;
     double largest = 0, length = member->body->length;
@@ -442,11 +443,11 @@ static const char *attempt(spar_member *member, const spari_scheme *c, const dou
         if (!s->factored && form_tangent(member, c, &e->seen)) {
             return "found a singular tangent";
         }
-        if (correct(member, e->seen.q, s->r, s->dx)) {
+        if (solve_turned(member, e->seen.q, s->r, s->dx)) {
             return "found a singular tangent";
         }
         double noise = infinity_norm(s->r, 6 * s->n);
-        double correction = apply(member, c, e, longest, x, s->dx);
+        double correction = apply_correction(member, c, e, longest, x, s->dx);
         s->newton++;
         double tolerance = session->newton_atol + session->newton_rtol * (size_of(member, x) + e->carried);
         double theta = last > 0 ? correction / last : 0;

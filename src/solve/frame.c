@@ -155,7 +155,7 @@ static void stretch_matrices(const spari_frame *f, const setup *w, const double 
 }
 
 /* y [n] += factor * X x for a matrix of the frame */
-static void multiply(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
+static void add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
     int m = f->block, step = f->block - f->overlap;
     for (int e = 0; e < f->elements; e++) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, m, m, factor, X + (int64_t)m * m * e, m,
@@ -211,7 +211,7 @@ static int stretch_terms(spari_frame *f, const setup *w) {
         stretch_matrices(f, w, s + (int64_t)k * n6, S);
         cblas_daxpy((int)f->size, 1, S, 1, f->N[k], 1);
         for (int l = 0; l < SPARI_TURNS; l++) { /* those of two kinds come from both */
-            multiply(f, S, s + (int64_t)l * n6, 0.5, f->twice[pair_of(k, l)]);
+            add_times(f, S, s + (int64_t)l * n6, 0.5, f->twice[pair_of(k, l)]);
         }
     }
     free(S);
@@ -235,7 +235,7 @@ static int turn_terms(spari_frame *f, const setup *w) {
 /* ---- modes ---- */
 
 /* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
-static void assemble(const spari_frame *f, const double *X, double scale, int from, double *A) {
+static void assemble_dense(const spari_frame *f, const double *X, double scale, int from, double *A) {
     int m = f->block, step = f->block - f->overlap;
     int64_t n = f->n - from;
     for (int e = 0; e < f->elements; e++) {
@@ -269,7 +269,7 @@ static void rigid_columns(spari_frame *f, const double *arm, int cols) {
 static void image_of(const spari_frame *f, int cols, int k, double *x, double *image) {
     cblas_dcopy(6 * f->nodes, f->basis + k, cols, x, 1);
     memset(image, 0, (size_t)(6 * f->nodes) * sizeof *image);
-    multiply(f, f->M, x, 1, image);
+    add_times(f, f->M, x, 1, image);
 }
 
 /* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `held` on before them; a
@@ -305,8 +305,8 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
     int status = K && M && z && mu ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         double *x = work, *image = work + 6 * f->nodes;
-        assemble(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
-        assemble(f, f->M, 1, 6, M->data);
+        assemble_dense(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
+        assemble_dense(f, f->M, 1, 6, M->data);
         for (int k = f->held; k < 6; k++) {
             image_of(f, cols, k, x, image);
             gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
@@ -378,7 +378,7 @@ static void no_strain(const spari_frame *f, double *X) {
     }
 }
 
-static int project(spari_frame *f, int cols) {
+static int project_all(spari_frame *f, int cols) {
     int bad = 0;
     double **all[3 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D};
     for (int k = 0; k < SPARI_TURNS; k++) {
@@ -427,7 +427,7 @@ static int carve_states(spari_frame *f) {
     return 0;
 }
 
-static int allocate(spari_frame *f, const spar_member *m) {
+static int allocate_matrices(spari_frame *f, const spar_member *m) {
     int turns = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
     double **matrices[] = {&f->K, &f->M, &f->D};
     const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL};
@@ -468,7 +468,7 @@ static int allocate_work(spari_frame *f) {
 }
 
 /* The reference as a state, and arms from the root; then the matrices. */
-static int build(spari_frame *f, const spar_member *m, setup *w) {
+static int build_matrices(spari_frame *f, const spar_member *m, setup *w) {
     int64_t mm = (int64_t)w->m * w->m, n = f->nodes;
     double *block = spari_zalloc(7 * n + 3 * n + 13 * n + 4 * mm + 6 * n, sizeof *block);
     if (!block) {
@@ -498,7 +498,7 @@ static int build(spari_frame *f, const spar_member *m, setup *w) {
                 memcpy(w->field + 6 * i + 3, unit, sizeof unit);
             }
         }
-        multiply(f, f->M, w->field, 1, f->rigid[k]);
+        add_times(f, f->M, w->field, 1, f->rigid[k]);
     }
     return f->N[0] ? turn_terms(f, w) : SPAR_OK;
 }
@@ -513,15 +513,15 @@ int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) 
         f->nodes = member->body->unique;
         f->elements = member->elements, f->block = w.m, f->overlap = 6, f->n = 6 * f->nodes;
         f->size = (int64_t)f->elements * f->block * f->block;
-        status = allocate(f, member) ? SPAR_ERR_MEMORY : SPAR_OK;
+        status = allocate_matrices(f, member) ? SPAR_ERR_MEMORY : SPAR_OK;
     }
     if (status == SPAR_OK) {
-        status = build(f, member, &w);
+        status = build_matrices(f, member, &w);
     }
     if (status == SPAR_OK && modes > 0) {
         int cols = (int)modes + f->held;
         status = fill_basis(f, w.arm, cols);
-        if (status == SPAR_OK && project(f, cols)) {
+        if (status == SPAR_OK && project_all(f, cols)) {
             status = SPAR_ERR_MEMORY;
         }
     }
@@ -680,10 +680,10 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
     double pose[13], omega[3];
     spari_member_pose(m, &m->after, pose);
     spari_rotate_back(pose + 3, pose + 10, omega);
-    assemble(f, f->K, 1, f->held, K);
-    assemble(f, f->M, 1, f->held, M);
+    assemble_dense(f, f->K, 1, f->held, K);
+    assemble_dense(f, f->M, 1, f->held, M);
     for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
-        assemble(f, f->N[k], omega[pair[k][0]] * omega[pair[k][1]], f->held, K);
+        assemble_dense(f, f->N[k], omega[pair[k][0]] * omega[pair[k][1]], f->held, K);
     }
 }
 
@@ -793,19 +793,19 @@ static void forcing(spari_frame *f, const spar_member *m, const spari_frame_stat
 }
 
 /* r = forcing + M a + C v + K y, the held rows out */
-static void balance(const spari_frame *f, const spari_frame_state *s, int still, const double *fixed, double *r) {
+static void unbalance(const spari_frame *f, const spari_frame_state *s, int still, const double *fixed, double *r) {
     memcpy(r, fixed, (size_t)f->n * sizeof *r);
-    multiply(f, f->sumK ? f->sumK : f->K, s->y, 1, r);
+    add_times(f, f->sumK ? f->sumK : f->K, s->y, 1, r);
     if (f->sumC) {
-        multiply(f, f->sumC, s->v, 1, r);
+        add_times(f, f->sumC, s->v, 1, r);
     }
     if (f->M && !still) {
-        multiply(f, f->M, s->a, 1, r);
+        add_times(f, f->M, s->a, 1, r);
     }
     memset(r, 0, (size_t)f->held * sizeof *r);
 }
 
-static int factor(spari_frame *f, const spari_scheme *c) {
+static int factor_step(spari_frame *f, const spari_scheme *c) {
     int singular;
     factor_into(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, c->cm, f->element, &singular);
     f->factored = !singular;
@@ -823,7 +823,8 @@ static double largest(const spari_frame *f, const double *x) {
 }
 
 /* Starting values: the accelerations stay. */
-static void predict(const spari_frame *f, const spari_scheme *c, const spari_frame_state *from, spari_frame_state *to) {
+static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const spari_frame_state *from,
+                             spari_frame_state *to) {
     double h = c->h;
     for (int k = f->held; k < f->n; k++) {
         double b = from->b[k], a = from->a[k];
@@ -841,7 +842,7 @@ static void predict(const spari_frame *f, const spari_scheme *c, const spari_fra
 
 /* Where the root jumps (hosts that give no accelerations, a sudden start) the nodes keep place and velocity: seen from
    it they lose the jump; modal ones to the nearest, in the norm of the mass. */
-static void lose_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
     spari_solver_jump(from->root, to->root, h, jump[0], jump[1]);
@@ -866,14 +867,14 @@ static void lose_jump(const spari_frame *f, const spar_member *m, double h, spar
 /* As spari_leap, with the matrix of the step itself, which is kept for it. */
 static int leap(spari_frame *f, const spari_scheme *c, spari_frame_state *from) {
     double *y = f->increment;
-    if (!f->factored && factor(f, c)) {
+    if (!f->factored && factor_step(f, c)) {
         return 1;
     }
     memcpy(y, from->b, (size_t)f->n * sizeof *y);
     memset(y, 0, (size_t)f->held * sizeof *y);
     for (int pass = 0; pass < SPARI_LEAP_PASSES; pass++) {
         memset(f->r, 0, (size_t)f->n * sizeof *f->r);
-        multiply(f, f->M, y, 1, f->r);
+        add_times(f, f->M, y, 1, f->r);
         memset(f->r, 0, (size_t)f->held * sizeof *f->r);
         if (spari_linear_solve(f->linear, f->r)) {
             return 1;
@@ -896,19 +897,19 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     f->factored = same;
     if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
-        lose_jump(f, m, c->h, from, to);
+        take_jump(f, m, c->h, from, to);
     }
     if (leaps && leap(f, c, from)) {
         return 1;
     }
-    predict(f, c, from, to);
+    predict_unknowns(f, c, from, to);
     double *fixed = f->increment;
     for (int it = 0; it < MOST_ITERATIONS; it++) {
         if (it == 0 || m->applied) {
             forcing(f, m, to, c->still, fixed);
         }
-        balance(f, to, c->still, fixed, f->r);
-        if (!f->factored && factor(f, c)) {
+        unbalance(f, to, c->still, fixed, f->r);
+        if (!f->factored && factor_step(f, c)) {
             return 1;
         }
         int exact = !m->applied && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
@@ -936,8 +937,8 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
     return 1;
 }
 
-/* As start() of alpha.c: accelerations at t^0 through M + K / cm. */
-static int start(spari_frame *f, spar_member *m, const spari_scheme *c) {
+/* As start_accelerations() of alpha.c: accelerations at t^0 through M + K / cm. */
+static int start_accelerations(spari_frame *f, spar_member *m, const spari_scheme *c) {
     spari_frame_state *b = &f->begin;
     double omega[3];
     int singular;
@@ -948,7 +949,7 @@ static int start(spari_frame *f, spar_member *m, const spari_scheme *c) {
     memcpy(f->load, f->load0, (size_t)(6 * f->nodes) * sizeof *f->load);
     forcing(f, m, b, c->still, f->increment);
     for (int k = 0; k < 4 && !singular; k++) {
-        balance(f, b, c->still, f->increment, f->r);
+        unbalance(f, b, c->still, f->increment, f->r);
         singular = spari_linear_solve(f->linear, f->r);
         for (int i = f->held; i < f->n; i++) {
             b->a[i] -= c->cm * f->r[i];
@@ -964,7 +965,7 @@ static void copy_state(const spari_frame *f, const spari_frame_state *from, spar
     memcpy(to->root, from->root, sizeof to->root);
 }
 
-static void swap(spari_frame_state *a, spari_frame_state *b) {
+static void swap_states(spari_frame_state *a, spari_frame_state *b) {
     spari_frame_state t = *a;
     *a = *b;
     *b = t;
@@ -974,7 +975,7 @@ static double damped_power(spari_frame *f, const spari_frame_state *s) {
     double power = 0;
     if (f->D) {
         memset(f->r, 0, (size_t)f->n * sizeof *f->r);
-        multiply(f, f->D, s->v, 1, f->r);
+        add_times(f, f->D, s->v, 1, f->r);
         power = cblas_ddot(f->n, f->r, 1, s->v, 1);
     }
     return power;
@@ -992,7 +993,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     int A = m->session->substeps;
     spari_scheme_loads(m, f->load0, f->load1, f->load);
     spari_scheme c = spari_scheme_of(m, dt / A);
-    int failed = !f->started && !c.still && start(f, m, &c);
+    int failed = !f->started && !c.still && start_accelerations(f, m, &c);
     copy_state(f, &f->begin, &f->to);
     spari_scheme_stretch_by(spari_scheme_stretch(f->h_begin, c.h), f->n, f->to.a, f->to.b);
     int leaps = !c.still && spari_is_leap(f->h_begin, c.h);
@@ -1001,7 +1002,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     double power = damped_power(f, &f->begin);
     for (int k = 1; k <= A && !failed; k++) {
         double s = (double)k / A;
-        swap(&f->from, &f->to);
+        swap_states(&f->from, &f->to);
         spari_scheme_load_at(s, 6 * f->nodes, f->load0, f->load1, f->load);
         root_at(f, m, s, dt);
         failed = substep(f, m, &c, k == 1 && leaps, &f->from, &f->to);
@@ -1021,7 +1022,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
 }
 
 void spari_frame_accept(spari_frame *f) {
-    swap(&f->begin, &f->to);
+    swap_states(&f->begin, &f->to);
     f->h_begin = f->h_solved;
 }
 
@@ -1059,11 +1060,11 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
     spari_rotate_back(f->to.root + 3, f->to.root + 10, omega);
     combine(f, omega);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
-    int singular = factor(f, &c);
+    int singular = factor_step(f, &c);
     f->factored = 0;
     for (int it = 0; it < MOST_ITERATIONS && failed && !singular; it++) {
         forcing(f, m, &f->to, !turning, f->increment);
-        balance(f, &f->to, !turning, f->increment, f->r);
+        unbalance(f, &f->to, !turning, f->increment, f->r);
         memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
         singular = spari_linear_solve(f->linear, f->dx);
         for (int k = 6; k < f->n; k++) {
@@ -1114,7 +1115,7 @@ void spari_frame_load(spari_frame *f, const double *state) {
     f->combined = 0;
     if (state[1] != 0) {
         combine(f, state + 11);
-        factor(f, &c);
+        factor_step(f, &c);
     }
     f->combined = 0;
     if (state[7] != 0) {
@@ -1128,9 +1129,9 @@ void spari_frame_load(spari_frame *f, const double *state) {
 }
 
 /* x^T X x / 2 */
-static double quadratic(spari_frame *f, const double *X, const double *x) {
+static double half_form(spari_frame *f, const double *X, const double *x) {
     memset(f->r, 0, (size_t)f->n * sizeof *f->r);
-    multiply(f, X, x, 0.5, f->r);
+    add_times(f, X, x, 0.5, f->r);
     return cblas_ddot(f->n, x, 1, f->r, 1);
 }
 
@@ -1140,9 +1141,9 @@ int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
         return SPAR_ERR_MEMORY;
     }
     from_nodes(f, m, &m->after, y, rate);
-    energy[1] = quadratic(f, f->K, y);
+    energy[1] = half_form(f, f->K, y);
     if (m->root != SPAR_ROOT_DRIVEN) { /* the frame stands: these are what the equations keep */
-        energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? quadratic(f, f->M, rate) : 0;
+        energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;
         for (int k = 0; k < 3 && f->M; k++) {
             energy[2] -= m->body->gravity[k] * cblas_ddot(f->n, f->rigid[k], 1, y, 1);

@@ -145,7 +145,7 @@ int spar_member_set_velocity(spar_member *member, const double x0[3], const doub
 
 /* ---- commit ---- */
 
-static int check_description(spar_member *m) {
+static int check_complete(spar_member *m) {
     if (m->kind == SPARI_BEAM) {
         SPARI_REQUIRE(m->session, m->beam->eta || m->beam->node_x, SPAR_ERR_STATE,
                       "spar_member_commit: '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
@@ -200,7 +200,7 @@ static double **node_array(spar_member *m, int k) {
     return (double **)(void *)((char *)m + node_arrays[k].field);
 }
 
-static int allocate(spar_member *m) {
+static int make_node_arrays(spar_member *m) {
     for (int k = 0; k < NODE_ARRAYS; k++) {
         if (node_arrays[k].order > m->session->predictor) {
             continue;
@@ -243,7 +243,7 @@ void spari_member_disown(spar_member *m) {
 
 int spari_member_build(spar_member *m) {
     spar_session *session = m->session;
-    SPARI_TRY(allocate(m));
+    SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));
     } else {
@@ -303,7 +303,7 @@ int spar_member_commit(spar_member *member) {
     if (member->committed) {
         status = spari_fail(s, SPAR_ERR_STATE, "spar_member_commit: '%s' is committed already", member->name);
     } else {
-        status = check_description(member);
+        status = check_complete(member);
         if (status == SPAR_OK) {
             member->effects = spari_member_effects(member);
             status = spari_member_build(member);

@@ -184,7 +184,7 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     return SPAR_OK;
 }
 
-static int check(const spar_member *m, const int64_t mode[2], const double ratio[2]) {
+static int check_pair(const spar_member *m, const int64_t mode[2], const double ratio[2]) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", CALL, m->name);
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -218,7 +218,7 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     spar_session *s = beam->session;
     double found[6];
     spari_body *body = NULL;
-    int status = check(beam, mode, ratio);
+    int status = check_pair(beam, mode, ratio);
     status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
     status = status == SPAR_OK ? damped_body(beam, found, &body) : status;
     if (status == SPAR_OK) {

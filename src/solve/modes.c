@@ -73,7 +73,7 @@ static void add_element(int at, int n, const double *S, gsl_matrix *A) {
 }
 
 /* From the tangents of m, which may be the body that carries a rigid member. */
-static void assemble(const spar_member *m, modal *p) {
+static void assemble_problem(const spar_member *m, modal *p) {
     int P = m->per_element;
     spari_turn turn;
     int turning = spari_turn_of(m, m->after.v, m->after.a, &turn);
@@ -155,9 +155,9 @@ static int form_problem(const spar_member *m, modal *p) {
     } else if (m->rung && m->rung->core) {
         spar_member *core;
         SPARI_TRY(spari_rung_core(m, &core));
-        assemble(core, p);
+        assemble_problem(core, p);
     } else {
-        assemble(m, p);
+        assemble_problem(m, p);
     }
     return SPAR_OK;
 }

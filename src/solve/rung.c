@@ -55,7 +55,7 @@ int spari_rung_effects(const spar_member *m, int effects) {
 
 /* ---- the body that carries a rigid member ---- */
 
-static double *carve(double **at, int64_t n) {
+static double *next_part(double **at, int64_t n) {
     double *here = *at;
     *at += n;
     return here;
@@ -92,10 +92,10 @@ static int core_create(spar_member *m) {
         return SPAR_ERR_MEMORY;
     }
     c->xr = block; /* owns the block */
-    c->now.q = carve(&block, 7), c->now.v = carve(&block, 6), c->now.a = carve(&block, 6);
-    c->after.q = carve(&block, 7), c->after.v = carve(&block, 6), c->after.a = carve(&block, 6);
-    c->dead = carve(&block, 6), c->load_used = carve(&block, 6), c->load_pushed = carve(&block, 6);
-    c->load_history[0] = carve(&block, 6);
+    c->now.q = next_part(&block, 7), c->now.v = next_part(&block, 6), c->now.a = next_part(&block, 6);
+    c->after.q = next_part(&block, 7), c->after.v = next_part(&block, 6), c->after.a = next_part(&block, 6);
+    c->dead = next_part(&block, 6), c->load_used = next_part(&block, 6), c->load_pushed = next_part(&block, 6);
+    c->load_history[0] = next_part(&block, 6);
     c->session = m->session, c->name = m->name, c->kind = SPARI_RIGID, c->root = m->root, c->owner = m->owner;
     c->effects = m->effects;
     c->elements = c->per_element = 1;
@@ -129,7 +129,7 @@ static void core_free(spar_member *c) {
 }
 
 /* Nodal loads as force and moment on the root, and the first moments of the forces over the arms. */
-static void gather(const spar_member *m, const double *load, double sum[6], double Z[9]) {
+static void sum_loads(const spar_member *m, const double *load, double sum[6], double Z[9]) {
     for (int64_t i = 0; i < m->nodes; i++) {
         const double *f = load + 6 * i;
         for (int k = 0; k < 6; k++) {
@@ -145,7 +145,7 @@ static void gather(const spar_member *m, const double *load, double sum[6], doub
 }
 
 /* The nodes where a rigid motion of the root (q, v, a) takes them. */
-static void follow(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to) {
+static void move_nodes(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to) {
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], r[3], c1[3], c2[3], c3[3];
         for (int k = 0; k < 3; k++) {
@@ -183,17 +183,17 @@ static int core_advance(spar_member *m, double dt) {
         memset(c->load_used, 0, 6 * sizeof(double));
         memset(c->arms->begin, 0, sizeof c->arms->begin);
         memset(c->arms->end, 0, sizeof c->arms->end);
-        gather(m, m->dead, c->dead, dead);
-        gather(m, m->load_history[0], c->load_history[0], c->arms->begin);
-        gather(m, m->load_used, c->load_used, c->arms->end);
+        sum_loads(m, m->dead, c->dead, dead);
+        sum_loads(m, m->load_history[0], c->load_history[0], c->arms->begin);
+        sum_loads(m, m->load_used, c->load_used, c->arms->end);
         if (extra) {
             memset(extra, 0, (size_t)(6 * m->nodes) * sizeof *extra);
             spari_applied_nodal(m, m->now.q, extra);
-            gather(m, extra, c->load_history[0], c->arms->begin);
+            sum_loads(m, extra, c->load_history[0], c->arms->begin);
             memset(extra, 0, (size_t)(6 * m->nodes) * sizeof *extra);
-            follow(m, c->after.q, c->after.v, c->after.a, &m->after);
+            move_nodes(m, c->after.q, c->after.v, c->after.a, &m->after);
             spari_applied_nodal(m, m->after.q, extra);
-            gather(m, extra, c->load_used, c->arms->end);
+            sum_loads(m, extra, c->load_used, c->arms->end);
         }
         for (int k = 0; k < 9; k++) {
             c->arms->begin[k] += dead[k];
@@ -210,7 +210,7 @@ static int core_advance(spar_member *m, double dt) {
         }
     }
     if (status == SPAR_OK) {
-        follow(m, c->after.q, c->after.v, c->after.a, &m->after);
+        move_nodes(m, c->after.q, c->after.v, c->after.a, &m->after);
     }
     return status;
 }
@@ -228,7 +228,7 @@ int spari_rung_core(const spar_member *m, spar_member **core) {
     memcpy(c->body->gravity, m->body->gravity, sizeof c->body->gravity);
     memset(c->arms->Z, 0, sizeof c->arms->Z);
     int status = spar_member_get_loads(m, load);
-    gather(m, load, sum, c->arms->Z);
+    sum_loads(m, load, sum, c->arms->Z);
     free(load);
     return status;
 }
@@ -257,7 +257,7 @@ static void prescribed_advance(spar_member *m) {
         memcpy(v, m->drive[1] + 7, sizeof v);
         memcpy(a, m->drive[1] + 13, sizeof a);
     }
-    follow(m, q, v, a, &m->after);
+    move_nodes(m, q, v, a, &m->after);
 }
 
 /* ---- life and time ---- */
@@ -335,7 +335,7 @@ int spari_rung_static(spar_member *m) {
         return m->owner == spari_comm_rank(m->session->comm) ? spari_frame_static(m->rung->frame, m) : SPAR_OK;
     }
     double rest[6] = {0};
-    follow(m, m->now.q, rest, rest, &m->after);
+    move_nodes(m, m->now.q, rest, rest, &m->after);
     return SPAR_OK;
 }
 

@@ -192,14 +192,9 @@ void spari_solver_save(const spari_solver *s, double *state) {
     }
 }
 
-/* The counts of iterations and factorisations */
-static int is_count(double x) {
-    return x >= 0 && x < 1e15;
-}
-
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
     int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n, size = spari_linear_state_size(s->linear);
-    if (count < STATE_HEAD || state[0] != s->n || !is_count(state[7]) || !is_count(state[8])) {
+    if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8])) {
         return 0;
     }
     return state[1] == 0 ? count == own : count == own + size && spari_linear_is_state(s->linear, state + own);

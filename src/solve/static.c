@@ -28,7 +28,7 @@ typedef struct loading {
 } loading;
 
 /* Forces less loads at load factor f; returns what rounding in them is relative to. */
-static double balance(spar_member *m, loading *l, double f, const double *q, double *r) {
+static double balance_at(spar_member *m, loading *l, double f, const double *q, double *r) {
     spari_solver *s = m->solver;
     double scale;
     if (l->turning) {
@@ -48,8 +48,8 @@ static double balance(spar_member *m, loading *l, double f, const double *q, dou
     return scale;
 }
 
-/* The tangent at a state for which `balance` has been called, not yet factored. */
-static void form_tangent(spar_member *m, loading *l, double f, const double *q) {
+/* The tangent at a state for which `balance_at` has been called, not yet factored. */
+static void form_static_tangent(spar_member *m, loading *l, double f, const double *q) {
     spari_solver *s = m->solver;
     int first, end;
     spari_linear_zero(s->linear);
@@ -71,7 +71,7 @@ static void form_tangent(spar_member *m, loading *l, double f, const double *q) 
 }
 
 /* q less the correction dx, shortened by `cut` */
-static void correct(int n, double cut, const double *dx, double *q) {
+static void shift(int n, double cut, const double *dx, double *q) {
     for (int i = 0; i < n; i++) {
         double turn[3], p[4];
         for (int k = 0; k < 3; k++) {
@@ -86,13 +86,13 @@ static void correct(int n, double cut, const double *dx, double *q) {
 
 typedef enum outcome { FOUND, FAILED, LOST } outcome;
 
-/* The state is in equilibrium, its rates those of the last `balance`: on the path, or beyond its end? */
+/* The state is in equilibrium, its rates those of the last `balance_at`: on the path, or beyond its end? */
 static outcome judge(spar_member *m, loading *l, double f, const double *q) {
     spari_solver *s = m->solver;
     if (!l->guarded) {
         return FOUND;
     }
-    form_tangent(m, l, f, q);
+    form_static_tangent(m, l, f, q);
     return spari_linear_definite(s->linear) == 0 ? LOST : FOUND;
 }
 
@@ -104,7 +104,7 @@ static outcome equilibrium(spar_member *member, loading *l, double f, int from_p
     const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
     spari_solver_fixed(member, &first, &end);
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
-        double scale = balance(member, l, f, q, s->r), noise = 0;
+        double scale = balance_at(member, l, f, q, s->r), noise = 0;
         memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
         for (int i = 0; i < 6 * n; i++) {
             noise = fmax(noise, fabs(s->r[i]));
@@ -112,7 +112,7 @@ static outcome equilibrium(spar_member *member, loading *l, double f, int from_p
         if (!isfinite(noise)) {
             return FAILED;
         }
-        form_tangent(member, l, f, q);
+        form_static_tangent(member, l, f, q);
         s->factors++;
         memcpy(s->dx, s->r, (size_t)(6 * n) * sizeof *s->dx);
         if (spari_linear_factor(s->linear) || spari_linear_solve(s->linear, s->dx)) {
@@ -126,7 +126,7 @@ static outcome equilibrium(spar_member *member, loading *l, double f, int from_p
             largest = fmax(largest, fmax(spari_norm(s->dx + 6 * i) / length, spari_norm(s->dx + 6 * i + 3)));
         }
         double cut = largest > longest ? longest / largest : 1;
-        correct(n, cut, s->dx, q);
+        shift(n, cut, s->dx, q);
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
@@ -155,7 +155,7 @@ static int starts_on_path(spar_member *m, loading *l, const double *q) {
     if (!l->guarded) {
         return 0;
     }
-    balance(m, l, 0, q, s->r);
+    balance_at(m, l, 0, q, s->r);
     spari_solver_fixed(m, &first, &end);
     for (int i = end; i < 6 * s->n; i++) {
         if (fabs(s->r[i]) > 1e-9 * m->body->stiffest) {
@@ -167,7 +167,7 @@ static int starts_on_path(spar_member *m, loading *l, const double *q) {
 
 /* Load steps from 0 to all of the loads, s->to.q from s->begin.q; the last point in s->best. Returns the part reached.
  */
-static double follow(spar_member *member, loading *l, int load_steps, outcome *why) {
+static double follow_path(spar_member *member, loading *l, int load_steps, outcome *why) {
     spari_solver *s = member->solver;
     size_t bytes = (size_t)(7 * s->n) * sizeof(double);
     double done = 0, step = 1.0 / load_steps;
@@ -243,7 +243,7 @@ static void warn_of_bend(const spar_member *m) {
     spari_log(s, SPAR_LOG_WARNING, text);
 }
 
-static int no_memory(const spar_member *member) {
+static int no_memory_to_balance(const spar_member *member) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "spar_member_solve_static: no memory for '%s'", member->name);
 }
 
@@ -257,7 +257,7 @@ int spari_solver_static(spar_member *member, int load_steps) {
     if (l.turning) {
         l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
         if (!l.mass) {
-            return no_memory(member);
+            return no_memory_to_balance(member);
         }
     }
     spari_solver_gather(member, member->dead, s->load);
@@ -268,9 +268,9 @@ int spari_solver_static(spar_member *member, int load_steps) {
     l.guarded = has_path(member);
     if (l.guarded && spari_linear_watch(s->linear)) {
         free(l.mass);
-        return no_memory(member);
+        return no_memory_to_balance(member);
     }
-    double done = follow(member, &l, load_steps, &why);
+    double done = follow_path(member, &l, load_steps, &why);
     free(l.mass);
     spari_linear_unwatch(s->linear);
     s->factored = 0;

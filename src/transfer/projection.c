@@ -74,7 +74,7 @@ static void series(const double (*c)[4], int modes, double s, double x[4], doubl
     }
 }
 
-static void place(const double (*c)[4], int modes, double s, double x[3]) {
+static void place_at(const double (*c)[4], int modes, double s, double x[3]) {
     double t0 = 1, t1 = s;
     x[0] = c[0][0], x[1] = c[0][1], x[2] = c[0][2];
     for (int k = 1; k < modes; k++) {
@@ -126,7 +126,7 @@ static void bernstein(const double (*c)[4], int modes, int i, double *b) {
 }
 
 /* Product of two polynomials of degree m in Bernstein form: degree 2 m. All weights are positive. */
-static void multiply(const binomials *b, int m, const double *f, const double *g, double *fg) {
+static void multiply_bernstein(const binomials *b, int m, const double *f, const double *g, double *fg) {
     for (int i = 0; i <= 2 * m; i++) {
         double sum = 0;
         for (int j = i > m ? i - m : 0; j <= m && j <= i; j++) {
@@ -144,7 +144,7 @@ static void resample(const double (*c)[4], int modes, double a, double b, double
     memset(out, 0, sizeof *out * (size_t)modes);
     for (int j = 0; j < modes; j++) {
         double s = cos(pi * (j + 0.5) / modes), t0 = 1, t1 = s, x[3];
-        place(c, modes, 0.5 * (a + b) + 0.5 * (b - a) * s, x);
+        place_at(c, modes, 0.5 * (a + b) + 0.5 * (b - a) * s, x);
         for (int k = 0; k < modes; k++) {
             for (int i = 0; i < 3; i++) {
                 out[k][i] += (k ? 2.0 : 1.0) / modes * t0 * x[i];
@@ -234,8 +234,8 @@ static void make_segment(const spari_line *line, const binomials *bin, int eleme
     for (int i = 0; i < 3; i++) {
         bernstein((const double(*)[4])s->c, s->modes, i, control[i]);
         s->end[0][i] = control[i][0], s->end[1][i] = control[i][m];
-        multiply(bin, m, control[i], control[i], square);
-        multiply(bin, m, control[i], one, raised);
+        multiply_bernstein(bin, m, control[i], control[i], square);
+        multiply_bernstein(bin, m, control[i], one, raised);
         s->c0[i] = -2 * raised[0];
         for (int j = 0; j < 2 * m; j++) {
             s->dc[i][j] = -2 * (raised[j + 1] - raised[j]);
@@ -313,7 +313,7 @@ static int make_ball(spari_line *line, int first, int last) {
     return index;
 }
 
-static int build(spari_line *line) {
+static int build_balls(spari_line *line) {
     binomials bin;
     int n = 0;
     fill_binomials(&bin);
@@ -365,7 +365,7 @@ spari_line *spari_line_create(int elements, int per_element, const double *x) {
             }
         }
     }
-    if (per_element > 1 && build(line) != SPAR_OK) {
+    if (per_element > 1 && build_balls(line) != SPAR_OK) {
         spari_line_free(line);
         return NULL;
     }
@@ -448,7 +448,7 @@ static void offer(search *q, int element, double xi, double square) {
 
 static double square_at(const search *q, int element, double xi) {
     double x[3];
-    place(coefficients(q->line, element), q->line->per_element, xi, x);
+    place_at(coefficients(q->line, element), q->line->per_element, xi, x);
     for (int i = 0; i < 3; i++) {
         x[i] -= q->p[i];
     }
@@ -461,7 +461,7 @@ static double xi_of(const segment *s, double t) {
 
 /* Newton on D'/2 = (r - p) . r', kept between low and high (s of the segment, in [-1,1]) by bisection. If the zero is
    not between them, the end nearest to it. */
-static double refine(const segment *s, const double p[3], double low, double high, double at) {
+static double refine_foot(const segment *s, const double p[3], double low, double high, double at) {
     const double first = low, last = high, small = 2 * DBL_EPSILON;
     double before = HUGE_VAL;
     int low_known = 0, high_known = 0;
@@ -506,7 +506,7 @@ typedef struct part {
 } part;
 
 static void offer_inside(search *q, const segment *s, const double p[3], const part *a, double t) {
-    double found = refine(s, p, 2 * a->t0 - 1, 2 * a->t1 - 1, 2 * t - 1), xi = xi_of(s, 0.5 * (1 + found));
+    double found = refine_foot(s, p, 2 * a->t0 - 1, 2 * a->t1 - 1, 2 * t - 1), xi = xi_of(s, 0.5 * (1 + found));
     offer(q, s->element, xi, square_at(q, s->element, xi));
 }
 
@@ -621,7 +621,7 @@ static void bound(search *q, const segment *s, const double p[3]) {
 /* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two real zeros close together come back as a
    complex pair with an imaginary part of the order of the root of rounding: such pairs count as real, and Newton puts
    them right. Returns 0 if the root finder gave up. */
-static int solve(search *q, const segment *s, const double p[3]) {
+static int solve_by_roots(search *q, const segment *s, const double p[3]) {
     const double near = 1e-3;
     double c[ROW], re[ROW], im[ROW], most = 0;
     int degree = 2 * s->modes - 3;
@@ -638,7 +638,8 @@ static int solve(search *q, const segment *s, const double p[3]) {
     for (int k = 0; k < degree && most > 0; k++) {
         if (fabs(im[k]) <= near && fabs(re[k]) <= 1 + near) {
             double at = fmax(-1, fmin(1, re[k]));
-            double found = refine(s, p, fmax(-1, at - near), fmin(1, at + near), at), xi = xi_of(s, 0.5 * (1 + found));
+            double found = refine_foot(s, p, fmax(-1, at - near), fmin(1, at + near), at),
+                   xi = xi_of(s, 0.5 * (1 + found));
             offer(q, s->element, xi, square_at(q, s->element, xi));
         }
     }
@@ -655,7 +656,7 @@ static void look_at(search *q, const segment *s) {
     if (distance_to_chord(s->end[0], s->end[1], p) > q->reach + s->deviation + 8 * DBL_EPSILON * s->radius) {
         return;
     }
-    if (q->method != SPAR_PROJECT_RPOLY || !solve(q, s, p)) {
+    if (q->method != SPAR_PROJECT_RPOLY || !solve_by_roots(q, s, p)) {
         bound(q, s, p);
     }
 }

@@ -343,7 +343,7 @@ static int find_stable(spari_advisor *d, spari_outcome *best) {
 }
 
 /* The finest settings known not to fail, where the shares left nothing: they are tried as they are. */
-static int search(spari_advisor *d, const spari_plan *present, spari_outcome *now, spari_outcome *best) {
+static int search_plans(spari_advisor *d, const spari_plan *present, spari_outcome *now, spari_outcome *best) {
     spari_plan finest, structure;
     SPARI_TRY(spari_plan_reference(d, present, &finest));
     SPARI_TRY(spari_plan_measure(d, present, now));
@@ -370,7 +370,7 @@ static int search(spari_advisor *d, const spari_plan *present, spari_outcome *no
 }
 
 /* Memory for the advice of members that have none yet, before the work begins: [members], else NULL. */
-static int make_room(const spari_advisor *d, spari_remake ***room) {
+static int make_remakes(const spari_advisor *d, spari_remake ***room) {
     spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof *all);
     int k = 0, ok = all != NULL;
     for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
@@ -411,7 +411,7 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
     advice[SPAR_ADVICE_TRIALS] = d->trials;
 }
 
-static int check(spar_session *s, double tolerance, const spari_run *run, const double *advice) {
+static int check_request(spar_session *s, double tolerance, const spari_run *run, const double *advice) {
     SPARI_TRY(spari_trial_check(s, SPARI_ADVISE, run));
     SPARI_REQUIRE(s, tolerance > 0 && tolerance < 1, SPAR_ERR_ARGUMENT, "%s: the tolerance is %g; give one in (0, 1)",
                   SPARI_ADVISE, tolerance);
@@ -428,16 +428,16 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     spar_session *s = session;
     spari_advisor d = {.session = s, .run = {dt, steps, before, solve, context}, .tolerance = tolerance};
     spari_outcome now = {0}, best = {.seconds = INFINITY, .error = INFINITY};
-    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check(s, tolerance, &d.run, advice)));
+    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, advice)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     spari_remake **room = NULL;
     int status = spari_plan_groups(&d);
-    status = status == SPAR_OK ? make_room(&d, &room) : status;
+    status = status == SPAR_OK ? make_remakes(&d, &room) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
-        status = search(&d, &present, &now, &best);
+        status = search_plans(&d, &present, &now, &best);
     }
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */

@@ -210,7 +210,7 @@ static int in_force(const spar_session *s, int r, int asked) {
     return any && (asked & rows[r].part) == rows[r].part;
 }
 
-static void leave_out(const spar_session *s, int r, spari_wish *wish) {
+static void leave_row_out(const spar_session *s, int r, spari_wish *wish) {
     if (r == SPAR_ROW_PREDICTOR) {
         wish->predictor = 0;
     } else if (r == SPAR_ROW_ITERATION) {
@@ -231,7 +231,7 @@ static int is_of_the_run(int status) {
 
 /* A run that begins beside its own balance iterates more, which is no price of what it computes: of such rows the time
    of one solution counts. */
-static double cost(const spari_record *record, int r) {
+static double cost_of_row(const spari_record *record, int r) {
     int of_coupling = r == SPAR_ROW_PREDICTOR || r == SPAR_ROW_ITERATION;
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
 }
@@ -245,15 +245,15 @@ static void tell_failure(spar_session *s, int r) {
     }
 }
 
-static int try_row(spar_session *s, const spari_run *run, int r, const spari_record *base, double *out) {
+static int try_row_out(spar_session *s, const spari_run *run, int r, const spari_record *base, double *out) {
     enum { REPEATS = 3 }; /* times are the least of so many, with and without in turn */
-    double with = cost(base, r), without = INFINITY;
+    double with = cost_of_row(base, r), without = INFINITY;
     spari_wish wish;
     SPARI_TRY(spari_wish_create(s, &wish));
     int status = SPAR_OK;
     for (int k = 0; k < REPEATS && status == SPAR_OK; k++) {
         spari_record record;
-        leave_out(s, r, &wish);
+        leave_row_out(s, r, &wish);
         status = spari_trial_run(s, run, &wish, &record);
         if (status == SPAR_OK && k == 0) {
             out[SPAR_COLUMN_MOTION] = spari_record_motion(&record, base);
@@ -262,13 +262,13 @@ static int try_row(spar_session *s, const spari_run *run, int r, const spari_rec
                 out[SPAR_COLUMN_SIZE] = spari_record_load(&record, base);
             }
         }
-        without = status == SPAR_OK ? fmin(without, cost(&record, r)) : without;
+        without = status == SPAR_OK ? fmin(without, cost_of_row(&record, r)) : without;
         spari_record_free(&record);
         spari_wish_free(&wish);
         status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
         if (status == SPAR_OK) {
             status = spari_trial_run(s, run, &wish, &record);
-            with = fmin(with, cost(&record, r));
+            with = fmin(with, cost_of_row(&record, r));
             spari_record_free(&record);
         }
     }
@@ -298,7 +298,7 @@ static int asked_anywhere(spar_session *s, int *asked) {
     return SPAR_OK;
 }
 
-static int fill_table(spar_session *s, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
+static int fill_rows(spar_session *s, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
     double size[SPAR_ROW_COUNT] = {0};
     spari_wish wish;
     spari_record base;
@@ -315,7 +315,7 @@ static int fill_table(spar_session *s, const spari_run *run, double (*table)[SPA
         if (in_force(s, r, asked)) {
             out[SPAR_COLUMN_IN_FORCE] = 1;
             out[SPAR_COLUMN_SIZE] = size[r];
-            status = try_row(s, run, r, &base, out);
+            status = try_row_out(s, run, r, &base, out);
         }
     }
     spari_record_free(&base);
@@ -338,7 +338,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_TRY(spari_trial_enter(s, call, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, call, fill_table(s, &run, made)));
+    SPARI_TRY(spari_named(s, call, fill_rows(s, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;

@@ -110,7 +110,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
     return status;
 }
 
-static const char *describe(const spari_advisor *d, const spari_plan *p, char *text, size_t size) {
+static const char *describe_plan(const spari_advisor *d, const spari_plan *p, char *text, size_t size) {
     static const char *const scheme[] = {"explicit", "fixed point", "Aitken", "IQN-ILS"}, *const rung[] = {
                                                                                               "prescribed", "rigid",
                                                                                               "linear", "modal",
@@ -139,13 +139,13 @@ static const char *describe(const spari_advisor *d, const spari_plan *p, char *t
     return text;
 }
 
-static void tell(const spari_advisor *d, const spari_plan *p, double error, double seconds) {
+static void tell_plan(const spari_advisor *d, const spari_plan *p, double error, double seconds) {
     spar_session *s = d->session;
     char what[SPARI_MESSAGE_SIZE / 2], text[SPARI_MESSAGE_SIZE];
     if (!s->log) {
         return;
     }
-    (void)describe(d, p, what, sizeof what);
+    (void)describe_plan(d, p, what, sizeof what);
     if (isfinite(error)) {
         (void)snprintf(text, sizeof text, "%s: trial %d: %s: error %.3g, %.4g s", SPARI_ADVISE, d->trials, what, error,
                        seconds);
@@ -188,7 +188,7 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
         spent += r.seconds;
         spari_record_free(&r);
     }
-    tell(d, p, out->error, out->seconds);
+    tell_plan(d, p, out->error, out->seconds);
     if (d->known_count < SPARI_KNOWN) {
         d->known[d->known_count++] = *out;
     }
@@ -205,7 +205,7 @@ int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_recor
     int status = spari_plan_run(d, p, 1, &r);
     *part = status == SPAR_OK ? spari_record_motion(&r, base) * later(d, &r, base) / d->tolerance : INFINITY;
     *seconds = r.seconds;
-    tell(d, p, *part * d->tolerance, r.seconds);
+    tell_plan(d, p, *part * d->tolerance, r.seconds);
     spari_record_free(&r);
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
@@ -250,7 +250,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
             if (!spari_plan_fails(status)) {
                 return status;
             }
-            tell(d, &p, INFINITY, 0);
+            tell_plan(d, &p, INFINITY, 0);
             continue; /* too coarse, perhaps */
         }
         before = change;
@@ -261,7 +261,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
         } else if (ends == 0) {
             d->reference_error = 0;
         }
-        tell(d, &p, change, finer.seconds);
+        tell_plan(d, &p, change, finer.seconds);
         spari_record_free(&d->reference);
         d->reference = finer;
         *finest = p;
@@ -302,7 +302,7 @@ int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
     }
     double error = status == SPAR_OK ? spari_record_motion(&run, &finer) : INFINITY;
     *stays = error <= longer * d->tolerance && !seesaws(&run, &finer);
-    tell(d, p, error, run.seconds);
+    tell_plan(d, p, error, run.seconds);
     spari_record_free(&run);
     spari_record_free(&finer);
     return spari_plan_fails(status) ? SPAR_OK : status;

@@ -18,7 +18,7 @@ spari_remake spari_remake_of(const spar_member *m) {
 /* ---- description and state ---- */
 
 /* The description with another rule, or other nodes where they were given; a copy that shares the rest. */
-static int describe(spar_member *m, const spari_remake *wish, const spar_member *old) {
+static int describe_again(spar_member *m, const spari_remake *wish, const spar_member *old) {
     if (m->kind != SPARI_BEAM) {
         return SPAR_OK;
     }
@@ -87,7 +87,7 @@ int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *o
     spari_member_disown(m);
     m->fidelity = wish->fidelity;
     m->modes = wish->fidelity == SPAR_FIDELITY_MODAL ? wish->modes : 0;
-    SPARI_TRY(describe(m, wish, old));
+    SPARI_TRY(describe_again(m, wish, old));
     SPARI_TRY(spari_rung_check(m));
     m->effects = spari_member_effects(m) & ~wish->left_out;
     if (!(m->effects & SPAR_EFFECT_INERTIA)) {
