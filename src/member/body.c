@@ -11,8 +11,8 @@
 
 /* ---- small algebra of this file ---- */
 
-/* The 3x4 matrix of x -> Im(q* x). */
-static void body_spin(const double q[4], double l[3][4]) {
+/* The 3x4 matrix of x -> Im(q* x), row-major. */
+static void body_spin(const double q[4], double *l) {
     double w = q[0], x = q[1], y = q[2], z = q[3];
     double m[3][4] = {{-x, w, z, -y}, {-y, -z, w, x}, {-z, y, -x, w}};
     memcpy(l, m, sizeof m);
@@ -488,20 +488,29 @@ double spari_body_residual(const spari_body *body, const double *q, const double
 
 /* ---- tangent ---- */
 
-/* c (rows x 4) += f * a (rows x 3) * l (3 x 4) */
-static void add_product(double *c, int stride, double f, const double a[3][3], const double l[3][4]) {
+/* c (3 x 4 at row stride `stride`) += f * a (3 x 3) * l (3 x 4) */
+static void add_product(double *c, int stride, double f, const double *a, const double *l) {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
-            c[stride * i + j] += f * (a[i][0] * l[0][j] + a[i][1] * l[1][j] + a[i][2] * l[2][j]);
+            c[stride * i + j] += f * (a[3 * i] * l[j] + a[3 * i + 1] * l[4 + j] + a[3 * i + 2] * l[8 + j]);
         }
     }
 }
 
 /* c (4 x 4) += f * l^T (4 x 3) * m (3 x 4) */
-static void add_transposed_product(double *c, int stride, double f, const double l[3][4], const double m[3][4]) {
+static void add_transposed_product(double *c, int stride, double f, const double *l, const double *m) {
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j < 4; j++) {
-            c[stride * i + j] += f * (l[0][i] * m[0][j] + l[1][i] * m[1][j] + l[2][i] * m[2][j]);
+            c[stride * i + j] += f * (l[i] * m[j] + l[4 + i] * m[4 + j] + l[8 + i] * m[8 + j]);
+        }
+    }
+}
+
+/* c := f a b, 3 x 3 each */
+static void multiply3(double f, const double *a, const double *b, double *c) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            c[3 * i + j] = f * (a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j]);
         }
     }
 }
@@ -530,11 +539,11 @@ enum { AT_Q = 3, AT_DU = 7, AT_DQ = 10 };
 static void strain_gradient(const point_state *s, double J[6][14]) {
     double L[3][4], Lp[3][4], Tx[3][3], R[9];
     memset(J, 0, sizeof(double) * 6 * 14);
-    body_spin(s->r, L);
-    body_spin(s->p, Lp);
+    body_spin(s->r, *L);
+    body_spin(s->p, *Lp);
     spari_skew(s->T, *Tx);
     spari_quat_matrix(s->r, R);
-    add_product(&J[0][AT_Q], 14, 2 / s->N, (const double(*)[3])Tx, (const double(*)[4])L);
+    add_product(&J[0][AT_Q], 14, 2 / s->N, *Tx, *L);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             J[i][AT_DU + j] = R[3 * j + i];
@@ -550,21 +559,21 @@ static void strain_gradient(const point_state *s, double J[6][14]) {
 static void strain_rate_gradient(const point_state *s, const double J[6][14], double G[6][14]) {
     double L[3][4], Ld[3][4], Lz[3][4], Tx[3][3], Wx[3][3], tx[3][3];
     memset(G, 0, sizeof(double) * 6 * 14);
-    body_spin(s->r, L);
-    body_spin(s->d, Ld);
-    body_spin(s->z, Lz);
+    body_spin(s->r, *L);
+    body_spin(s->d, *Ld);
+    body_spin(s->z, *Lz);
     spari_skew(s->T, *Tx);
     spari_skew(s->omega, *Wx);
     spari_skew(s->t_rate, *tx);
     /* d(R^T u'-dot) = t_rate x dtheta; dT x W = -W x dT; T x dW with dW = (-2 Ld - 2 W r^T)/N dQ */
-    add_product(&G[0][AT_Q], 14, 2 / s->N, (const double(*)[3])tx, (const double(*)[4])L);
+    add_product(&G[0][AT_Q], 14, 2 / s->N, *tx, *L);
     double dW[3][4];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
             dW[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) / s->N;
         }
     }
-    add_product(&G[0][AT_Q], 14, 1, (const double(*)[3])Tx, (const double(*)[4])dW);
+    add_product(&G[0][AT_Q], 14, 1, *Tx, *dW);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 14; j++) {
             G[i][j] -= Wx[i][0] * J[0][j] + Wx[i][1] * J[1][j] + Wx[i][2] * J[2][j];
@@ -584,7 +593,7 @@ static void strain_rate_gradient(const point_state *s, const double J[6][14], do
 static void add_geometric(const point_state *s, double w, double *K) {
     double L[3][4], Sx[3][3], R[9], RS[3][3], mixed[3][4] = {{0}};
     double in = 1 / s->N, in2 = in * in;
-    body_spin(s->r, L);
+    body_spin(s->r, *L);
     spari_skew(s->s, *Sx);
     spari_quat_matrix(s->r, R);
     for (int i = 0; i < 3; i++) {
@@ -592,7 +601,7 @@ static void add_geometric(const point_state *s, double w, double *K) {
             RS[i][j] = R[3 * i] * Sx[0][j] + R[3 * i + 1] * Sx[1][j] + R[3 * i + 2] * Sx[2][j];
         }
     }
-    add_product(&mixed[0][0], 4, -2 * in, (const double(*)[3])RS, (const double(*)[4])L);
+    add_product(&mixed[0][0], 4, -2 * in, *RS, *L);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
             K[14 * (AT_DU + i) + AT_Q + j] += w * mixed[i][j];
@@ -668,8 +677,8 @@ static void add_elastic(const spari_body *body, int k, int moving, double w, con
 }
 
 /* K of the rows g_Q = 2 Q mb / N^2 of a moment mb in body axes that changes by mQ dQ. */
-static void add_moment_rows(double w, const point_state *s, const double L[3][4], const double mQ[3][4],
-                            const double mb[3], double *K) {
+static void add_moment_rows(double w, const point_state *s, const double *L, const double *mQ, const double mb[3],
+                            double *K) {
     double Rm[4][4], rm[4], in = 1 / s->N;
     add_transposed_product(&K[14 * AT_Q + AT_Q], 14, 2 * w * in, L, mQ);
     right_matrix(mb, Rm);
@@ -681,110 +690,131 @@ static void add_moment_rows(double w, const point_state *s, const double L[3][4]
     }
 }
 
-/* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
-static void add_inertia(const spari_body *body, int k, double w, const point_state *s, const point_inertia *n,
-                        point_matrices *m) {
-    const double *mass = body->mass + 10 * (int64_t)k, *mc = mass + 1, *Js = mass + 4;
-    double L[3][4], Ld[3][4], Ldd[3][4], rdd[4], in = 1 / s->N;
+/* How the body rate W = 2 Im(Q* Qd)/N^2 and its rate A = 2 Im(Q* Qdd)/N^2 - 2 (Q.Qd) W/N^2 follow the fields, 3 x 4
+   each; by the highest rate of Q both are 2 L/N. */
+typedef struct spin_gradient {
+    double L[12], rate_by_q[12], acceleration_by_q[12], acceleration_by_qd[12];
+} spin_gradient;
+
+static void differentiate_spin(const point_state *s, const point_inertia *n, spin_gradient *by) {
+    double Ld[12], Ldd[12], rdd[4], in = 1 / s->N;
     for (int i = 0; i < 4; i++) {
         rdd[i] = s->f[QDD + i] * in;
     }
-    body_spin(s->r, L);
+    body_spin(s->r, by->L);
     body_spin(s->d, Ld);
     body_spin(rdd, Ldd);
-    /* W = 2 Im(Q* Qd)/N^2, A = 2 Im(Q* Qdd)/N^2 - 2 (Q.Qd) W/N^2 and their derivatives */
-    double WQ[3][4], AQ[3][4], AQd[3][4];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
-            WQ[i][j] = (-2 * Ld[i][j] - 2 * s->omega[i] * s->r[j]) * in;
-            AQd[i][j] = -2 * s->omega[i] * s->r[j] * in - 4 * s->b * L[i][j] * in;
-            AQ[i][j] = (-2 * Ldd[i][j] - 2 * n->A0[i] * s->r[j]) * in -
-                       2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in - 2 * s->b * WQ[i][j];
+            int at = 4 * i + j;
+            by->rate_by_q[at] = (-2 * Ld[at] - 2 * s->omega[i] * s->r[j]) * in;
+            by->acceleration_by_qd[at] = -2 * s->omega[i] * s->r[j] * in - 4 * s->b * by->L[at] * in;
+            by->acceleration_by_q[at] = (-2 * Ldd[at] - 2 * n->A0[i] * s->r[j]) * in -
+                                        2 * s->omega[i] * (s->d[j] - 2 * s->b * s->r[j]) * in -
+                                        2 * s->b * by->rate_by_q[at];
         }
     }
-    double J[3][3] = {{Js[0], Js[1], Js[2]}, {Js[1], Js[3], Js[4]}, {Js[2], Js[4], Js[5]}};
-    double cx[3][3], hx[3][3], yx[3][3];
-    spari_skew(mc, *cx);
-    spari_skew(n->h, *hx);
-    spari_skew(n->y, *yx);
-    double R[9], Rc[3][3], Ry[3][3], cRt[3][3], ch[3][3];
-    double fQ[3][4] = {{0}}, fQd[3][4] = {{0}}, fQdd[3][4] = {{0}}, mQ[3][4] = {{0}}, mQd[3][4] = {{0}},
-           mQdd[3][4] = {{0}};
-    const double(*Lc)[4] = (const double(*)[4])L;
-    spari_quat_matrix(s->r, R);
-    if (body->gyroscopic) {
-        double Wx[3][3], JWx[3][3], Wcx[3][3], mW[3][3], fW[3][3], RfW[3][3];
-        spari_skew(s->omega, *Wx);
-        spari_skew(n->JW, *JWx);
-        spari_skew(n->Wc, *Wcx);
-        for (int i = 0; i < 3; i++) {
-            for (int j = 0; j < 3; j++) {
-                double wj = 0, wc = 0;
-                for (int l = 0; l < 3; l++) {
-                    wj += Wx[i][l] * J[l][j];
-                    wc += Wx[i][l] * cx[l][j];
-                }
-                mW[i][j] = wj - JWx[i][j];  /* d(W x JW)/dW */
-                fW[i][j] = -Wcx[i][j] - wc; /* d(W x (W x c))/dW */
-            }
-        }
-        for (int i = 0; i < 3; i++) {
-            for (int j = 0; j < 3; j++) {
-                RfW[i][j] = R[3 * i] * fW[0][j] + R[3 * i + 1] * fW[1][j] + R[3 * i + 2] * fW[2][j];
-            }
-        }
-        add_product(&fQd[0][0], 4, 2 * in, (const double(*)[3])RfW, Lc);
-        add_product(&fQ[0][0], 4, 1, (const double(*)[3])RfW, (const double(*)[4])WQ);
-        add_product(&mQd[0][0], 4, 2 * in, (const double(*)[3])mW, Lc);
-        add_product(&mQ[0][0], 4, 1, (const double(*)[3])mW, (const double(*)[4])WQ);
+}
+
+/* How the force of inertia (global axes) and its moment (body axes) follow Q and its rates, 3 x 4 each; and what that
+   takes of the section: R, mc~ and J, 3 x 3. */
+typedef struct inertia_gradient {
+    double force_by_q[12], force_by_qd[12], force_by_qdd[12];
+    double moment_by_q[12], moment_by_qd[12], moment_by_qdd[12];
+    double R[9], offset[9], J[9];
+} inertia_gradient;
+
+/* R (W x (W x mc)) and W x J W, through W. */
+static void add_gyroscopic(const point_state *s, const point_inertia *n, const spin_gradient *by, inertia_gradient *g) {
+    double W[9], JW[9], Wc[9], W_J[9], W_c[9], moment_by_rate[9], own_by_rate[9], force_by_rate[9], in = 1 / s->N;
+    spari_skew(s->omega, W);
+    spari_skew(n->JW, JW);
+    spari_skew(n->Wc, Wc);
+    multiply3(1, W, g->J, W_J);
+    multiply3(1, W, g->offset, W_c);
+    for (int i = 0; i < 9; i++) {
+        moment_by_rate[i] = W_J[i] - JW[i];
+        own_by_rate[i] = -Wc[i] - W_c[i];
     }
+    multiply3(1, g->R, own_by_rate, force_by_rate);
+    add_product(g->force_by_qd, 4, 2 * in, force_by_rate, by->L);
+    add_product(g->force_by_q, 4, 1, force_by_rate, by->rate_by_q);
+    add_product(g->moment_by_qd, 4, 2 * in, moment_by_rate, by->L);
+    add_product(g->moment_by_q, 4, 1, moment_by_rate, by->rate_by_q);
+}
+
+/* R (A x mc) and J A, through A; and what turns with the section: R y, and mc x h as h = R^T (udd - g) does. */
+static void add_accelerated(const point_state *s, const point_inertia *n, const spin_gradient *by,
+                            inertia_gradient *g) {
+    double h[9], y[9], force_by_acceleration[9], force_by_turn[9], moment_by_turn[9], in = 1 / s->N;
+    spari_skew(n->h, h);
+    spari_skew(n->y, y);
+    multiply3(-1, g->R, g->offset, force_by_acceleration);
+    multiply3(-1, g->R, y, force_by_turn);
+    multiply3(1, g->offset, h, moment_by_turn);
+    add_product(g->force_by_qdd, 4, 2 * in, force_by_acceleration, by->L);
+    add_product(g->force_by_qd, 4, 1, force_by_acceleration, by->acceleration_by_qd);
+    add_product(g->force_by_q, 4, 1, force_by_acceleration, by->acceleration_by_q);
+    add_product(g->force_by_q, 4, 2 * in, force_by_turn, by->L);
+    add_product(g->moment_by_qdd, 4, 2 * in, g->J, by->L);
+    add_product(g->moment_by_qd, 4, 1, g->J, by->acceleration_by_qd);
+    add_product(g->moment_by_q, 4, 1, g->J, by->acceleration_by_q);
+    add_product(g->moment_by_q, 4, 2 * in, moment_by_turn, by->L);
+}
+
+/* Rows u: the force itself. */
+static void add_force_rows(double w, double mass, const inertia_gradient *g, point_matrices *m) {
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            Rc[i][j] = Ry[i][j] = cRt[i][j] = ch[i][j] = 0;
-            for (int l = 0; l < 3; l++) {
-                Rc[i][j] -= R[3 * i + l] * cx[l][j];  /* R d(A x c)/dA */
-                Ry[i][j] -= R[3 * i + l] * yx[l][j];  /* dR y = R (dtheta x y) */
-                cRt[i][j] += cx[i][l] * R[3 * j + l]; /* c x R^T d udd */
-                ch[i][j] += cx[i][l] * hx[l][j];      /* c x (h x dtheta) */
-            }
-        }
-    }
-    /* force rows */
-    add_product(&fQdd[0][0], 4, 2 * in, (const double(*)[3])Rc, Lc);
-    add_product(&fQd[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQd);
-    add_product(&fQ[0][0], 4, 1, (const double(*)[3])Rc, (const double(*)[4])AQ);
-    add_product(&fQ[0][0], 4, 2 * in, (const double(*)[3])Ry, Lc);
-    /* moment, body axes */
-    add_product(&mQdd[0][0], 4, 2 * in, (const double(*)[3])J, Lc);
-    add_product(&mQd[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQd);
-    add_product(&mQ[0][0], 4, 1, (const double(*)[3])J, (const double(*)[4])AQ);
-    add_product(&mQ[0][0], 4, 2 * in, (const double(*)[3])ch, Lc);
-    for (int i = 0; i < 3; i++) {
-        m->M[7 * i + i] += w * mass[0];
+        m->M[7 * i + i] += w * mass;
         for (int j = 0; j < 4; j++) {
-            m->M[7 * i + 3 + j] += w * fQdd[i][j];
-            m->B[14 * i + AT_Q + j] += w * fQd[i][j];
-            m->K[14 * i + AT_Q + j] += w * fQ[i][j];
+            m->M[7 * i + 3 + j] += w * g->force_by_qdd[4 * i + j];
+            m->B[14 * i + AT_Q + j] += w * g->force_by_qd[4 * i + j];
+            m->K[14 * i + AT_Q + j] += w * g->force_by_q[4 * i + j];
         }
     }
-    /* g_Q = 2 Q mb / N^2: rows through 2 L^T mb / N, and the change of Q itself */
-    double mU[4][3];
+}
+
+/* Rows Q: g_Q = 2 Q mb/N^2 changes with mb through 2 L^T/N, by udd through mc x R^T, and with Q itself. */
+static void add_rotary_rows(double w, const point_state *s, const double *mb, const double *L,
+                            const inertia_gradient *g, point_matrices *m) {
+    double back[9], moment_by_udd[9], in = 1 / s->N;
+    for (int i = 0; i < 9; i++) {
+        back[i] = g->R[3 * (i % 3) + i / 3];
+    }
+    multiply3(1, g->offset, back, moment_by_udd);
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j < 3; j++) {
-            mU[i][j] = 2 * in * (L[0][i] * cRt[0][j] + L[1][i] * cRt[1][j] + L[2][i] * cRt[2][j]);
-            m->M[7 * (3 + i) + j] += w * mU[i][j];
+            double x = L[i] * moment_by_udd[j] + L[4 + i] * moment_by_udd[3 + j] + L[8 + i] * moment_by_udd[6 + j];
+            m->M[7 * (3 + i) + j] += w * (2 * in * x);
         }
     }
-    add_transposed_product(&m->M[7 * 3 + 3], 7, 2 * w * in, Lc, (const double(*)[4])mQdd);
-    add_transposed_product(&m->B[14 * AT_Q + AT_Q], 14, 2 * w * in, Lc, (const double(*)[4])mQd);
-    add_moment_rows(w, s, Lc, (const double(*)[4])mQ, n->mb, m->K);
+    add_transposed_product(&m->M[7 * 3 + 3], 7, 2 * w * in, L, g->moment_by_qdd);
+    add_transposed_product(&m->B[14 * AT_Q + AT_Q], 14, 2 * w * in, L, g->moment_by_qd);
+    add_moment_rows(w, s, L, g->moment_by_q, mb, m->K);
+}
+
+/* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
+static void add_inertia(const spari_body *body, int k, double w, const point_state *s, const point_inertia *n,
+                        point_matrices *m) {
+    const double *mass = body->mass + 10 * (int64_t)k, *J = mass + 4;
+    spin_gradient by;
+    inertia_gradient g = {.J = {J[0], J[1], J[2], J[1], J[3], J[4], J[2], J[4], J[5]}};
+    spari_quat_matrix(s->r, g.R);
+    spari_skew(mass + 1, g.offset);
+    differentiate_spin(s, n, &by);
+    if (body->gyroscopic) {
+        add_gyroscopic(s, n, &by, &g);
+    }
+    add_accelerated(s, n, &by, &g);
+    add_force_rows(w, mass[0], &g, m);
+    add_rotary_rows(w, s, n->mb, by.L, &g, m);
 }
 
 /* The weight alone: its moment about the node turns with the section. */
 static void add_weight(const spari_body *body, int k, double w, const point_state *s, const point_inertia *n,
                        point_matrices *m) {
     double L[3][4], cx[3][3], hx[3][3], ch[3][3], mQ[3][4] = {{0}};
-    body_spin(s->r, L);
+    body_spin(s->r, *L);
     spari_skew(body->mass + 10 * (int64_t)k + 1, *cx);
     spari_skew(n->h, *hx);
     for (int i = 0; i < 3; i++) {
@@ -792,8 +822,8 @@ static void add_weight(const spari_body *body, int k, double w, const point_stat
             ch[i][j] = cx[i][0] * hx[0][j] + cx[i][1] * hx[1][j] + cx[i][2] * hx[2][j];
         }
     }
-    add_product(&mQ[0][0], 4, 2 / s->N, (const double(*)[3])ch, (const double(*)[4])L);
-    add_moment_rows(w, s, (const double(*)[4])L, (const double(*)[4])mQ, n->mb, m->K);
+    add_product(&mQ[0][0], 4, 2 / s->N, *ch, *L);
+    add_moment_rows(w, s, *L, *mQ, n->mb, m->K);
 }
 
 /* Nodal maps: dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm
@@ -835,8 +865,7 @@ static void node_maps(const double *zn, const double *v, const double *a, double
 
 /* S_ij (6 x 6 at row stride `stride`) += E_i^T X E_j for one of K, B, M; X is 7 x 7; the translational factor of column
  * j is `cu`. */
-static void project_block(const double *X, const double Ei[4][3], const double Ej[4][3], double cu, double *S,
-                          int64_t stride) {
+static void project_block(const double *X, double Ei[4][3], double Ej[4][3], double cu, double *S, int64_t stride) {
     double XE[7][6];
     for (int i = 0; i < 7; i++) {
         for (int j = 0; j < 3; j++) {
@@ -873,124 +902,174 @@ static void first_stage(int P, const double *phi, const double *dphi, const doub
 
 static void linear_tangent(const spari_body *body, int e, double cm, double cv, double *S);
 
+/* One element's tangent on its way: fields at nodes and points; the nodes' 7 x 7 blocks of stiffness, rates and mass,
+   and their first stages, all in the body's scratch; g[P][4], the forces on Q. */
+typedef struct element_tangent {
+    int P, first, points; /* nodes, points */
+    int damped, masses, rates;
+    int64_t row; /* doubles of the first stage of one point */
+    double *z, *f, *K, *B, *M, *g, *first_K, *first_B, *first_M;
+    double *table; /* [P][2 points] phi, then phi' */
+} element_tangent;
+
+static element_tangent begin_tangent(const spari_body *body, int e, int masses, int rates) {
+    int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first;
+    int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
+    element_tangent t = {P, first, n, body->D != NULL, masses, rates, .row = row, .z = body->scratch};
+    t.f = t.z + (int64_t)P * (ROW + BACK);
+    t.K = t.f + (int64_t)n * (POINT_ROW + BACK_ROW);
+    t.B = t.K + pp, t.M = t.B + pp, t.g = t.M + pp;
+    t.first_K = t.g + pp, t.first_B = t.first_K + 2 * n * row;
+    t.first_M = t.first_B + n * row; /* B has no slopes unless damped: its second half is then free for M */
+    t.table = t.first_B + 2 * n * row;
+    memset(t.g, 0, (size_t)P * 4 * sizeof *t.g);
+    memset(t.M, 0, (size_t)pp * sizeof *t.M);
+    return t;
+}
+
+/* The matrices of one point, and its forces on Q and Q' in value and slope, 4 each. */
+static void differentiate_point(const spari_body *body, int at, const regime *how, int masses, const double *f,
+                                point_matrices *m, double *value, double *slope) {
+    point_state s;
+    double w = body->weight[at], of_value[BACK] = {0}, of_slope[BACK] = {0};
+    memset(m, 0, sizeof *m);
+    point_fields(f, &s);
+    if (body->C) {
+        point_strain(body, at, how->moving, &s);
+        add_elastic(body, at, how->moving, w, &s, m);
+        elastic_forces(&s, of_value, of_slope);
+    }
+    if (masses || how->heavy) {
+        point_inertia in;
+        double m4[4];
+        if (masses) {
+            point_inertia_forces(body, at, how, &s, &in);
+            add_inertia(body, at, w, &s, &in, m);
+        } else {
+            point_weight(body, at, how, &s, &in);
+            add_weight(body, at, w, &s, &in, m);
+        }
+        quat_vec(s.r, in.mb, m4);
+        for (int i = 0; i < 4; i++) {
+            of_value[3 + i] += 2 * m4[i] / s.N;
+        }
+    }
+    memcpy(value, of_value + 3, 4 * sizeof *value);
+    memcpy(slope, of_slope + 3, 4 * sizeof *slope);
+}
+
+/* The mass of point k: by a first stage of its own, or, where damping takes up the room for it, at once. */
+static void collect_mass(const element_tangent *t, int k, const double *phi, const double *dphi, const double *M) {
+    if (!t->damped) {
+        double M14[14 * 7] = {0}; /* first_stage multiplies what it does not need by 0 */
+        for (int i = 0; i < 7; i++) {
+            memcpy(M14 + 14 * i, M + 7 * i, 7 * sizeof *M14);
+        }
+        first_stage(t->P, phi, dphi, M14, 0, t->first_M + k * t->row, NULL);
+        return;
+    }
+    for (int i = 0; i < t->P; i++) {
+        for (int j = 0; j < t->P; j++) {
+            double fij = phi[i] * phi[j], *to = t->M + ((int64_t)i * t->P + j) * 49;
+            for (int c = 0; c < 49; c++) {
+                to[c] += fij * M[c];
+            }
+        }
+    }
+}
+
+/* Point k of the element into forces on Q, the table of phi and the first stages. */
+static void collect_point(const spari_body *body, const element_tangent *t, int k, const regime *how) {
+    int P = t->P, n = t->points, at = t->first + k;
+    const double *phi = body->phi + (int64_t)at * P, *dphi = body->dphi + (int64_t)at * P;
+    double value[4], slope[4], w = body->weight[at];
+    point_matrices m;
+    differentiate_point(body, at, how, t->masses, t->f + (int64_t)POINT_ROW * k, &m, value, slope);
+    for (int l = 0; l < P; l++) {
+        for (int i = 0; i < 4; i++) {
+            t->g[4 * l + i] += w * (phi[l] * value[i] + dphi[l] * slope[i]);
+        }
+        t->table[2 * n * l + k] = phi[l];
+        t->table[2 * n * l + n + k] = dphi[l];
+    }
+    first_stage(P, phi, dphi, m.K, 1, t->first_K + k * t->row, t->first_K + (n + k) * t->row);
+    if (t->rates) {
+        first_stage(P, phi, dphi, m.B, t->damped, t->first_B + k * t->row, t->first_B + (n + k) * t->row);
+    }
+    if (t->masses) {
+        collect_mass(t, k, phi, dphi, m.M);
+    }
+}
+
+/* Blocks := the second stage, over the first `rows` rows of the table. */
+static void second_stage(const element_tangent *t, int rows, const double *first, double *blocks) {
+    int cols = (int)t->row;
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, t->P, cols, rows, 1, t->table, 2 * t->points,
+                           first, cols, 0, blocks, cols));
+}
+
+/* The nodal moment 1/2 Im(g q*) of a constant g changes with q by -1/4 (s I + w~), (s, w) = g q*. */
+static void add_turned_force(const double *g, const double *q, double *S, int64_t stride) {
+    double c[4], p[4], w[3][3];
+    spari_quat_conj(q, c);
+    spari_quat_mul(g, c, p);
+    spari_skew(p + 1, *w);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            S[stride * i + j] -= 0.25 * ((i == j ? p[0] : 0) + w[i][j]);
+        }
+    }
+}
+
+/* From the blocks over (u, Q) and its rates to the unknowns of the nodes, by their maps (4 x 3 each). */
+static void project_blocks(const element_tangent *t, double cm, double cv, double E[][4][3], double F[][4][3],
+                           double H[][4][3], double *S) {
+    int64_t stride = 6 * t->P;
+    memset(S, 0, (size_t)(stride * stride) * sizeof *S);
+    for (int i = 0; i < t->P; i++) {
+        for (int j = 0; j < t->P; j++) {
+            double *Sij = S + stride * 6 * i + 6 * j;
+            int64_t at = ((int64_t)i * t->P + j) * 49;
+            project_block(t->K + at, E[i], E[j], 1, Sij, stride);
+            if (t->rates) {
+                project_block(t->B + at, E[i], F[j], cv, Sij, stride);
+            }
+            if (t->masses) {
+                project_block(t->M + at, E[i], H[j], cm, Sij, stride);
+            }
+        }
+        add_turned_force(t->g + 4 * i, t->z + ROW * i + Q, S + stride * (6 * i + 3) + 6 * i + 3, stride);
+    }
+}
+
 void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv, double *S) {
     if (body->linear[0]) {
         linear_tangent(body, e, cm, cv, S);
         return;
     }
-    int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first;
     const regime how = regime_of(body, v, a, factor);
-    int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
     int masses = (cm != 0 || a) && body->mass, rates = (cv != 0 || v) && (body->D || masses);
-    double *z = body->scratch, *f = z + (int64_t)P * (ROW + BACK), *K7 = f + (int64_t)n * (POINT_ROW + BACK_ROW),
-           *B7 = K7 + pp, *M7 = B7 + pp, *g = M7 + pp;
-    double *XK = g + pp, *XB = XK + 2 * n * row, *table = XB + 2 * n * row;
-    gather_fields(body, e, q, v, a, z);
-    interpolate(body, e, z, how.moving, f);
-    memset(g, 0, (size_t)P * 4 * sizeof *g);
-    double *XM = XB + n * row; /* B has no slopes unless damped: its second half is then free for M */
-    memset(M7, 0, (size_t)pp * sizeof *M7);
-    int damped = body->D != NULL;
-    for (int k = 0; k < n; k++) {
-        int at = first + k;
-        point_state s;
-        point_matrices m;
-        memset(&m, 0, sizeof m);
-        double w = body->weight[at];
-        const double *phi = body->phi + (int64_t)at * P, *dphi = body->dphi + (int64_t)at * P;
-        point_fields(f + (int64_t)POINT_ROW * k, &s);
-        double value[BACK] = {0}, slope[BACK] = {0};
-        if (body->C) {
-            point_strain(body, at, how.moving, &s);
-            add_elastic(body, at, how.moving, w, &s, &m);
-            elastic_forces(&s, value, slope);
-        }
-        if (masses || how.heavy) {
-            point_inertia in;
-            double m4[4];
-            if (masses) {
-                point_inertia_forces(body, at, &how, &s, &in);
-                add_inertia(body, at, w, &s, &in, &m);
-            } else {
-                point_weight(body, at, &how, &s, &in);
-                add_weight(body, at, w, &s, &in, &m);
-            }
-            quat_vec(s.r, in.mb, m4);
-            for (int i = 0; i < 4; i++) {
-                value[3 + i] += 2 * m4[i] / s.N;
-            }
-        }
-        for (int l = 0; l < P; l++) {
-            for (int i = 0; i < 4; i++) {
-                g[4 * l + i] += w * (phi[l] * value[3 + i] + dphi[l] * slope[3 + i]);
-            }
-            table[2 * n * l + k] = phi[l];
-            table[2 * n * l + n + k] = dphi[l];
-        }
-        first_stage(P, phi, dphi, m.K, 1, XK + k * row, XK + (n + k) * row);
-        if (rates) {
-            first_stage(P, phi, dphi, m.B, damped, XB + k * row, XB + (n + k) * row);
-        }
-        if (masses && !damped) {
-            double M14[14 * 7] = {0}; /* first_stage multiplies what it does not need by 0 */
-            for (int i = 0; i < 7; i++) {
-                memcpy(M14 + 14 * i, m.M + 7 * i, 7 * sizeof *M14);
-            }
-            first_stage(P, phi, dphi, M14, 0, XM + k * row, NULL);
-        } else if (masses) {
-            for (int i = 0; i < P; i++) {
-                for (int j = 0; j < P; j++) {
-                    double fij = phi[i] * phi[j], *to = M7 + ((int64_t)i * P + j) * 49;
-                    for (int c = 0; c < 49; c++) {
-                        to[c] += fij * m.M[c];
-                    }
-                }
-            }
-        }
+    const element_tangent t = begin_tangent(body, e, masses, rates);
+    gather_fields(body, e, q, v, a, t.z);
+    interpolate(body, e, t.z, how.moving, t.f);
+    for (int k = 0; k < t.points; k++) {
+        collect_point(body, &t, k, &how);
     }
-    int cols = (int)row;
-    SPARI_BLAS(
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, 2 * n, 1, table, 2 * n, XK, cols, 0, K7, cols));
+    second_stage(&t, 2 * t.points, t.first_K, t.K);
     if (rates) {
-        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, damped ? 2 * n : n, 1, table, 2 * n,
-                               XB, cols, 0, B7, cols));
+        second_stage(&t, t.damped ? 2 * t.points : t.points, t.first_B, t.B);
     }
-    if (masses && !damped) {
-        SPARI_BLAS(
-            cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, P, cols, n, 1, table, 2 * n, XM, cols, 0, M7, cols));
+    if (masses && !t.damped) {
+        second_stage(&t, t.points, t.first_M, t.M);
     }
-    int64_t stride = 6 * P;
-    memset(S, 0, (size_t)(stride * stride) * sizeof *S);
     double E[SPARI_MAX_NODES][4][3], F[SPARI_MAX_NODES][4][3], H[SPARI_MAX_NODES][4][3];
-    for (int l = 0; l < P; l++) {
-        int64_t node = (int64_t)e * (P - 1) + l;
-        node_maps(z + ROW * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv, tinv ? tinv + 9 * node : NULL,
-                  E[l], F[l], H[l]);
+    for (int l = 0; l < t.P; l++) {
+        int64_t node = (int64_t)e * (t.P - 1) + l;
+        node_maps(t.z + ROW * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, cm, cv,
+                  tinv ? tinv + 9 * node : NULL, E[l], F[l], H[l]);
     }
-    for (int i = 0; i < P; i++) {
-        for (int j = 0; j < P; j++) {
-            double *Sij = S + stride * 6 * i + 6 * j;
-            int64_t at = ((int64_t)i * P + j) * 49;
-            project_block(K7 + at, (const double(*)[3])E[i], (const double(*)[3])E[j], 1, Sij, stride);
-            if (rates) {
-                project_block(B7 + at, (const double(*)[3])E[i], (const double(*)[3])F[j], cv, Sij, stride);
-            }
-            if (masses) {
-                project_block(M7 + at, (const double(*)[3])E[i], (const double(*)[3])H[j], cm, Sij, stride);
-            }
-        }
-        /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
-        double c[4], p[4], wx[3][3];
-        spari_quat_conj(z + ROW * i + Q, c);
-        spari_quat_mul(g + 4 * i, c, p);
-        spari_skew(p + 1, *wx);
-        for (int r = 0; r < 3; r++) {
-            for (int col = 0; col < 3; col++) {
-                S[stride * (6 * i + 3 + r) + 6 * i + 3 + col] -= 0.25 * ((r == col ? p[0] : 0) + wx[r][col]);
-            }
-        }
-    }
+    project_blocks(&t, cm, cv, E, F, H, S);
 }
 
 /* ---- energy ---- */
