@@ -111,9 +111,21 @@ static void what_if(writer *w) {
     part(w, 100,
          k < 500   ? CALL_spar_session_try
          : k < 550 ? CALL_spar_session_report_effects
-         : k < 975 ? CALL_spar_aero_report_effects
+         : k < 950 ? CALL_spar_aero_report_effects
                    : CALL_spar_session_advise);
     part(w, 50, k < 500 ? CALL_spar_session_try : CALL_spar_member_get_advice);
+}
+
+/* A few saves, as there are a few names; and back, from between steps. */
+static void save_and_load(writer *w) {
+    for (int k = 0; k < 3; k++) {
+        put(w, CALL_spar_session_save, STYLE_GOOD | STYLE_RECENT);
+    }
+    if (roll(w, 2)) {
+        step(w);
+    }
+    put(w, CALL_spar_step_reject, STYLE_GOOD | STYLE_RECENT);
+    put(w, CALL_spar_session_load, STYLE_GOOD | STYLE_RECENT);
 }
 
 static int any_call(writer *w) {
@@ -155,6 +167,8 @@ int fuzz_sequence(uint64_t seed, record *list, int room) {
             fluid(&w);
         } else if (roll(&w, 150) == 0) {
             what_if(&w);
+        } else if (roll(&w, 300) == 0) {
+            save_and_load(&w);
         } else {
             put(&w, any_call(&w), roll(&w, 2) ? STYLE_GOOD : 0);
         }
