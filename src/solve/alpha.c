@@ -377,13 +377,14 @@ static double apply_correction(const spar_member *member, const spari_scheme *c,
         largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
     }
     double cut = largest > longest ? longest / largest : 1;
+    const double cv = c->cv, cm = c->cm, cb = c->cb;
     for (int i = 0; i < s->n; i++) {
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             double step = -cut * dx[k];
             x[k] += step;
-            to->v[k] += c->cv * step;
-            to->a[k] += c->cm * step;
-            to->b[k] += c->cb * step;
+            to->v[k] += cv * step;
+            to->a[k] += cm * step;
+            to->b[k] += cb * step;
         }
         place_node(c, &e->from, to, x, i);
     }

@@ -1,3 +1,4 @@
+/* Members that are linear, or modal, in the frame of their root: matrices, modes, time (frame.h). */
 #include "frame.h"
 #include "../base/blas.h"
 

@@ -1,3 +1,4 @@
+/* A chain of blocks that overlap, factored and solved from end to end. */
 #include "linear.h"
 #include "../base/blas.h"
 

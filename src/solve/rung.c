@@ -1,3 +1,4 @@
+/* Members below the exact ones: what carries them, from a line that follows its root to frames and rigid beams. */
 #include "rung.h"
 
 #include "../comm/comm.h"

@@ -46,9 +46,3 @@ void spari_scheme_loads(const spar_member *member, double *begin, double *end, d
         end[i] += room[i];
     }
 }
-
-void spari_scheme_load_at(double s, int n, const double *begin, const double *end, double *load) {
-    for (int i = 0; i < n; i++) {
-        load[i] = (1 - s) * begin[i] + s * end[i];
-    }
-}

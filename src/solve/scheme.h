@@ -21,6 +21,10 @@ void spari_scheme_stretch_by(double ratio, int n, const double *a, double *b);
 /* Loads [unique][6] at the ends of the step, fluid and dead ones; `room` is as large. */
 void spari_scheme_loads(const spar_member *member, double *begin, double *end, double *room);
 /* load[n] := linear between them, at the part s of the step */
-void spari_scheme_load_at(double s, int n, const double *begin, const double *end, double *load);
+static inline void spari_scheme_load_at(double s, int n, const double *begin, const double *end, double *load) {
+    for (int i = 0; i < n; i++) {
+        load[i] = (1 - s) * begin[i] + s * end[i];
+    }
+}
 
 #endif

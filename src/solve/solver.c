@@ -1,3 +1,4 @@
+/* The arrays and the kept tangent of a member that is solved for; save and load of both. */
 #include "solver.h"
 
 #include "../base/scene.h"

@@ -1,3 +1,4 @@
+/* Equilibrium seen from a root that turns steadily: rates, forces, tangent. */
 #include "turn.h"
 
 #include "../math/rotation.h"

@@ -1,3 +1,4 @@
+/* The work that loads and the root have done on a member. */
 #include "work.h"
 #include "../base/quiet.h"
 
