@@ -1,3 +1,4 @@
+/* Loads of a blade element: inflow, angle of attack and coefficients at one aerodynamic centre. */
 #include "element.h"
 #include "../math/rotation.h"
 

@@ -1,3 +1,4 @@
+/* The balance of an annulus between what its elements take and what the wind loses, with Prandtl's losses. */
 #include "momentum.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_math.h>

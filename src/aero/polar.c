@@ -1,3 +1,4 @@
+/* Tables of lift, drag and moment by the angle of attack, and what is read out of them between their rows. */
 #include "polar.h"
 #include "../base/quiet.h"
 #include "../base/scene.h"

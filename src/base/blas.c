@@ -1,3 +1,4 @@
+/* One thread at a time in BLAS, and one thread within it. */
 #include "blas.h"
 
 #ifdef SPARI_HAVE_OPENBLAS

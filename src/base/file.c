@@ -1,3 +1,4 @@
+/* Files that appear whole or not at all: written beside their place and moved there. */
 #include "file.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* The words of a saved session in memory, written to a file and read from it with a check sum. */
 #include "image.h"
 
 #include "../base/file.h"

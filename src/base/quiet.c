@@ -1,3 +1,4 @@
+/* The host's floating-point traps and locale, held while the library computes. */
 #include "quiet.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* Names and texts of statuses, messages, memory: what every file uses. */
 #include "status.h"
 
 #include <gsl/gsl_errno.h>

@@ -1,3 +1,4 @@
+/* The nodes of a fluid: created, described by the host, destroyed. */
 #include "../base/quiet.h"
 #include "fluid.h"
 

@@ -1,3 +1,4 @@
+/* Motion of members, out to the fluid's nodes. */
 #include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "state.h"

@@ -1,3 +1,4 @@
+/* Loads of the fluid's nodes, in to the members. */
 #include "../base/quiet.h"
 #include "../math/predictor.h"
 #include "../math/rotation.h"

@@ -1,3 +1,4 @@
+/* Quadrature points and weights, and Lagrange's polynomials. */
 #include "basis.h"
 
 #include <gsl/gsl_integration.h>

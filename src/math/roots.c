@@ -1,3 +1,4 @@
+/* All zeros of a polynomial, real and complex. */
 #include "roots.h"
 
 #include <complex.h>

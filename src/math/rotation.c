@@ -1,3 +1,4 @@
+/* Rotations: quaternions, matrices, rotation vectors and their tangent operators. */
 #include "rotation.h"
 
 #include <float.h>

@@ -1,3 +1,4 @@
+/* Loads that a member carries beside the dead ones at its nodes: their forces, tangent and description. */
 #include "applied.h"
 #include "../base/quiet.h"
 

@@ -1,3 +1,4 @@
+/* What a described beam becomes: nodes along its line, sections at its points, quadrature over its elements. */
 #include "beam.h"
 #include "../base/blas.h"
 

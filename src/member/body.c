@@ -1,3 +1,4 @@
+/* Forces, tangent and energy of beams and rigid bodies: docs/theory.md, "The beam". */
 #include "body.h"
 #include "../base/blas.h"
 

@@ -1,3 +1,4 @@
+/* Checks at the public edge that the calls on members share. */
 #include "edge.h"
 
 #include "../comm/enter.h"

@@ -1,3 +1,4 @@
+/* What a described rigid body becomes: one node, one point with its mass. */
 #include "beam.h"
 
 #include "../base/scene.h"

@@ -1,3 +1,4 @@
+/* Pictures of points, lines and fields as VTK files (XML, base64). */
 #include "vtk.h"
 
 #include "../base/file.h"

@@ -1,3 +1,5 @@
+/* Acceleration of the coupling's iteration: relaxation, Aitken's, and quasi-Newton from columns of earlier
+   iterations. */
 #include "accelerate.h"
 
 #include "../base/status.h"

@@ -1,3 +1,4 @@
+/* The iteration of a step with the fluid: which loads come next, and whether it has ended. */
 #include "coupling.h"
 #include "../base/quiet.h"
 

@@ -614,6 +614,27 @@ SPARI_INLINE void NAME(add_audit)(const L *add, const L *top, double *sums, doub
     }
 }
 
+/* What a tile gives a point or rigid body: the sum of its forces and of its moments, and the moment of R Z. */
+SPARI_INLINE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, const L *total, double *modal) {
+    double z[9], load[6];
+    SPARI_UNROLL
+    for (int i = 0; i < 9; i++) {
+        z[i] = NAME(total)(Z[i]);
+    }
+    SPARI_UNROLL
+    for (int i = 0; i < 3; i++) {
+        const double *a = m->turn + 3 * ((i + 1) % 3), *b = m->turn + 3 * ((i + 2) % 3);
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        load[i] = NAME(total)(total[i]);
+        load[3 + i] = a[0] * z[k] + a[1] * z[3 + k] + a[2] * z[6 + k] - b[0] * z[j] - b[1] * z[3 + j] - b[2] * z[6 + j];
+        load[3 + i] += has_moment ? NAME(total)(total[3 + i]) : 0;
+    }
+    SPARI_UNROLL
+    for (int i = 0; i < 6; i++) {
+        spari_add(modal + (ptrdiff_t)2 * i, load[i]);
+    }
+}
+
 /* The loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T, in which the rotation waits
    until the sum over the tile is done. */
 SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m,
@@ -624,7 +645,6 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
     const int rows = has_moment ? 6 : 3;
     const L none = SPLAT(&zero);
     L c[3][2], in[6][2], Z[9], total[6], add[9], top[3], turn[9], place[3], rate[3], w[3];
-    double z[9], load[6];
     SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
         Z[i] = add[i] = none;
@@ -660,22 +680,7 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
             }
         }
     }
-    SPARI_UNROLL
-    for (int i = 0; i < 9; i++) {
-        z[i] = NAME(total)(Z[i]);
-    }
-    SPARI_UNROLL
-    for (int i = 0; i < 3; i++) {
-        const double *a = m->turn + 3 * ((i + 1) % 3), *b = m->turn + 3 * ((i + 2) % 3);
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        load[i] = NAME(total)(total[i]);
-        load[3 + i] = a[0] * z[k] + a[1] * z[3 + k] + a[2] * z[6 + k] - b[0] * z[j] - b[1] * z[3 + j] - b[2] * z[6 + j];
-        load[3 + i] += has_moment ? NAME(total)(total[3 + i]) : 0;
-    }
-    SPARI_UNROLL
-    for (int i = 0; i < 6; i++) {
-        spari_add(modal + (ptrdiff_t)2 * i, load[i]);
-    }
+    NAME(add_carried)(m, has_moment, Z, total, modal);
     if (audited) {
         NAME(add_audit)(add, top, sums, tops);
     }

@@ -1,3 +1,4 @@
+/* The nearest point of a curved line, found for sure: balls around its pieces, then zeros of a polynomial. */
 #include "projection.h"
 
 #include "../base/status.h"

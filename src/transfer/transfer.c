@@ -1,3 +1,4 @@
+/* Between lines and nodes: which kernels this processor has, and what they are given. */
 #include "transfer.h"
 
 #include "../base/status.h"

@@ -1,3 +1,4 @@
+/* Settings that advice tries: how they are written down, run, measured and compared. */
 #include "plan.h"
 
 #include "../math/basis.h"

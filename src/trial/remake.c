@@ -1,3 +1,4 @@
+/* Members made anew in other elements or of another fidelity for a trial, and put back. */
 #include "remake.h"
 
 #include "../base/scene.h"

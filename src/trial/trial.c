@@ -1,3 +1,4 @@
+/* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
 #include "trial.h"
 
 #include "../base/quiet.h"
