@@ -1,5 +1,5 @@
 # The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count,
-# torture.
+# torture, house.
 find_package(PkgConfig QUIET)
 find_path(SPAR_CMOCKA_INCLUDE cmocka.h)
 find_library(SPAR_CMOCKA_LIBRARY cmocka)
@@ -122,3 +122,4 @@ include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/torture/torture.cmake")
+include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
