@@ -123,7 +123,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     }
     if (status != SPAR_OK) {
         aero_free(made);
-        return spari_named(session, "spar_aero_create", status);
+        return spari_named(session, __func__, status);
     }
     *aero = made;
     return SPAR_OK;
@@ -192,7 +192,7 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     }
     spari_section old = aero->section[i];
     aero->section[i] = (spari_section){chord, cos(twist), sin(twist), spari_polar_share(polar)};
-    int status = adopt(aero, implied_effects(aero), "spar_aero_set_section");
+    int status = adopt(aero, implied_effects(aero), __func__);
     if (status != SPAR_OK) {
         spari_table_release(aero->section[i].table);
         aero->section[i] = old;
@@ -228,7 +228,7 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
     aero->rotor.tip_radius = tip_radius;
     aero->first = was_given ? aero->first : aero->rotor;
     aero->rotor_given = 1;
-    int status = adopt(aero, implied_effects(aero), "spar_aero_set_rotor");
+    int status = adopt(aero, implied_effects(aero), __func__);
     if (status != SPAR_OK) {
         aero->rotor = old;
         aero->rotor_given = was_given;
@@ -257,7 +257,7 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
                   "spar_aero_set_effects: %d has bits that are no SPAR_AERO_ effect", effects);
-    SPARI_TRY(adopt(aero, effects, "spar_aero_set_effects"));
+    SPARI_TRY(adopt(aero, effects, __func__));
     aero->effects_given = 1;
     return SPAR_OK;
 }
@@ -377,7 +377,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
-    int status = spari_named(aero->session, "spar_aero_solve", solve_elements(aero, density, inflow, theta));
+    int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta));
     if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
         return spari_fluid_refuse_push(aero->fluid[0], status);
     }

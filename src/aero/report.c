@@ -112,15 +112,14 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
                              spar_fluid_solver solve, void *context,
                              double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]) {
     SPARI_QUIET;
-    const char *call = "spar_aero_report_effects";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", call);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
     spar_session *s = session;
     spari_run t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
-    SPARI_TRY(spari_trial_enter(s, call, &t, 0, 0, check_arguments(s, aero, &t, table, call)));
+    SPARI_TRY(spari_trial_enter(s, __func__, &t, 0, 0, check_arguments(s, aero, &t, table, __func__)));
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, call, try_all(s, aero, &t, made)));
+    SPARI_TRY(spari_named(s, __func__, try_all(s, aero, &t, made)));
     memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;

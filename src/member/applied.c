@@ -478,22 +478,21 @@ static void drop_empty(spar_member *m) {
 
 int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]) {
     SPARI_QUIET;
-    const char *call = "spar_member_add_follower";
-    SPARI_TRY(need_applied(member, call));
+    SPARI_TRY(need_applied(member, __func__));
     spar_session *s = member->session;
     spari_applied *a = member->applied;
     int status = SPAR_OK;
     int64_t bad = load ? spari_first_nonfinite(load, 6) : -1;
     if (node < 0 || node >= member->nodes) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s' has nodes 0 to %lld; there is no node %lld", call,
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__,
                             member->name, (long long)member->nodes - 1, (long long)node);
     } else if (!load) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", call, member->name);
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     } else if (bad >= 0) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': entry %lld of load is not a finite number", call,
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': entry %lld of load is not a finite number", __func__,
                             member->name, (long long)bad);
     } else if (!a->follower && !(a->follower = spari_zalloc(6 * member->nodes, sizeof *a->follower))) {
-        status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, member->name);
+        status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", __func__, member->name);
     } else {
         spari_rotate(member->qr + 4 * node, load, a->follower + 6 * node);
         spari_rotate(member->qr + 4 * node, load + 3, a->follower + 6 * node + 3);
@@ -602,7 +601,7 @@ static int check_line_load(const spar_member *m, int64_t n, const double *eta, c
 
 int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind) {
     SPARI_QUIET;
-    SPARI_TRY(need_applied(beam, "spar_beam_set_line_load"));
+    SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
     int status = check_line_load(beam, n, eta, load, kind);
     status = status == SPAR_OK && n > 0 ? line_build(beam, n, eta, load, kind, &line) : status;

@@ -71,9 +71,9 @@ int spar_point_create(spar_session *session, const char *name, const double x[3]
                       spar_member **member) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_point_create: the session is NULL; create it first");
-    SPARI_TRY(check_place(session, "spar_point_create", name ? name : "", x, q));
+    SPARI_TRY(check_place(session, __func__, name ? name : "", x, q));
     spar_member *m;
-    SPARI_TRY(member_create(session, "spar_point_create", name, SPARI_POINT, member ? &m : NULL));
+    SPARI_TRY(member_create(session, __func__, name, SPARI_POINT, member ? &m : NULL));
     set_place(m, x, q);
     *member = m;
     return SPAR_OK;
@@ -82,16 +82,16 @@ int spar_point_create(spar_session *session, const char *name, const double x[3]
 int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       const double mass[36], spar_member **member) {
     SPARI_QUIET;
-    const char *call = "spar_rigid_create", *label = name ? name : "";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    SPARI_TRY(check_place(session, call, label, x, q));
-    SPARI_TRY(spari_need_finite(session, call, label, "mass", 36, mass));
+    const char *label = name ? name : "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(check_place(session, __func__, label, x, q));
+    SPARI_TRY(spari_need_finite(session, __func__, label, "mass", 36, mass));
     double m0, c[3], J[6];
     const char *wrong = spari_mass_split(mass, &m0, c, J);
-    SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the mass matrix is not that of a rigid body: %s", call,
-                  label, wrong);
+    SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the mass matrix is not that of a rigid body: %s",
+                  __func__, label, wrong);
     spar_member *m;
-    SPARI_TRY(member_create(session, call, name, SPARI_RIGID, member ? &m : NULL));
+    SPARI_TRY(member_create(session, __func__, name, SPARI_RIGID, member ? &m : NULL));
     set_place(m, x, q);
     memcpy(m->mass, mass, sizeof m->mass);
     *member = m;
@@ -100,17 +100,17 @@ int spar_rigid_create(spar_session *session, const char *name, const double x[3]
 
 int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                      spar_member **member) {
-    const char *call = "spar_beam_create", *label = name ? name : "";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    const char *label = name ? name : "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, elements >= 1 && elements <= 1000000, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %d elements; give 1 to 1000000", call, label, elements);
+                  "%s: '%s': %d elements; give 1 to 1000000", __func__, label, elements);
     SPARI_REQUIRE(session, nodes_per_element >= 2 && nodes_per_element <= SPARI_MAX_NODES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %d nodes per element; give 2 to %d", call, label, nodes_per_element, SPARI_MAX_NODES);
+                  "%s: '%s': %d nodes per element; give 2 to %d", __func__, label, nodes_per_element, SPARI_MAX_NODES);
     spari_beam *beam = spari_zalloc(1, sizeof *beam);
-    SPARI_REQUIRE(session, beam, SPAR_ERR_MEMORY, "%s: '%s': no memory for the beam", call, label);
+    SPARI_REQUIRE(session, beam, SPAR_ERR_MEMORY, "%s: '%s': no memory for the beam", __func__, label);
     beam->rule = -1;
     spar_member *m;
-    int status = member_create(session, call, name, SPARI_BEAM, member ? &m : NULL);
+    int status = member_create(session, __func__, name, SPARI_BEAM, member ? &m : NULL);
     if (status != SPAR_OK) {
         spari_beam_free(beam);
         return status;
@@ -127,23 +127,22 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
 
 int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
     SPARI_QUIET;
-    const char *call = "spar_beam_set_axis";
-    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 2 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld axis points; give at least 2, at most 2^40", call, beam->name, (long long)n);
-    SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
+                  "%s: '%s': %lld axis points; give at least 2, at most 2^40", __func__, beam->name, (long long)n);
+    SPARI_TRY(spari_need_increasing(session, __func__, beam->name, n, eta));
     SPARI_REQUIRE(session, fabs(eta[0]) < 1e-9 && fabs(eta[n - 1] - 1) < 1e-9, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': eta runs from %g to %g; the first point is eta 0 and the last eta 1", call, beam->name,
+                  "%s: '%s': eta runs from %g to %g; the first point is eta 0 and the last eta 1", __func__, beam->name,
                   eta[0], eta[n - 1]);
-    SPARI_TRY(spari_need_finite(session, call, beam->name, "xyz", 3 * n, xyz));
+    SPARI_TRY(spari_need_finite(session, __func__, beam->name, "xyz", 3 * n, xyz));
     if (twist) {
-        SPARI_TRY(spari_need_finite(session, call, beam->name, "twist", n, twist));
+        SPARI_TRY(spari_need_finite(session, __func__, beam->name, "twist", n, twist));
     }
     double *copies[3] = {spari_copy(eta, n), spari_copy(xyz, 3 * n), twist ? spari_copy(twist, n) : NULL};
     if (!copies[0] || !copies[1] || (twist && !copies[2])) {
         free(copies[0]), free(copies[1]), free(copies[2]);
-        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the axis", call, beam->name);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the axis", __func__, beam->name);
     }
     spari_beam *b = beam->beam;
     free(b->eta), free(b->xyz), free(b->twist), free(b->node_x), free(b->node_q);
@@ -155,16 +154,15 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
 
 int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q) {
     SPARI_QUIET;
-    const char *call = "spar_beam_set_nodes";
-    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n == beam->nodes, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld nodes; it has %d elements of %d nodes, give %lld", call, beam->name, (long long)n,
+                  "%s: '%s': %lld nodes; it has %d elements of %d nodes, give %lld", __func__, beam->name, (long long)n,
                   beam->elements, beam->per_element, (long long)beam->nodes);
-    SPARI_TRY(spari_need_finite(session, call, beam->name, "x", 3 * n, x));
+    SPARI_TRY(spari_need_finite(session, __func__, beam->name, "x", 3 * n, x));
     if (q) {
-        SPARI_TRY(spari_need_finite(session, call, beam->name, "q", 4 * n, q));
-        SPARI_TRY(spari_need_unit(session, call, beam->name, "q", n, q, 4));
+        SPARI_TRY(spari_need_finite(session, __func__, beam->name, "q", 4 * n, q));
+        SPARI_TRY(spari_need_unit(session, __func__, beam->name, "q", n, q, 4));
     }
     double size = 0;
     for (int64_t i = 3; i < 3 * n; i++) {
@@ -174,14 +172,14 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
         for (int c = 0; c < 3; c++) {
             SPARI_REQUIRE(session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
                           "%s: '%s': the joint of elements %lld and %lld stands at two places (nodes %lld and %lld)",
-                          call, beam->name, (long long)(i / beam->per_element - 1), (long long)(i / beam->per_element),
-                          (long long)i - 1, (long long)i);
+                          __func__, beam->name, (long long)(i / beam->per_element - 1),
+                          (long long)(i / beam->per_element), (long long)i - 1, (long long)i);
         }
     }
     double *copies[2] = {spari_copy(x, 3 * n), q ? spari_copy(q, 4 * n) : NULL};
     if (!copies[0] || (q && !copies[1])) {
         free(copies[0]), free(copies[1]);
-        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the nodes", call, beam->name);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the nodes", __func__, beam->name);
     }
     for (int64_t i = 0; q && i < n; i++) {
         spari_quat_normalise(copies[1] + 4 * i);
@@ -221,30 +219,29 @@ const char *spari_stiffness_fault(const double C[36]) {
 int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
                            const double *mass) {
     SPARI_QUIET;
-    const char *call = "spar_beam_set_sections";
-    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 1 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld sections; give at least 1, at most 2^40", call, beam->name, (long long)n);
-    SPARI_TRY(spari_need_increasing(session, call, beam->name, n, eta));
-    SPARI_TRY(spari_need_finite(session, call, beam->name, "stiffness", 36 * n, stiffness));
+                  "%s: '%s': %lld sections; give at least 1, at most 2^40", __func__, beam->name, (long long)n);
+    SPARI_TRY(spari_need_increasing(session, __func__, beam->name, n, eta));
+    SPARI_TRY(spari_need_finite(session, __func__, beam->name, "stiffness", 36 * n, stiffness));
     if (mass) {
-        SPARI_TRY(spari_need_finite(session, call, beam->name, "mass", 36 * n, mass));
+        SPARI_TRY(spari_need_finite(session, __func__, beam->name, "mass", 36 * n, mass));
     }
     for (int64_t i = 0; i < n; i++) {
         const char *wrong = spari_stiffness_fault(stiffness + 36 * i);
-        SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the stiffness of section %lld is %s", call,
+        SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the stiffness of section %lld is %s", __func__,
                       beam->name, (long long)i, wrong);
         double m, c[3], J[6];
         wrong = mass ? spari_mass_split(mass + 36 * i, &m, c, J) : NULL;
         SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': the mass of section %lld is not that of a rigid section: %s", call, beam->name,
+                      "%s: '%s': the mass of section %lld is not that of a rigid section: %s", __func__, beam->name,
                       (long long)i, wrong);
     }
     double *copies[3] = {spari_copy(eta, n), spari_copy(stiffness, 36 * n), mass ? spari_copy(mass, 36 * n) : NULL};
     if (!copies[0] || !copies[1] || (mass && !copies[2])) {
         free(copies[0]), free(copies[1]), free(copies[2]);
-        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the sections", call, beam->name);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the sections", __func__, beam->name);
     }
     spari_beam *b = beam->beam;
     free(b->section_eta), free(b->stiffness), free(b->mass);
@@ -255,12 +252,11 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
 
 int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
     SPARI_QUIET;
-    const char *call = "spar_beam_set_quadrature";
-    SPARI_TRY(spari_need_beam(beam, call));
+    SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no quadrature rule %d; see SPAR_QUADRATURE_*", call, beam->name, rule);
+                  "%s: '%s': there is no quadrature rule %d; see SPAR_QUADRATURE_*", __func__, beam->name, rule);
     SPARI_REQUIRE(beam->session, points >= (rule == SPAR_QUADRATURE_LOBATTO ? 2 : 1) && points <= 512,
-                  SPAR_ERR_ARGUMENT, "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512", call, beam->name,
+                  SPAR_ERR_ARGUMENT, "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512", __func__, beam->name,
                   points);
     beam->beam->rule = rule;
     beam->beam->points = points;
@@ -269,13 +265,12 @@ int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
 
 int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
     SPARI_QUIET;
-    const char *call = "spar_beam_set_damping";
-    SPARI_TRY(spari_need_beam(beam, call));
-    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mu", 6, mu));
+    SPARI_TRY(spari_need_beam(beam, __func__));
+    SPARI_TRY(spari_need_finite(beam->session, __func__, beam->name, "mu", 6, mu));
     int any = 0;
     for (int i = 0; i < 6; i++) {
         SPARI_REQUIRE(beam->session, mu[i] >= 0, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': mu[%d] is negative; damping takes energy out", call, beam->name, i);
+                      "%s: '%s': mu[%d] is negative; damping takes energy out", __func__, beam->name, i);
         any |= mu[i] > 0;
     }
     memcpy(beam->beam->mu, mu, sizeof beam->beam->mu);
@@ -285,36 +280,33 @@ int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
 
 int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]) {
     SPARI_QUIET;
-    const char *call = "spar_member_set_placement";
-    SPARI_TRY(spari_need_open(member, call));
-    SPARI_TRY(check_place(member->session, call, member->name, x, q));
+    SPARI_TRY(spari_need_open(member, __func__));
+    SPARI_TRY(check_place(member->session, __func__, member->name, x, q));
     set_place(member, x, q);
     return SPAR_OK;
 }
 
 int spar_member_set_root(spar_member *member, int kind) {
-    const char *call = "spar_member_set_root";
-    SPARI_TRY(spari_need_open(member, call));
+    SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, kind >= SPAR_ROOT_FREE && kind <= SPAR_ROOT_DRIVEN, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no root condition %d; see SPAR_ROOT_*", call, member->name, kind);
+                  "%s: '%s': there is no root condition %d; see SPAR_ROOT_*", __func__, member->name, kind);
     member->root = kind;
     return SPAR_OK;
 }
 
 int spar_member_set_external(spar_member *member, int on) {
-    SPARI_TRY(spari_need_open(member, "spar_member_set_external"));
+    SPARI_TRY(spari_need_open(member, __func__));
     member->external = on != 0;
     return SPAR_OK;
 }
 
 int spar_member_set_effects(spar_member *member, int effects) {
     SPARI_QUIET;
-    const char *call = "spar_member_set_effects";
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                     SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY;
-    SPARI_TRY(spari_need_open(member, call));
+    SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", call, member->name,
+                  "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
                   (unsigned)(effects & ~all));
     member->effects = effects;
     member->effects_given = 1;
@@ -322,26 +314,24 @@ int spar_member_set_effects(spar_member *member, int effects) {
 }
 
 int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
-    const char *call = "spar_member_set_fidelity";
-    SPARI_TRY(spari_need_open(member, call));
+    SPARI_TRY(spari_need_open(member, __func__));
     spar_session *s = member->session;
     SPARI_REQUIRE(s, kind >= SPAR_FIDELITY_PRESCRIBED && kind <= SPAR_FIDELITY_EXACT, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", call, member->name, kind);
+                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", __func__, member->name, kind);
     SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
-                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", call, member->name);
+                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", __func__, member->name);
     SPARI_REQUIRE(s, kind != SPAR_FIDELITY_MODAL || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld modes; give at least 1", call, member->name, (long long)modes);
+                  "%s: '%s': %lld modes; give at least 1", __func__, member->name, (long long)modes);
     member->fidelity = kind;
     member->modes = kind == SPAR_FIDELITY_MODAL ? modes : 0;
     return SPAR_OK;
 }
 
 int spar_member_set_owner(spar_member *member, int rank) {
-    const char *call = "spar_member_set_owner";
-    SPARI_TRY(spari_need_open(member, call));
+    SPARI_TRY(spari_need_open(member, __func__));
     int size = spari_comm_size(member->session->comm);
     SPARI_REQUIRE(member->session, rank >= 0 && rank < size, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no rank %d; the session has %d", call, member->name, rank, size);
+                  "%s: '%s': there is no rank %d; the session has %d", __func__, member->name, rank, size);
     member->owner = rank;
     return SPAR_OK;
 }

@@ -26,7 +26,7 @@ int spari_member_is_solved(const spar_member *member) {
 }
 
 int spar_member_get_count(const spar_member *member, int64_t *nodes) {
-    SPARI_TRY(spari_need_member(member, "spar_member_get_count"));
+    SPARI_TRY(spari_need_member(member, __func__));
     SPARI_REQUIRE(member->session, nodes, SPAR_ERR_ARGUMENT, "spar_member_get_count: '%s': nodes is NULL",
                   member->name);
     *nodes = member->nodes;
@@ -42,7 +42,7 @@ static void give(double *to, const double *from, int64_t n) {
 
 int spar_member_get_reference(const spar_member *member, double *x, double *q) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_get_reference"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     give(x, member->xr, 3 * member->nodes);
     give(q, member->qr, 4 * member->nodes);
     return SPAR_OK;
@@ -50,7 +50,7 @@ int spar_member_get_reference(const spar_member *member, double *x, double *q) {
 
 int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_get_motion"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     give(q, member->after.q, 7 * member->nodes);
     give(v, member->after.v, 6 * member->nodes);
     give(a, member->after.a, 6 * member->nodes);
@@ -59,19 +59,18 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
 
 int spar_member_add_load(spar_member *member, int64_t node, const double load[6]) {
     SPARI_QUIET;
-    const char *call = "spar_member_add_load";
-    SPARI_TRY(spari_need_committed(member, call));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, node >= 0 && node < member->nodes, SPAR_ERR_ARGUMENT,
-                  "%s: '%s' has nodes 0 to %lld; there is no node %lld", call, member->name,
+                  "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__, member->name,
                   (long long)member->nodes - 1, (long long)node);
-    SPARI_TRY(spari_need_finite(member->session, call, member->name, "load", 6, load));
+    SPARI_TRY(spari_need_finite(member->session, __func__, member->name, "load", 6, load));
     memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
     return SPAR_OK;
 }
 
 int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_get_loads"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_loads: '%s': load is NULL", member->name);
     const spar_session *s = member->session;
     int used = s->phase == SPARI_BEGUN || s->phase == SPARI_SOLVED || (s->phase == SPARI_CHECKED && s->iterating);

@@ -162,24 +162,23 @@ static void section_output(const spar_member *m, const spari_station *s, double 
 int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                           double *x, double *q) {
     SPARI_QUIET;
-    const char *call = "spar_beam_get_section";
-    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = beam->session;
-    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,
+    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
                   beam->name);
     SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is not committed; call spar_member_commit first", call, beam->name);
+                  "%s: member '%s' is not committed; call spar_member_commit first", __func__, beam->name);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", call, beam->name, (long long)n,
+                  "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' has no sections, its forces are not known", call, beam->name);
+                  "%s: '%s' has no sections, its forces are not known", __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, beam->name, (long long)i, eta[i]);
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", __func__, beam->name, (long long)i, eta[i]);
     }
     spari_station *s = spari_zalloc(n, sizeof *s);
-    SPARI_REQUIRE(session, s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, beam->name);
+    SPARI_REQUIRE(session, s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
     int E = beam->elements;
     for (int64_t i = 0; i < n; i++) { /* a joint belongs to the element before it */
         int e = (int)ceil(eta[i] * E - 1e-9) - 1;

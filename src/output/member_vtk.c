@@ -154,7 +154,7 @@ static int write_member(const spar_member *m, const sampled *s, const char *path
 
 int spar_member_write_vtk(const spar_member *member, const char *path) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_write_vtk"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     int64_t n = member->nodes;
     sampled s = {.n = (int64_t)member->elements * ((member->per_element - 1) * SPARI_PIECES + 1)};
     double *work = spari_zalloc(33 * n, sizeof *work);

@@ -67,29 +67,30 @@ static int put_index(FILE *old, FILE *to, double time, int part, const char *fil
 
 int spar_vtk_series_add(const char *path, double time, int part, const char *file) {
     SPARI_QUIET;
-    const char *call = "spar_vtk_series_add";
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_file index;
     SPARI_REQUIRE(NULL, path && path[0] && file && file[0], SPAR_ERR_ARGUMENT,
-                  "%s: the path of the index or the name of the file is missing", call);
+                  "%s: the path of the index or the name of the file is missing", __func__);
     SPARI_REQUIRE(NULL, spari_first_nonfinite(&time, 1) < 0 && part >= 0, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': time %g, part %d; give a finite time and a part counted from 0", call, file, time, part);
+                  "%s: '%s': time %g, part %d; give a finite time and a part counted from 0", __func__, file, time,
+                  part);
     int status = spari_file_begin(&index, path, ".part", why, sizeof why);
-    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", call, why);
+    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", __func__, why);
     FILE *old = fopen(index.place, "rb"); /* a file, if it is there at all */
     if (!old && errno != ENOENT) {
         int reason = errno;
         spari_file_drop(&index);
-        return spari_fail(NULL, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: cannot read '%s': %s", call,
+        return spari_fail(NULL, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: cannot read '%s': %s", __func__,
                           path, reason == ENOMEM ? "no memory" : strerror(reason));
     }
     int ok = put_index(old, index.stream, time, part, file);
     (void)(old && fclose(old));
     if (!ok) {
         spari_file_drop(&index);
-        return spari_fail(NULL, SPAR_ERR_IO, "%s: '%s' is no index of a series; remove it or name another", call, path);
+        return spari_fail(NULL, SPAR_ERR_IO, "%s: '%s' is no index of a series; remove it or name another", __func__,
+                          path);
     }
     status = spari_file_end(&index, 0, why, sizeof why);
-    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", call, why);
+    SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", __func__, why);
     return SPAR_OK;
 }

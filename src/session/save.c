@@ -323,17 +323,16 @@ static int check_call(spar_session *s, const char *call, const char *path) {
 
 int spar_session_save(const spar_session *session, const char *path) {
     SPARI_QUIET;
-    const char *call = "spar_session_save";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
     spari_image own = {0};
     double *all = NULL;
     int64_t *first = NULL;
-    int status = check_call(s, call, path);
-    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
-    SPARI_TRY(spari_enter_alike(s, call, NULL, 0, status));
+    int status = check_call(s, __func__, path);
+    status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;
+    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
     status = put_own(&own, s);
-    status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s, call) : status);
+    status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s, __func__) : status);
     if (status == SPAR_OK) {
         status = gather_images(s, &own, &all, &first);
     }
@@ -696,15 +695,14 @@ static int fetch(spar_session *s, reading *l, const char *path) {
 
 int spar_session_load(spar_session *session, const char *path) {
     SPARI_QUIET;
-    const char *call = "spar_session_load";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     reading l = {0};
-    int status = check_call(s, call, path);
+    int status = check_call(s, __func__, path);
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", call);
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
-    SPARI_TRY(spari_enter_alike(s, call, NULL, 0, status));
+    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
     status = fetch(s, &l, path);
     if (status == SPAR_OK) {
         status = agree(s, check_image(s, &l));

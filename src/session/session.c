@@ -41,7 +41,6 @@ int spar_session_create(spar_session **session) {
 
 /* All ranks get a session or none: what can fail on one of them is agreed on over the communicator. */
 int spar_session_create_fcomm(int comm, spar_session **session) {
-    const char *call = "spar_session_create_fcomm";
     char why[SPARI_MESSAGE_SIZE / 2] = "no memory for the session";
     spari_comm *ranks = NULL;
     spar_session *s = session ? session_new() : NULL;
@@ -53,7 +52,7 @@ int spar_session_create_fcomm(int comm, spar_session **session) {
     status = spari_comm_create_fortran(comm, &ranks, status, why, sizeof why);
     if (status != SPAR_OK || !s) {
         free(s);
-        return spari_fail(NULL, status, "%s: %s", call, why);
+        return spari_fail(NULL, status, "%s: %s", __func__, why);
     }
     s->comm = ranks;
     *session = s;

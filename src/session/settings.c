@@ -84,10 +84,9 @@ static int settable(spar_session *session, const char *call) {
 
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_gravity";
-    SPARI_TRY(settable(session, call));
+    SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, g && spari_first_nonfinite(g, 3) < 0, SPAR_ERR_ARGUMENT,
-                  "%s: gravity must be three finite numbers", call);
+                  "%s: gravity must be three finite numbers", __func__);
     memcpy(session->gravity, g, sizeof session->gravity);
     for (spar_member *m = session->members; m; m = m->next) {
         if (m->committed) {
@@ -99,11 +98,10 @@ int spar_session_set_gravity(spar_session *session, const double g[3]) {
 
 int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_integrator";
-    SPARI_TRY(settable(session, call));
+    SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, rho_inf >= 0 && rho_inf <= 1, SPAR_ERR_ARGUMENT,
-                  "%s: rho_inf is %g; give 0 (most damping) to 1 (none)", call, rho_inf);
-    SPARI_REQUIRE(session, substeps >= 1, SPAR_ERR_ARGUMENT, "%s: %d substeps; give at least 1", call, substeps);
+                  "%s: rho_inf is %g; give 0 (most damping) to 1 (none)", __func__, rho_inf);
+    SPARI_REQUIRE(session, substeps >= 1, SPAR_ERR_ARGUMENT, "%s: %d substeps; give at least 1", __func__, substeps);
     session->rho_inf = rho_inf;
     session->substeps = substeps;
     return SPAR_OK;
@@ -120,9 +118,8 @@ static int check_limits(spar_session *session, const char *call, double atol, do
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_newton";
-    SPARI_TRY(settable(session, call));
-    SPARI_TRY(check_limits(session, call, atol, rtol, max_iterations));
+    SPARI_TRY(settable(session, __func__));
+    SPARI_TRY(check_limits(session, __func__, atol, rtol, max_iterations));
     session->newton_atol = atol;
     session->newton_rtol = rtol;
     session->newton_max = max_iterations;
@@ -131,9 +128,9 @@ int spar_session_set_newton(spar_session *session, double atol, double rtol, int
 
 int spar_session_set_predictor(spar_session *session, int order) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_predictor";
-    SPARI_TRY(settable(session, call));
-    SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", call, order);
+    SPARI_TRY(settable(session, __func__));
+    SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", __func__,
+                  order);
     int status = SPAR_OK;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
         status = m->committed ? spari_history_keep(m->load_history, 6 * m->nodes, order) : SPAR_OK;
@@ -141,7 +138,7 @@ int spar_session_set_predictor(spar_session *session, int order) {
     for (spar_fluid *f = session->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = spari_fluid_keep(f, order);
     }
-    SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", call, order);
+    SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", __func__, order);
     session->predictor = order;
     session->past = session->past < order ? session->past : order;
     return SPAR_OK;
@@ -149,11 +146,10 @@ int spar_session_set_predictor(spar_session *session, int order) {
 
 int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_coupling";
-    SPARI_TRY(settable(session, call));
+    SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, scheme >= SPAR_COUPLING_EXPLICIT && scheme <= SPAR_COUPLING_IQN_ILS, SPAR_ERR_ARGUMENT,
-                  "%s: there is no scheme %d; see SPAR_COUPLING_*", call, scheme);
-    SPARI_TRY(check_limits(session, call, atol, rtol, max_iterations));
+                  "%s: there is no scheme %d; see SPAR_COUPLING_*", __func__, scheme);
+    SPARI_TRY(check_limits(session, __func__, atol, rtol, max_iterations));
     session->scheme = scheme;
     session->coupling_atol = atol;
     session->coupling_rtol = rtol;
@@ -165,20 +161,18 @@ int spar_session_set_coupling(spar_session *session, int scheme, double atol, do
 
 int spar_session_set_relaxation(spar_session *session, double omega) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_relaxation";
-    SPARI_TRY(settable(session, call));
-    SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]", call,
-                  omega);
+    SPARI_TRY(settable(session, __func__));
+    SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]",
+                  __func__, omega);
     session->relaxation = omega;
     session->coupling_stale = 1;
     return SPAR_OK;
 }
 
 int spar_session_set_reproducible(spar_session *session, int on) {
-    const char *call = "spar_session_set_reproducible";
-    SPARI_TRY(settable(session, call));
+    SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, !on || spari_comm_size(session->comm) == 1, SPAR_ERR_UNSUPPORTED,
-                  "%s: sums over several ranks are not yet independent of how nodes are spread over them", call);
+                  "%s: sums over several ranks are not yet independent of how nodes are spread over them", __func__);
     return SPAR_OK;
 }
 
@@ -244,9 +238,8 @@ static int set_number(spar_session *session, const number_option *o, const char 
 
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     SPARI_QUIET;
-    const char *call = "spar_session_set_option";
-    SPARI_TRY(settable(session, call));
-    SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", call);
+    SPARI_TRY(settable(session, __func__));
+    SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
     int known = 0;
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         if (strcmp(options[i].key, key) == 0) {
@@ -264,7 +257,7 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
             return SPAR_OK;
         }
     }
-    SPARI_REQUIRE(session, known, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", call, key);
-    return spari_fail(session, SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; spar.h lists its values", call, key,
-                      value);
+    SPARI_REQUIRE(session, known, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    return spari_fail(session, SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; spar.h lists its values", __func__,
+                      key, value);
 }

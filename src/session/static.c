@@ -11,32 +11,31 @@
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
     SPARI_QUIET;
-    const char *call = "spar_member_solve_static";
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = member->session;
     int status = SPAR_OK;
     if (!member->committed) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first", call,
-                            member->name);
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
+                            __func__, member->name);
     } else if (s->phase != SPARI_IDLE) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first", call,
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first", __func__,
                             member->name);
     } else if (load_steps < 1) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, member->name,
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", __func__, member->name,
                             load_steps);
     } else if (!member->body && !member->rung) {
-        status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)", call,
-                            member->name);
+        status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
+                            __func__, member->name);
     } else if (member->root == SPAR_ROOT_FREE ||
                (member->root == SPAR_ROOT_PINNED && member->body && !member->body->C)) {
         status =
-            spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", call, member->name);
+            spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", __func__, member->name);
     }
     if (status == SPAR_OK && !s->started) {
-        status = spari_session_pushes(s, call);
+        status = spari_session_pushes(s, __func__);
     }
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
-    SPARI_TRY(spari_member_enter(member, call, alike, 1, status));
+    SPARI_TRY(spari_member_enter(member, __func__, alike, 1, status));
     SPARI_TRY(spari_session_seal(s, SPAR_OK));
     memcpy(member->load_before, member->load_pushed, (size_t)(6 * member->nodes) * sizeof(double));
     if (!s->started) {

@@ -68,7 +68,7 @@ int spar_step_begin(spar_session *session, double dt) {
     spar_session *s = session;
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
-    SPARI_TRY(spari_enter_alike(s, "spar_step_begin", alike, 2, check_begin(s, dt)));
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, dt)));
     if (anew) {
         SPARI_TRY(spari_enter(s, "coupling", spari_coupling_prepare(s)));
         s->coupling_stale = 0;
@@ -143,8 +143,8 @@ int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
-    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_solve", "call spar_step_begin first") : SPAR_OK;
-    SPARI_TRY(spari_enter(s, "spar_step_solve", status));
+    int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
+    SPARI_TRY(spari_enter(s, __func__, status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
         status = status == SPAR_OK && is_moved(m) ? check_finite(m) : status;
@@ -157,7 +157,7 @@ int spar_step_solve(spar_session *session) {
             }
         }
         s->phase = SPARI_BEGUN;
-        return spari_named(s, "spar_step_solve", status);
+        return spari_named(s, __func__, status);
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
@@ -217,21 +217,20 @@ static void shift_history(spar_session *s, spar_member *m) {
 int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
-    const char *call = "spar_step_accept";
     spar_session *s = session;
     int status = SPAR_OK;
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
-        status = wrong_phase(s, call, "begin and solve a step first");
+        status = wrong_phase(s, __func__, "begin and solve a step first");
     } else if (s->failed) {
         status =
             spari_fail(s, SPAR_ERR_STATE,
                        "%s: the last spar_step_check failed, its loads and motion do not belong together; push and "
                        "check again where a push was refused, else solve again or reject the step",
-                       call);
+                       __func__);
     } else if (s->phase == SPARI_SOLVED) {
-        status = spari_session_pushes(s, call);
+        status = spari_session_pushes(s, __func__);
     }
-    SPARI_TRY(spari_enter(s, call, status));
+    SPARI_TRY(spari_enter(s, __func__, status));
     spari_coupling_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
@@ -268,8 +267,8 @@ int spar_step_reject(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
-    int status = s->phase == SPARI_IDLE ? wrong_phase(s, "spar_step_reject", "there is nothing to reject") : SPAR_OK;
-    SPARI_TRY(spari_enter(s, "spar_step_reject", status));
+    int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
+    SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
     return SPAR_OK;
 }

@@ -115,15 +115,15 @@ void spari_member_reject(spar_member *m) {
 
 int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]) {
     SPARI_QUIET;
-    const char *call = "spar_member_set_velocity";
     static const double zero[3] = {0, 0, 0};
-    SPARI_TRY(spari_need_member(member, call));
+    SPARI_TRY(spari_need_member(member, __func__));
     SPARI_REQUIRE(member->session, !member->session->started, SPAR_ERR_STATE,
-                  "%s: '%s': the clock has started; give initial velocities before the first step", call, member->name);
+                  "%s: '%s': the clock has started; give initial velocities before the first step", __func__,
+                  member->name);
     const double *in[3] = {x0 ? x0 : zero, v0 ? v0 : zero, omega ? omega : zero};
     const char *what[3] = {"x0", "v0", "omega"};
     for (int k = 0; k < 3; k++) {
-        SPARI_TRY(spari_need_finite(member->session, call, member->name, what[k], 3, in[k]));
+        SPARI_TRY(spari_need_finite(member->session, __func__, member->name, what[k], 3, in[k]));
     }
     double old[3][3];
     memcpy(old, member->velocity, sizeof old);
@@ -297,7 +297,7 @@ static int place_of(const spar_member *member) {
 
 int spar_member_commit(spar_member *member) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_member(member, "spar_member_commit"));
+    SPARI_TRY(spari_need_member(member, __func__));
     spar_session *s = member->session;
     int asked = member->effects, status;
     if (member->committed) {
@@ -315,7 +315,7 @@ int spar_member_commit(spar_member *member) {
     const spari_alike alike[] = {spari_whole("places of it in the order of creation", place_of(member)),
                                  spari_whole("owners of it", member->owner),
                                  spari_hash("descriptions of it", spari_member_hash(member))};
-    int agreed = spari_member_enter(member, "spar_member_commit", alike, 3, status);
+    int agreed = spari_member_enter(member, __func__, alike, 3, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
             spari_member_release(member);
@@ -323,7 +323,7 @@ int spar_member_commit(spar_member *member) {
         if (!member->committed) {
             member->effects = asked;
         }
-        return spari_named(s, "spar_member_commit", agreed);
+        return spari_named(s, __func__, agreed);
     }
     member->committed = 1;
     return SPAR_OK;
@@ -342,26 +342,25 @@ void spari_member_free(spar_member *member) {
 
 int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {
     SPARI_QUIET;
-    const char *call = "spar_member_set_motion";
-    SPARI_TRY(spari_need_committed(member, call));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     int64_t n = member->nodes;
     SPARI_REQUIRE(
         s, member->external || member->kind == SPARI_POINT, SPAR_ERR_STATE,
         "%s: spar solves for '%s' itself; set_motion is for points and external members (spar_member_set_external)",
-        call, member->name);
+        __func__, member->name);
     SPARI_REQUIRE(s, s->phase != SPARI_IDLE || !s->started, SPAR_ERR_STATE,
-                  "%s: '%s': no step is under way; give the motion at t^{n+1} after spar_step_begin", call,
+                  "%s: '%s': no step is under way; give the motion at t^{n+1} after spar_step_begin", __func__,
                   member->name);
     if (q) {
-        SPARI_TRY(spari_need_finite(s, call, member->name, "q", 7 * n, q));
-        SPARI_TRY(spari_need_unit(s, call, member->name, "q", n, q + 3, 7));
+        SPARI_TRY(spari_need_finite(s, __func__, member->name, "q", 7 * n, q));
+        SPARI_TRY(spari_need_unit(s, __func__, member->name, "q", n, q + 3, 7));
     }
     if (v) {
-        SPARI_TRY(spari_need_finite(s, call, member->name, "v", 6 * n, v));
+        SPARI_TRY(spari_need_finite(s, __func__, member->name, "v", 6 * n, v));
     }
     if (a) {
-        SPARI_TRY(spari_need_finite(s, call, member->name, "a", 6 * n, a));
+        SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6 * n, a));
     }
     spari_motion *to = s->phase == SPARI_IDLE ? &member->now : &member->after;
     for (int64_t i = 0; q && i < n; i++) {
@@ -385,21 +384,20 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
 int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]) {
     SPARI_QUIET;
     static const double rest[6] = {0};
-    const char *call = "spar_member_drive_root";
-    SPARI_TRY(spari_need_committed(member, call));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     SPARI_REQUIRE(s, member->kind == SPARI_POINT || (member->root == SPAR_ROOT_DRIVEN && !member->external),
                   SPAR_ERR_STATE,
                   "%s: the root of '%s' is not driven; call spar_member_set_root with SPAR_ROOT_DRIVEN before commit",
-                  call, member->name);
+                  __func__, member->name);
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: '%s': a step is under way; the root's motion at its end is given before spar_step_begin", call,
-                  member->name);
-    SPARI_TRY(spari_need_finite(s, call, member->name, "q", 7, q));
-    SPARI_TRY(spari_need_unit(s, call, member->name, "q", 1, q + 3, 7));
+                  "%s: '%s': a step is under way; the root's motion at its end is given before spar_step_begin",
+                  __func__, member->name);
+    SPARI_TRY(spari_need_finite(s, __func__, member->name, "q", 7, q));
+    SPARI_TRY(spari_need_unit(s, __func__, member->name, "q", 1, q + 3, 7));
     const double *in[2] = {v ? v : rest, a ? a : rest};
-    SPARI_TRY(spari_need_finite(s, call, member->name, "v", 6, in[0]));
-    SPARI_TRY(spari_need_finite(s, call, member->name, "a", 6, in[1]));
+    SPARI_TRY(spari_need_finite(s, __func__, member->name, "v", 6, in[0]));
+    SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6, in[1]));
     double *to = member->drive[1];
     memcpy(to, q, 7 * sizeof *q);
     memcpy(to + 7, in[0], 6 * sizeof *to);

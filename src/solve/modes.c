@@ -207,16 +207,16 @@ static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequen
 
 int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
     SPARI_QUIET;
-    const char *call = "spar_member_get_modes";
-    SPARI_TRY(spari_need_committed(member, call));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
-                  SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", call, member->name);
+                  SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", __func__, member->name);
     int end;
     int64_t free_unknowns = unknowns(member, &end);
-    SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", call,
+    SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", __func__,
                   member->name, (long long)n, (long long)free_unknowns);
-    SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", call, member->name);
+    SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
+                  member->name);
     if (n == 0) {
         return SPAR_OK;
     }

@@ -12,7 +12,7 @@
 
 int spar_member_get_reaction(const spar_member *member, double load[6]) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_get_reaction"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_reaction: '%s': load is NULL",
                   member->name);
     return spari_member_reaction(member, load);
@@ -58,7 +58,7 @@ int spari_member_reaction(const spar_member *m, double load[6]) {
 
 int spar_member_get_energy(const spar_member *member, double energy[4]) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, "spar_member_get_energy"));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, energy, SPAR_ERR_ARGUMENT, "spar_member_get_energy: '%s': energy is NULL",
                   member->name);
     memset(energy, 0, 4 * sizeof *energy);

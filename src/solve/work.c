@@ -96,20 +96,20 @@ void spari_work_restart(spar_member *m) {
 
 int spar_member_get_work(spar_member *member, double work[3]) {
     SPARI_QUIET;
-    const char *call = "spar_member_get_work";
-    SPARI_TRY(spari_need_committed(member, call));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
-    SPARI_REQUIRE(s, work, SPAR_ERR_ARGUMENT, "%s: '%s': work is NULL", call, member->name);
+    SPARI_REQUIRE(s, work, SPAR_ERR_ARGUMENT, "%s: '%s': work is NULL", __func__, member->name);
     if (!member->work) {
         SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
-                      "%s: '%s': the account begins with the first call; make it between steps", call, member->name);
+                      "%s: '%s': the account begins with the first call; make it between steps", __func__,
+                      member->name);
         spari_work *w = spari_zalloc(1, sizeof *w); /* loads along the line may come later: room for them too */
         int ok = w && (w->fluid = spari_zalloc(6 * member->nodes, sizeof *w->fluid)) &&
                  (w->load = spari_zalloc(6 * member->nodes, sizeof *w->load)) &&
                  (w->room = spari_zalloc(spari_member_reaction_room(member) + 6 * member->nodes, sizeof *w->room));
         if (!ok) {
             spari_work_free(w);
-            return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, member->name);
+            return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, member->name);
         }
         member->work = w;
         spari_work_restart(member);

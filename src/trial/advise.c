@@ -452,10 +452,9 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
 
 int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,
                            int *points) {
-    const char *call = "spar_member_get_advice";
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     SPARI_REQUIRE(member->session, member->advice, SPAR_ERR_STATE,
-                  "%s: '%s' has no advice yet; call spar_session_advise first", call, member->name);
+                  "%s: '%s' has no advice yet; call spar_session_advise first", __func__, member->name);
     const spari_remake *a = member->advice;
     if (fidelity) {
         *fidelity = a->fidelity;

@@ -16,20 +16,20 @@
 int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
                      void *context, int compare, double report[SPAR_TRY_COUNT]) {
     SPARI_QUIET;
-    const char *call = "spar_session_try";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_run run = {dt, steps, before, solve, context};
     spari_record record = {0};
     spari_wish wish = {0};
-    int status = spari_trial_check(s, call, &run);
+    int status = spari_trial_check(s, __func__, &run);
     if (status == SPAR_OK && !report) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", call);
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", __func__);
     } else if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
-        status = spari_fail(s, SPAR_ERR_STATE,
-                            "%s: there is no run of these members to compare with; try with compare = 0 first", call);
+        status =
+            spari_fail(s, SPAR_ERR_STATE,
+                       "%s: there is no run of these members to compare with; try with compare = 0 first", __func__);
     }
-    status = spari_trial_enter(s, call, &run, 0, compare, status);
+    status = spari_trial_enter(s, __func__, &run, 0, compare, status);
     status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
     if (status == SPAR_OK) {
         (void)spari_trial_run(s, &run, &wish, &record);
@@ -47,7 +47,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
         }
     }
     spari_record_free(&record);
-    return spari_named(s, call, status);
+    return spari_named(s, __func__, status);
 }
 
 /* ---- sizes ---- */
@@ -326,19 +326,18 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
                                 spar_fluid_solver solve, void *context,
                                 double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]) {
     SPARI_QUIET;
-    const char *call = "spar_session_report_effects";
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_run run = {dt, steps, before, solve, context};
     double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
-    int status = spari_trial_check(s, call, &run);
+    int status = spari_trial_check(s, __func__, &run);
     if (status == SPAR_OK && !table) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: table is NULL", call);
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: table is NULL", __func__);
     }
-    SPARI_TRY(spari_trial_enter(s, call, &run, 0, 0, status));
+    SPARI_TRY(spari_trial_enter(s, __func__, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, call, fill_rows(s, &run, made)));
+    SPARI_TRY(spari_named(s, __func__, fill_rows(s, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
     memcpy(table, made, sizeof made);
     return SPAR_OK;
