@@ -1,0 +1,221 @@
+/* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
+#include "frame_parts.h"
+
+#include "../base/blas.h"
+#include "../base/status.h"
+#include "../math/rotation.h"
+#include "../member/pose.h"
+#include "eigen.h"
+
+#include <float.h>
+#include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
+static void assemble_dense(const spari_frame *f, const double *X, double scale, int from, double *A) {
+    int m = f->block, step = f->block - f->overlap;
+    int64_t n = f->n - from;
+    for (int e = 0; e < f->elements; e++) {
+        const double *x = X + (int64_t)m * m * e;
+        for (int i = 0; i < m; i++) {
+            for (int j = 0; j < m; j++) {
+                int row = e * step + i - from, col = e * step + j - from;
+                if (row >= 0 && col >= 0) {
+                    A[n * row + col] += 0.5 * scale * (x[(int64_t)m * i + j] + x[(int64_t)m * j + i]);
+                }
+            }
+        }
+    }
+}
+
+/* The six rigid motions about the root, as columns of the basis. */
+static void rigid_columns(spari_frame *f, const double *arm, int cols) {
+    for (int i = 0; i < f->nodes; i++) {
+        double W[9], *at = f->basis + (int64_t)6 * i * cols;
+        spari_skew(arm + 3 * i, W);
+        for (int r = 0; r < 3; r++) {
+            at[r * cols + r] = at[(3 + r) * cols + 3 + r] = 1;
+            for (int c = 0; c < 3; c++) {
+                at[r * cols + 3 + c] = -W[3 * r + c];
+            }
+        }
+    }
+}
+
+/* image := M times column k of the basis, which goes into x */
+static void image_of(const spari_frame *f, int cols, int k, double *x, double *image) {
+    cblas_dcopy(6 * f->nodes, f->basis + k, cols, x, 1);
+    memset(image, 0, (size_t)(6 * f->nodes) * sizeof *image);
+    spari_frame_add_times(f, f->M, x, 1, image);
+}
+
+/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `held` on before them; a
+   second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
+static int orthonormalise(spari_frame *f, int cols, int from, int end, double *work) {
+    int n = 6 * f->nodes;
+    double *x = work, *image = work + n;
+    for (int k = from; k < end; k++) {
+        for (int pass = 0; pass < 2; pass++) {
+            image_of(f, cols, k, x, image);
+            for (int j = f->held; j < k; j++) {
+                cblas_daxpy(n, -cblas_ddot(n, f->basis + j, cols, image, 1), f->basis + j, cols, f->basis + k, cols);
+            }
+        }
+        image_of(f, cols, k, x, image);
+        double square = cblas_ddot(n, x, 1, image, 1);
+        if (!(square > 0)) {
+            return 1;
+        }
+        cblas_dscal(n, 1 / sqrt(square), f->basis + k, cols);
+    }
+    return 0;
+}
+
+/* The lowest modes seen from the root, as columns from 6 on: K z = lambda (M - M R R^T M) z over the nodes beside it,
+   where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
+   deformation. Beams that nothing holds have a singular K, but not here: rigid motions are columns of their own.
+   Solved for 1 / lambda, in which the low modes keep their digits. */
+static int elastic_columns(spari_frame *f, int cols, double *work) {
+    size_t n = (size_t)(6 * f->nodes - 6);
+    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = gsl_matrix_alloc(n, n);
+    gsl_vector *mu = gsl_vector_alloc(n);
+    int status = K && M && z && mu ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        double *x = work, *image = work + 6 * f->nodes;
+        assemble_dense(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
+        assemble_dense(f, f->M, 1, 6, M->data);
+        for (int k = f->held; k < 6; k++) {
+            image_of(f, cols, k, x, image);
+            gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
+            gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
+        }
+        status = spari_eigen(M, K, mu, z);
+    }
+    if (status == SPAR_OK) {
+        for (int k = 6; k < cols; k++) {
+            int massive = gsl_vector_get(mu, (size_t)(k - 6)) > DBL_EPSILON * gsl_vector_get(mu, 0);
+            status = massive ? status : SPAR_ERR_NUMERIC;
+            for (size_t i = 0; i < n; i++) {
+                f->basis[(6 + i) * (size_t)cols + (size_t)k] = gsl_matrix_get(z, i, (size_t)(k - 6));
+            }
+        }
+    }
+    gsl_matrix_free(K);
+    gsl_matrix_free(M);
+    gsl_matrix_free(z);
+    gsl_vector_free(mu);
+    return status;
+}
+
+int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
+    double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
+    f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
+    int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        rigid_columns(f, arm, cols);
+        status = orthonormalise(f, cols, f->held, 6, work) ? SPAR_ERR_NUMERIC : elastic_columns(f, cols, work);
+    }
+    if (status == SPAR_OK && orthonormalise(f, cols, 6, cols, work)) {
+        status = SPAR_ERR_NUMERIC;
+    }
+    free(work);
+    return status;
+}
+
+/* *X := basis^T X basis */
+static int project_matrix(const spari_frame *f, int cols, double **X) {
+    int m = f->block, step = f->block - f->overlap;
+    double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
+    if (!to || !half) {
+        free(to);
+        free(half);
+        return 1;
+    }
+    for (int e = 0; e < f->elements; e++) {
+        const double *b = f->basis + (int64_t)e * step * cols;
+        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b,
+                               cols, 0, half, cols));
+        SPARI_BLAS(
+            cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols));
+    }
+    free(half);
+    free(*X);
+    *X = to;
+    return 0;
+}
+
+/* Rigid motions strain nothing: not by rounding either. */
+static void no_strain(const spari_frame *f, double *X) {
+    for (int i = 0; i < f->n && X; i++) {
+        for (int j = 0; j < f->n; j++) {
+            X[(int64_t)f->n * i + j] = i < 6 || j < 6 ? 0 : X[(int64_t)f->n * i + j];
+        }
+    }
+}
+
+int spari_frame_project(spari_frame *f, int cols) {
+    int bad = 0;
+    double **all[3 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D};
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        all[3 + k] = &f->N[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        all[3 + SPARI_TURNS + k] = &f->G[k];
+    }
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
+    }
+    double *part = spari_zalloc(cols, sizeof *part);
+    double *const *const vectors[] = {f->f, f->rigid, f->twice};
+    const int counts[] = {SPARI_TURNS, 6, SPARI_TURN_PAIRS};
+    for (int v = 0; v < 3 && part; v++) {
+        for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
+            double *x = vectors[v][k];
+            SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1));
+            memcpy(x, part, (size_t)cols * sizeof *part);
+        }
+    }
+    bad = bad || !part;
+    free(part);
+    f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
+    f->size = (int64_t)cols * cols;
+    no_strain(f, f->K);
+    no_strain(f, f->D);
+    spari_linear_free(f->linear);
+    f->linear = spari_linear_create(1, cols, 6);
+    return bad || !f->linear;
+}
+
+/* ---- about a state ---- */
+
+int64_t spari_frame_unknowns(const spari_frame *f) {
+    return f->n - f->held;
+}
+
+void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
+    double pose[13], omega[3];
+    spari_member_pose(m, &m->after, pose);
+    spari_rotate_back(pose + 3, pose + 10, omega);
+    assemble_dense(f, f->K, 1, f->held, K);
+    assemble_dense(f, f->M, 1, f->held, M);
+    for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
+        assemble_dense(f, f->N[k], omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]], f->held, K);
+    }
+}
+
+void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
+    double pose[13];
+    spari_member_pose(m, &m->after, pose);
+    memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
+    if (f->basis) {
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n,
+                               x, 1, 0, nodes, 1));
+    } else {
+        memcpy(nodes + f->held, x, (size_t)(f->n - f->held) * sizeof *nodes);
+    }
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate(pose + 3, nodes + i, nodes + i);
+    }
+}

@@ -1,0 +1,573 @@
+/* How a frame moves: between the nodes' motion and its own, in time, at rest; saved, and its energy. */
+#include "frame_parts.h"
+
+#include "../base/blas.h"
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "../member/body.h"
+#include "../member/pose.h"
+#include "leap.h"
+#include "scheme.h"
+#include "solver.h"
+#include "turn.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- between the nodes' motion and the frame ---- */
+
+static void matvec3(const double T[9], const double x[3], double y[3]) {
+    for (int k = 0; k < 3; k++) {
+        y[k] = T[3 * k] * x[0] + T[3 * k + 1] * x[1] + T[3 * k + 2] * x[2];
+    }
+}
+
+/* Deformation and rates of the nodes' motion, seen from the frame, as unknowns. */
+static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion *nodes, double *y, double *rate) {
+    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, pose[13];
+    spari_member_pose(m, nodes, pose);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / m->per_element;
+        spari_member_deformation(m, pose, nodes, i, x + 6 * u, xd + 6 * u);
+    }
+    if (!f->basis) {
+        memcpy(y, x, (size_t)f->n * sizeof *y);
+        memcpy(rate, xd, (size_t)f->n * sizeof *y);
+        return;
+    }
+    /* modal: the nearest in the norm of the mass, Phi^T M x; M of the nodes is gone, but the body has it as forces of
+     * accelerations at the reference */
+    const double *in[2] = {x, xd};
+    double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
+           *force = zero + 6 * (int64_t)f->nodes;
+    memset(still, 0, (size_t)(13 * f->nodes) * sizeof *still);
+    for (int i = 0; i < f->nodes; i++) {
+        still[7 * i + 3] = 1;
+    }
+    for (int k = 0; k < 2; k++) {
+        spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
+        SPARI_BLAS(
+            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1));
+        memset(out[k], 0, (size_t)f->held * sizeof *y);
+    }
+}
+
+/* The nodes' motion q, v, a [unique] of a state; rotations of the nodes follow their rotation vectors exactly, second
+ * derivatives to first order. */
+static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
+                     double *a) {
+    int64_t n6 = 6 * (int64_t)f->nodes;
+    const double *x[3] = {s->y, s->v, s->a};
+    for (int k = 0; k < 3 && f->basis; k++) {
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x[k], 1, 0,
+                               f->nodal + k * n6, 1));
+        x[k] = f->nodal + k * n6;
+    }
+    const double *root = s->root;
+    double omega[3], alpha[3];
+    spari_rotate_back(root + 3, root + 10, omega);
+    spari_rotate_back(root + 3, root + 16, alpha);
+    for (int i = 0; i < f->nodes; i++) {
+        const double *w = x[0] + 6 * i, *wd = x[1] + 6 * i, *wdd = x[2] + 6 * i;
+        double arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
+        double *qn = q + 7 * i, *vn = v + 6 * i, *an = a + 6 * i;
+        spari_member_arm(m, i, arm);
+        for (int k = 0; k < 3; k++) {
+            d[k] = arm[k] + w[k];
+        }
+        spari_quat_exp(w + 3, p);
+        spari_quat_mul(root + 3, p, qn + 3);
+        spari_quat_normalise(qn + 3);
+        spari_tangent(w + 3, T);
+        matvec3(T, wd + 3, spin);
+        matvec3(T, wdd + 3, twice);
+        spari_cross(omega, d, c1);
+        for (int k = 0; k < 3; k++) {
+            vn[k] = c1[k] + wd[k];
+            vn[3 + k] = omega[k] + spin[k];
+            c1[k] += 2 * wd[k]; /* omega x (omega x d + 2 w') */
+        }
+        spari_cross(omega, c1, c2);
+        spari_cross(alpha, d, c3);
+        for (int k = 0; k < 3; k++) {
+            an[k] = c2[k] + c3[k] + wdd[k];
+        }
+        spari_cross(omega, spin, c1);
+        for (int k = 0; k < 3; k++) {
+            an[3 + k] = alpha[k] + twice[k] + c1[k];
+        }
+        spari_rotate(root + 3, d, d);
+        for (int k = 0; k < 6; k += 3) {
+            spari_rotate(root + 3, vn + k, vn + k);
+            spari_rotate(root + 3, an + k, an + k);
+        }
+        for (int k = 0; k < 3; k++) {
+            qn[k] = d[k] - arm[k] + root[k];
+            vn[k] += root[7 + k];
+            an[k] += root[13 + k];
+        }
+    }
+}
+
+static void publish(spari_frame *f, spar_member *m, const spari_frame_state *s, spari_motion *to) {
+    int64_t n = f->nodes;
+    double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
+    to_nodes(f, m, s, q, v, a);
+    spari_member_from_unique(m, 7, q, to->q);
+    spari_member_from_unique(m, 6, v, to->v);
+    spari_member_from_unique(m, 6, a, to->a);
+}
+
+/* ---- time ---- */
+
+/* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
+static void combine(spari_frame *f, const double omega[3]) {
+    double change[3] = {omega[0] - f->omega[0], omega[1] - f->omega[1], omega[2] - f->omega[2]};
+    if (f->combined && spari_norm(change) <= 1e-13 * spari_norm(omega)) {
+        return;
+    }
+    memcpy(f->omega, omega, sizeof f->omega);
+    f->combined = 1;
+    if (f->sumC) {
+        for (int64_t i = 0; i < f->size; i++) {
+            f->sumC[i] = f->D ? f->D[i] : 0;
+        }
+    }
+    if (!f->N[0]) {
+        return;
+    }
+    memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
+    memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
+    double c[SPARI_TURNS];
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+        if (c[k] != 0) {
+            cblas_daxpy((int)f->size, c[k], f->N[k], 1, f->sumK, 1);
+            cblas_daxpy(f->n, c[k], f->f[k], 1, f->sumf, 1);
+        }
+        for (int l = 0; l <= k; l++) {
+            if (c[k] * c[l] != 0) {
+                cblas_daxpy(f->n, -c[k] * c[l], f->twice[spari_frame_pair_of(k, l)], 1, f->sumf, 1);
+            }
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        if (omega[k] != 0) {
+            cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
+        }
+    }
+}
+
+/* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
+static void turn_loads(const spari_frame *f, const double q[4], double *x, double *out) {
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(q, x + i, x + i);
+    }
+    if (f->basis) {
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, x, 1, 0, out, 1));
+    } else {
+        memcpy(out, x, (size_t)f->n * sizeof *out);
+    }
+}
+
+/* What does not depend on the deformation: r = f + M (rigid acceleration - weight) - loads. Loads that follow depend on
+ * it and are taken at the latest state. */
+static void forcing(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double *out) {
+    double weight[3], *x = f->nodal;
+    memcpy(x, f->load, (size_t)(6 * f->nodes) * sizeof *x);
+    if (m->applied) {
+        double *q = f->turned, *v = q + 7 * (int64_t)f->nodes, *a = v + 6 * (int64_t)f->nodes;
+        to_nodes(f, m, s, q, v, a);
+        for (int i = 0; i < 6 * f->nodes; i++) {
+            x[i] = -f->load[i];
+        }
+        spari_applied_residual(m, q, 1, x);
+        for (int i = 0; i < 6 * f->nodes; i++) {
+            x[i] = -x[i];
+        }
+    }
+    turn_loads(f, s->root + 3, x, out);
+    for (int i = 0; i < f->n; i++) {
+        out[i] = (still || !f->sumf ? 0 : f->sumf[i]) - out[i];
+    }
+    if (f->rigid[0]) {
+        double rate[6] = {0};
+        spari_rotate_back(s->root + 3, m->body->gravity, weight);
+        if (!still) {
+            spari_rotate_back(s->root + 3, s->root + 13, rate);
+            spari_rotate_back(s->root + 3, s->root + 16, rate + 3);
+        }
+        for (int k = 0; k < 3; k++) {
+            rate[k] -= weight[k];
+        }
+        for (int k = 0; k < 6; k++) {
+            if (rate[k] != 0) {
+                cblas_daxpy(f->n, rate[k], f->rigid[k], 1, out, 1);
+            }
+        }
+    }
+}
+
+/* r = forcing + M a + C v + K y, the held rows out */
+static void unbalance(const spari_frame *f, const spari_frame_state *s, int still, const double *fixed, double *r) {
+    memcpy(r, fixed, (size_t)f->n * sizeof *r);
+    spari_frame_add_times(f, f->sumK ? f->sumK : f->K, s->y, 1, r);
+    if (f->sumC) {
+        spari_frame_add_times(f, f->sumC, s->v, 1, r);
+    }
+    if (f->M && !still) {
+        spari_frame_add_times(f, f->M, s->a, 1, r);
+    }
+    memset(r, 0, (size_t)f->held * sizeof *r);
+}
+
+static int factor_step(spari_frame *f, const spari_scheme *c) {
+    int singular;
+    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, c->cm, f->element, &singular);
+    f->factored = !singular;
+    f->kept_cm = c->cm, f->kept_cv = c->cv;
+    memcpy(f->kept_omega, f->omega, sizeof f->omega);
+    return singular;
+}
+
+static double largest(const spari_frame *f, const double *x) {
+    double big = 0;
+    for (int i = 0; i < f->n; i++) {
+        big = fmax(big, fabs(x[i]));
+    }
+    return big;
+}
+
+/* Starting values: the accelerations stay. */
+static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const spari_frame_state *from,
+                             spari_frame_state *to) {
+    double h = c->h;
+    for (int k = f->held; k < f->n; k++) {
+        double b = from->b[k], a = from->a[k];
+        if (c->still) {
+            to->y[k] = from->y[k];
+            to->v[k] = to->a[k] = to->b[k] = 0;
+            continue;
+        }
+        to->a[k] = a;
+        to->b[k] = (a - c->alpha_m * b) / (1 - c->alpha_m);
+        to->y[k] = from->y[k] + h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
+        to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
+    }
+}
+
+/* Where the root jumps (hosts that give no accelerations, a sudden start) the nodes keep place and velocity: seen from
+   it they lose the jump; modal ones to the nearest, in the norm of the mass. */
+static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                      const spari_frame_state *to) {
+    double jump[2][6], *rows[2] = {from->v, from->y};
+    spari_solver_jump(from->root, to->root, h, jump[0], jump[1]);
+    for (int s = 0; s < 2; s++) {
+        const double *J = jump[s];
+        double *x = rows[s];
+        for (int k = 6; k < f->n && f->basis; k++) {
+            x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
+        }
+        for (int i = 1; i < f->nodes && !f->basis; i++) {
+            double arm[3], turn[3];
+            spari_member_arm(m, i, arm);
+            spari_cross(J + 3, arm, turn);
+            for (int k = 0; k < 3; k++) {
+                x[6 * i + k] -= J[k] + turn[k];
+                x[6 * i + 3 + k] -= J[3 + k];
+            }
+        }
+    }
+}
+
+/* As spari_leap, with the matrix of the step itself, which is kept for it. */
+static int leap(spari_frame *f, const spari_scheme *c, spari_frame_state *from) {
+    double *y = f->increment;
+    if (!f->factored && factor_step(f, c)) {
+        return 1;
+    }
+    memcpy(y, from->b, (size_t)f->n * sizeof *y);
+    memset(y, 0, (size_t)f->held * sizeof *y);
+    for (int pass = 0; pass < SPARI_LEAP_PASSES; pass++) {
+        memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+        spari_frame_add_times(f, f->M, y, 1, f->r);
+        memset(f->r, 0, (size_t)f->held * sizeof *f->r);
+        if (spari_linear_solve(f->linear, f->r)) {
+            return 1;
+        }
+        cblas_daxpy(f->n, -c->cm, f->r, 1, y, 1);
+    }
+    cblas_daxpy(f->n, -1, y, 1, from->b, 1);
+    return 0;
+}
+
+enum { MOST_ITERATIONS = 30 };
+
+/* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
+   other turn, or with loads that follow, the corrections shrink until they are rounding. */
+static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int leaps, spari_frame_state *from,
+                   spari_frame_state *to) {
+    double omega[3], last = 0;
+    spari_rotate_back(to->root + 3, to->root + 10, omega);
+    combine(f, omega);
+    int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
+    f->factored = same;
+    if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
+        take_jump(f, m, c->h, from, to);
+    }
+    if (leaps && leap(f, c, from)) {
+        return 1;
+    }
+    predict_unknowns(f, c, from, to);
+    double *fixed = f->increment;
+    for (int it = 0; it < MOST_ITERATIONS; it++) {
+        if (it == 0 || m->applied) {
+            forcing(f, m, to, c->still, fixed);
+        }
+        unbalance(f, to, c->still, fixed, f->r);
+        if (!f->factored && factor_step(f, c)) {
+            return 1;
+        }
+        int exact = !m->applied && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
+        memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+        if (spari_linear_solve(f->linear, f->dx)) {
+            return 1;
+        }
+        f->solves++;
+        for (int k = f->held; k < f->n; k++) {
+            to->y[k] -= f->dx[k];
+            to->v[k] -= c->still ? f->dx[k] / c->h : c->cv * f->dx[k];
+            to->a[k] -= c->cm * f->dx[k];
+            to->b[k] -= c->cb * f->dx[k];
+        }
+        double step = largest(f, f->dx), theta = last > 0 ? step / last : 0;
+        if (exact || step <= m->session->newton_atol + m->session->newton_rtol * largest(f, to->y) ||
+            (it > 2 && theta > 0.5 && step <= 1e-10 * largest(f, to->y))) {
+            return 0;
+        }
+        if (theta > 0.2) {
+            f->factored = 0;
+        }
+        last = step;
+    }
+    return 1;
+}
+
+/* As start_accelerations() of alpha.c: accelerations at t^0 through M + K / cm. */
+static int start_accelerations(spari_frame *f, spar_member *m, const spari_scheme *c) {
+    spari_frame_state *b = &f->begin;
+    double omega[3];
+    int singular;
+    spari_rotate_back(b->root + 3, b->root + 10, omega);
+    combine(f, omega);
+    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, c->cm, f->element, &singular);
+    f->factored = 0;
+    memcpy(f->load, f->load0, (size_t)(6 * f->nodes) * sizeof *f->load);
+    forcing(f, m, b, c->still, f->increment);
+    for (int k = 0; k < 4 && !singular; k++) {
+        unbalance(f, b, c->still, f->increment, f->r);
+        singular = spari_linear_solve(f->linear, f->r);
+        for (int i = f->held; i < f->n; i++) {
+            b->a[i] -= c->cm * f->r[i];
+        }
+    }
+    memcpy(b->b, b->a, (size_t)f->n * sizeof *b->b);
+    f->started = 1;
+    return singular;
+}
+
+static void copy_state(const spari_frame *f, const spari_frame_state *from, spari_frame_state *to) {
+    memcpy(to->y, from->y, (size_t)(4 * f->n) * sizeof *to->y);
+    memcpy(to->root, from->root, sizeof to->root);
+}
+
+static void swap_states(spari_frame_state *a, spari_frame_state *b) {
+    spari_frame_state t = *a;
+    *a = *b;
+    *b = t;
+}
+
+static double damped_power(spari_frame *f, const spari_frame_state *s) {
+    double power = 0;
+    if (f->D) {
+        memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+        spari_frame_add_times(f, f->D, s->v, 1, f->r);
+        power = cblas_ddot(f->n, f->r, 1, s->v, 1);
+    }
+    return power;
+}
+
+/* A root that is not driven stays where it is. */
+static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
+    memcpy(f->to.root, f->begin.root, sizeof f->to.root);
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        spari_solver_root_at(m, s, dt, f->to.root);
+    }
+}
+
+int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
+    int A = m->session->substeps;
+    spari_scheme_loads(m, f->load0, f->load1, f->load);
+    spari_scheme c = spari_scheme_of(m, dt / A);
+    int failed = !f->started && !c.still && start_accelerations(f, m, &c);
+    copy_state(f, &f->begin, &f->to);
+    spari_scheme_stretch_by(spari_scheme_stretch(f->h_begin, c.h), f->n, f->to.a, f->to.b);
+    int leaps = !c.still && spari_is_leap(f->h_begin, c.h);
+    f->h_solved = c.h;
+    m->dissipated_step = 0;
+    double power = damped_power(f, &f->begin);
+    for (int k = 1; k <= A && !failed; k++) {
+        double s = (double)k / A;
+        swap_states(&f->from, &f->to);
+        spari_scheme_load_at(s, 6 * f->nodes, f->load0, f->load1, f->load);
+        root_at(f, m, s, dt);
+        failed = substep(f, m, &c, k == 1 && leaps, &f->from, &f->to);
+        double before = power;
+        power = damped_power(f, &f->to);
+        m->dissipated_step += 0.5 * c.h * (before + power);
+    }
+    if (failed) {
+        f->factored = 0;
+        return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                          "member '%s': the linear equations have no solution in the step from t = %g; look at the "
+                          "turning speed of its root, or at loads that follow it",
+                          m->name, m->session->time);
+    }
+    publish(f, m, &f->to, &m->after);
+    return SPAR_OK;
+}
+
+void spari_frame_accept(spari_frame *f) {
+    swap_states(&f->begin, &f->to);
+    f->h_begin = f->h_solved;
+}
+
+void spari_frame_restart(spari_frame *f, const spar_member *m) {
+    memset(f->begin.root, 0, sizeof f->begin.root);
+    spari_member_pose(m, &m->now, f->begin.root);
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        memcpy(f->begin.root + 13, m->now.a, 6 * sizeof(double));
+    }
+    memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
+    from_nodes(f, m, &m->now, f->begin.y, f->begin.v);
+    copy_state(f, &f->begin, &f->to);
+    f->started = 0;
+    f->h_begin = 0;
+}
+
+int spari_frame_static(spari_frame *f, spar_member *m) {
+    double last = 0, omega[3];
+    int failed = 1;
+    spari_turn turn;
+    SPARI_REQUIRE(
+        m->session, f->held == 6, SPAR_ERR_STATE,
+        "spar_member_solve_static: '%s': nothing holds a linear member that its root leaves free to turn; fix "
+        "or drive its root",
+        m->name);
+    int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root + 7, f->begin.root + 13, &turn);
+    spari_solver_gather(m, m->dead, f->load);
+    spari_solver_gather(m, m->load_pushed, f->load1);
+    for (int i = 0; i < 6 * f->nodes; i++) {
+        f->load[i] += f->load1[i];
+    }
+    spari_scheme c = {.cm = 0, .cv = 0};
+    copy_state(f, &f->begin, &f->to);
+    memset(f->to.root + (turning ? 16 : 7), 0, (turning ? 3 : 12) * sizeof(double)); /* steady, or at rest */
+    spari_rotate_back(f->to.root + 3, f->to.root + 10, omega);
+    combine(f, omega);
+    memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
+    int singular = factor_step(f, &c);
+    f->factored = 0;
+    for (int it = 0; it < MOST_ITERATIONS && failed && !singular; it++) {
+        forcing(f, m, &f->to, !turning, f->increment);
+        unbalance(f, &f->to, !turning, f->increment, f->r);
+        memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+        singular = spari_linear_solve(f->linear, f->dx);
+        for (int k = 6; k < f->n; k++) {
+            f->to.y[k] -= f->dx[k];
+        }
+        double step = largest(f, f->dx);
+        failed = m->applied && step > 1e-11 * largest(f, f->to.y) && !(it > 2 && step > 0.5 * last && step < 1e-9);
+        last = step;
+    }
+    if (!singular && !failed) {
+        publish(f, m, &f->to, &m->after);
+        failed = spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
+                 spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
+    }
+    if (singular || failed) {
+        return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                          "spar_member_solve_static: '%s': the linear member has no equilibrium under these loads; the "
+                          "state is as it was",
+                          m->name);
+    }
+    publish(f, m, &f->to, &m->now);
+    return SPAR_OK;
+}
+
+enum { STATE_HEAD = 14 };
+
+int64_t spari_frame_state_size(const spari_frame *f) {
+    return STATE_HEAD + 19 + 4 * (int64_t)f->n;
+}
+
+void spari_frame_save(const spari_frame *f, double *state) {
+    const double head[STATE_HEAD] = {f->n,        f->factored,      f->kept_cm,       f->kept_cv,      f->h_begin,
+                                     f->h_solved, f->started,       f->combined,      f->omega[0],     f->omega[1],
+                                     f->omega[2], f->kept_omega[0], f->kept_omega[1], f->kept_omega[2]};
+    memcpy(state, head, sizeof head);
+    memcpy(state + STATE_HEAD, f->begin.root, sizeof f->begin.root);
+    memcpy(state + STATE_HEAD + 19, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
+}
+
+int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
+    return count == spari_frame_state_size(f) && state[0] == f->n;
+}
+
+/* The kept factors are those of the kept turn and coefficients, to the last bit. */
+void spari_frame_load(spari_frame *f, const double *state) {
+    spari_scheme c = {.cm = state[2], .cv = state[3]};
+    f->factored = 0;
+    f->combined = 0;
+    if (state[1] != 0) {
+        combine(f, state + 11);
+        factor_step(f, &c);
+    }
+    f->combined = 0;
+    if (state[7] != 0) {
+        combine(f, state + 8);
+    }
+    f->h_begin = state[4], f->h_solved = state[5];
+    f->started = state[6] != 0;
+    memcpy(f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
+    memcpy(f->begin.y, state + STATE_HEAD + 19, (size_t)(4 * f->n) * sizeof *state);
+    copy_state(f, &f->begin, &f->to);
+}
+
+/* x^T X x / 2 */
+static double half_form(spari_frame *f, const double *X, const double *x) {
+    memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+    spari_frame_add_times(f, X, x, 0.5, f->r);
+    return cblas_ddot(f->n, x, 1, f->r, 1);
+}
+
+int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
+    double *y = spari_zalloc(2 * (int64_t)f->n, sizeof *y), *rate = y + f->n;
+    if (!y) {
+        return SPAR_ERR_MEMORY;
+    }
+    from_nodes(f, m, &m->after, y, rate);
+    energy[1] = half_form(f, f->K, y);
+    if (m->root != SPAR_ROOT_DRIVEN) { /* the frame stands: these are what the equations keep */
+        energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
+        energy[2] = 0;
+        for (int k = 0; k < 3 && f->M; k++) {
+            energy[2] -= m->body->gravity[k] * cblas_ddot(f->n, f->rigid[k], 1, y, 1);
+        }
+    }
+    free(y);
+    return SPAR_OK;
+}
