@@ -12,30 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    LEAST_NODES = 3, /* of an element; 2 lock */
-    TRIED = 100,     /* settings measured before moves end */
-    DOUBTED = 12     /* settings whose stability is looked at */
-};
-
-/* A change has to make a run cheaper by more than the clock's noise. */
-static const double worth = 0.95;
-
-/* Parts of the tolerance that leaving out may take. */
-static const double share_of_rung = 0.35, share_of_nodes = 0.25, share_of_points = 0.15, share_of_newton = 0.02;
-
 /* ---- the structure ---- */
 
 /* The fewest nodes whose error stays in its share; the error falls with the nodes. */
 static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
-    int few = LEAST_NODES - 1, enough = p->group[g].nodes;
+    int few = spari_rule.least_nodes - 1, enough = p->group[g].nodes;
     while (enough - few > 1) {
         int middle = (few + enough) / 2;
         double part, seconds;
         spari_plan q = *p;
         q.group[g].nodes = middle;
         SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
-        if (part <= share_of_nodes) {
+        if (part <= spari_rule.nodes) {
             enough = middle;
         } else {
             few = middle;
@@ -50,7 +38,7 @@ static int consider(spari_advisor *d, const spari_plan *p, const spari_record *b
                     double *seconds, int *taken) {
     double part, took;
     SPARI_TRY(spari_plan_distance(d, p, base, &part, &took));
-    *taken = part <= share && took < worth * *seconds;
+    *taken = part <= share && took < spari_rule.worth * *seconds;
     if (*taken) {
         *best = *p;
         *seconds = took;
@@ -65,18 +53,18 @@ static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_recor
     int taken, small;
     spari_shape *b = &q.group[g];
     b->fidelity = SPAR_FIDELITY_LINEAR;
-    SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &small));
+    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &small));
     for (size_t k = 0; k < sizeof modes / sizeof *modes && small; k++) {
         b->fidelity = SPAR_FIDELITY_MODAL;
         b->modes = modes[k];
-        SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
     }
     b->modes = 0;
     b->fidelity = SPAR_FIDELITY_RIGID;
-    SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &taken));
+    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
     if (taken && spari_member_root_is_given(spari_plan_member(d, g))) {
         b->fidelity = SPAR_FIDELITY_PRESCRIBED;
-        SPARI_TRY(consider(d, &q, base, share_of_rung, &best, &seconds, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
     }
     *p = best;
     return SPAR_OK;
@@ -91,7 +79,7 @@ static int choose_points(spari_advisor *d, spari_plan *p, int g, const spari_rec
     spari_plan q = *p;
     q.group[g].points = 1;
     SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
-    if (part <= share_of_points) {
+    if (part <= spari_rule.points) {
         *p = q;
     }
     return SPAR_OK;
@@ -104,7 +92,7 @@ static int choose_newton(spari_advisor *d, spari_plan *p, const spari_record *ba
         spari_plan q = *p;
         q.newton = tolerance[k];
         SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
-        if (part <= share_of_newton) {
+        if (part <= spari_rule.newton) {
             *p = q;
             return SPAR_OK;
         }
@@ -154,14 +142,14 @@ static int choose_structure(spari_advisor *d, const spari_plan *finest, spari_pl
 static int coarsest_steps(spari_advisor *d, spari_plan p, int *j, spari_outcome *best) {
     const int finest = 2 * SPARI_FINEST, coarsest = (int)floor(2 * log2((double)SPARI_SAMPLES / (double)d->run.steps));
     int good = finest + 1, bad = coarsest - 1, at = *j;
-    while (good - bad > 1 && d->known_count < TRIED) {
+    while (good - bad > 1 && d->known_count < spari_rule.tried) {
         spari_outcome o;
         p.steps = spari_plan_steps(d, at);
         SPARI_TRY(spari_plan_measure(d, &p, &o));
         double ratio = isfinite(o.error) ? o.error / d->tolerance : 100;
         if (spari_plan_is_good(d, &o)) {
             good = at;
-            if (o.seconds < worth * best->seconds) {
+            if (o.seconds < spari_rule.worth * best->seconds) {
                 *best = o;
                 *j = at;
             }
@@ -230,7 +218,7 @@ static int finer(const spari_advisor *d, spari_plan *p, int g) {
 }
 
 static int fewer_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->keep_nodes && is_elastic(p, g) && p->group[g].nodes-- > LEAST_NODES;
+    return !d->session->keep_nodes && is_elastic(p, g) && p->group[g].nodes-- > spari_rule.least_nodes;
 }
 
 static int more_nodes(const spari_advisor *d, spari_plan *p, int g) {
@@ -255,7 +243,7 @@ static int lower_rung(const spari_advisor *d, spari_plan *p, int g) {
     }
     if (b->fidelity == SPAR_FIDELITY_EXACT || b->fidelity == SPAR_FIDELITY_LINEAR) {
         b->fidelity = SPAR_FIDELITY_MODAL;
-        b->modes = 8;
+        b->modes = spari_rule.modes;
         return 1;
     }
     return 0;
@@ -264,7 +252,7 @@ static int lower_rung(const spari_advisor *d, spari_plan *p, int g) {
 static int looser_newton(const spari_advisor *d, spari_plan *p, int g) {
     (void)d, (void)g;
     p->newton *= 1e3;
-    return p->newton <= 1e-3;
+    return p->newton <= spari_rule.loosest_newton;
 }
 
 static int other_predictor(const spari_advisor *d, spari_plan *p, int g) {
@@ -275,7 +263,7 @@ static int other_predictor(const spari_advisor *d, spari_plan *p, int g) {
 
 static int more_substeps(const spari_advisor *d, spari_plan *p, int g) {
     p->substeps *= 2;
-    return p->substeps <= 8 && coarser(d, p, g) && coarser(d, p, g);
+    return p->substeps <= spari_rule.most_substeps && coarser(d, p, g) && coarser(d, p, g);
 }
 
 static const struct {
@@ -288,9 +276,9 @@ static const struct {
 /* Moves as long as one pays and keeps the tolerance. */
 static int improve(spari_advisor *d, spari_outcome *best) {
     int rounds = d->groups > 0 ? d->groups : 1, moved = 1;
-    while (moved && d->known_count < TRIED) {
+    while (moved && d->known_count < spari_rule.tried) {
         moved = 0;
-        for (size_t k = 0; k < sizeof moves / sizeof *moves && d->known_count < TRIED; k++) {
+        for (size_t k = 0; k < sizeof moves / sizeof *moves && d->known_count < spari_rule.tried; k++) {
             for (int g = 0; g < rounds; g++) {
                 spari_plan p = best->plan;
                 spari_outcome o;
@@ -298,7 +286,7 @@ static int improve(spari_advisor *d, spari_outcome *best) {
                     continue;
                 }
                 SPARI_TRY(spari_plan_measure(d, &p, &o));
-                if (spari_plan_is_good(d, &o) && o.seconds < worth * best->seconds) {
+                if (spari_plan_is_good(d, &o) && o.seconds < spari_rule.worth * best->seconds) {
                     *best = o;
                     moved = 1;
                 }
@@ -319,7 +307,7 @@ static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
 /* The cheapest of all settings that keep the tolerance and stay stable. */
 static int find_stable(spari_advisor *d, spari_outcome *best) {
     int stays = 0;
-    for (int k = 0; k < DOUBTED && isfinite(best->seconds); k++) {
+    for (int k = 0; k < spari_rule.doubted && isfinite(best->seconds); k++) {
         SPARI_TRY(spari_plan_stays(d, &best->plan, &stays));
         if (stays) {
             return SPAR_OK;

@@ -10,13 +10,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    LONGER = 4,       /* times the trials: the run that stability is looked at in, */
-    LEAST_STEPS = 256 /* and so many steps at least */
-};
-
-/* Part of the tolerance that the reference's own error may be. */
-static const double share_of_reference = 0.25;
+const spari_rules spari_rule = {.reference_ends = 0.25,
+                                .reference_most = 0.5,
+                                .reference_newton = 1e-10,
+                                .reference_rtol = 1e-8,
+                                .rung = 0.35,
+                                .nodes = 0.25,
+                                .points = 0.15,
+                                .newton = 0.02,
+                                .loosest_newton = 1e-3,
+                                .good = 0.9,
+                                .worth = 0.95,
+                                .timed = 0.05,
+                                .repeats = 3,
+                                .least_nodes = 3,
+                                .most_substeps = 8,
+                                .modes = 8,
+                                .tried = 100,
+                                .doubted = 12,
+                                .longer = 4,
+                                .least_steps = 256,
+                                .stays_newton = 1e-9,
+                                .stays_rtol = 1e-4,
+                                .seesaw = 1e-8,
+                                .grows = 2};
 
 /* ---- plans ---- */
 
@@ -170,11 +187,9 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
             return SPAR_OK;
         }
     }
-    enum { REPEATS = 3 };
-    const double enough = 0.05; /* seconds that a short run is timed for in all */
     double spent = 0;
     *out = (spari_outcome){*p, INFINITY, INFINITY};
-    for (int k = 0; k < REPEATS && spent < enough; k++) {
+    for (int k = 0; k < spari_rule.repeats && spent < spari_rule.timed; k++) {
         spari_record r;
         int status = spari_plan_run(d, p, 1, &r);
         if (status != SPAR_OK) {
@@ -197,7 +212,7 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
 }
 
 int spari_plan_is_good(const spari_advisor *d, const spari_outcome *o) {
-    return o->error <= 0.9 * d->tolerance;
+    return o->error <= spari_rule.good * d->tolerance;
 }
 
 int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double *part,
@@ -216,12 +231,12 @@ int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_recor
 static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level) {
     const spar_session *s = d->session;
     spari_plan p = *present;
-    p.newton = fmin(p.newton, 1e-10);
+    p.newton = fmin(p.newton, spari_rule.reference_newton);
     p.substeps = 1;
     p.predictor = 1;
     if (!s->keep_coupling) {
         p.scheme = SPAR_COUPLING_IQN_ILS;
-        p.rtol = 1e-8;
+        p.rtol = spari_rule.reference_rtol;
     }
     p.steps = s->keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
     for (int g = 0; g < d->groups; g++) {
@@ -242,7 +257,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
     double change = 0, before = 0;
     d->reference_error = INFINITY;
     int ends = s->keep_dt && s->keep_nodes ? 0 : s->keep_dt ? 2 : SPARI_FINEST;
-    for (int level = 0; level <= ends && d->reference_error > share_of_reference * d->tolerance; level++) {
+    for (int level = 0; level <= ends && d->reference_error > spari_rule.reference_ends * d->tolerance; level++) {
         spari_record finer;
         spari_plan p = reference_plan(d, present, level);
         int status = spari_plan_run(d, &p, 1, &finer);
@@ -269,7 +284,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
     }
     SPARI_REQUIRE(s, d->reference.motion, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
                   SPARI_ADVISE, s->message);
-    SPARI_REQUIRE(s, d->reference_error <= 0.5 * d->tolerance, SPAR_ERR_NUMERIC,
+    SPARI_REQUIRE(s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
                   "%s: no reference: with dt/%lld and finer nodes the run still changes by %.3g, the tolerance is %g; "
                   "ask for less, begin with a smaller dt, or look whether the fluid solver is repeatable",
                   SPARI_ADVISE, (long long)(finest->steps / d->run.steps), change, d->tolerance);
@@ -281,23 +296,23 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
 /* Whether a part of the loads that turns round with every step is there and grows, and not with the motion itself, as
    the finer run shows it. */
 static int seesaws(const spari_record *r, const spari_record *finer) {
-    const double there = 1e-8, grows = 2; /* squares */
     double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN));
-    return r->alternating[1] > there && r->alternating[1] > grows * same * r->alternating[0];
+    return r->alternating[1] > spari_rule.seesaw && r->alternating[1] > spari_rule.grows * same * r->alternating[0];
 }
 
 int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
-    int longer = p->steps * LONGER < LEAST_STEPS ? (int)(LEAST_STEPS / p->steps) + 1 : LONGER;
+    int longer = spari_rule.longer, least = spari_rule.least_steps;
+    longer = p->steps * longer < least ? (int)(least / p->steps) + 1 : longer;
     spari_plan q = *p;
     spari_record run, finer = {0};
     int status = spari_plan_run(d, p, longer, &run);
     if (status == SPAR_OK) {
         q.steps = 2 * p->steps;
         q.predictor = 1;
-        q.newton = fmin(q.newton, 1e-9);
+        q.newton = fmin(q.newton, spari_rule.stays_newton);
         if (!d->session->keep_coupling) {
             q.scheme = SPAR_COUPLING_IQN_ILS;
-            q.rtol = 1e-4;
+            q.rtol = spari_rule.stays_rtol;
         }
         status = spari_plan_run(d, &q, longer, &finer);
     }

@@ -12,6 +12,30 @@ enum {
     SPARI_KNOWN = 400 /* settings remembered at most */
 };
 
+/* What advice goes by. Shares are parts of the tolerance. */
+typedef struct spari_rules {
+    double reference_ends;   /* dt is halved until the reference's own error is below this share, */
+    double reference_most;   /* and above this one there is no reference */
+    double reference_newton; /* with what it is solved: Newton's tolerance, */
+    double reference_rtol;   /* and the coupling's */
+    double rung, nodes;      /* shares that a lower fidelity and fewer nodes may take, */
+    double points, newton;   /* fewer quadrature points, a looser Newton */
+    double loosest_newton;   /* its tolerance goes no further */
+    double good;             /* share that the error of good settings is below: the rest is for what no trial shows */
+    double worth;            /* a change has to bring the cost below this part of it: more than the clock's noise */
+    double timed;            /* seconds that a short run is repeated for, */
+    int repeats;             /* so many times at most */
+    int least_nodes;         /* of an element; 2 lock */
+    int most_substeps;       /* in a step */
+    int modes;               /* that a beam's first modal try has */
+    int tried, doubted;      /* settings measured before moves end, and whose stability is looked at, at most */
+    int longer, least_steps; /* that is looked at in a run so many times as long, and of so many steps at least, */
+    double stays_newton;     /* against one of half the dt: with what that is solved, */
+    double stays_rtol;       /* and coupled */
+    double seesaw, grows;    /* loads that turn round with every step: squares of what counts, and of its growth */
+} spari_rules;
+extern const spari_rules spari_rule;
+
 /* What of a beam is chosen. */
 typedef struct spari_shape {
     int nodes, fidelity, points;
