@@ -5,161 +5,13 @@
 #include "../member/applied.h"
 #include "arms.h"
 #include "leap.h"
+#include "root.h"
 #include "scheme.h"
 #include "solver.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- seen from a driven root ---- */
-
-/* A substep's ends in the variables of the scheme: seen from a driven root in its axes, in which steady turning is rest
-   and stiff directions stay (docs/beam.md), else as they are; and the end as the body takes it. */
-typedef struct ends {
-    spari_state from, to, seen;
-    const double *root; /* q, v, a of a driven root at the end; NULL: as they are */
-    double carried;     /* how far the root takes the member along, as size_of */
-} ends;
-
-/* Motion of all nodes as seen from a root with q, v, a; b is so already. */
-static void look_from(const spar_member *m, const double *root, const spari_state *s, spari_state *own) {
-    double W[3], A[3], back[4];
-    spari_quat_conj(root + 3, back);
-    spari_rotate_back(root + 3, root + 10, W);
-    spari_rotate_back(root + 3, root + 16, A);
-    for (int i = 0; i < m->solver->n; i++) {
-        double arm[3], d[3], c1[3], c2[3], c3[3], *v = own->v + 6 * i, *a = own->a + 6 * i, *q = own->q + 7 * i;
-        spari_member_arm(m, i, arm);
-        for (int k = 0; k < 3; k++) {
-            d[k] = arm[k] + s->q[7 * i + k] - root[k];
-        }
-        for (int k = 0; k < 6; k++) {
-            v[k] = s->v[6 * i + k] - root[7 + k];
-            a[k] = s->a[6 * i + k] - root[13 + k];
-        }
-        spari_rotate_back(root + 3, d, d);
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate_back(root + 3, v + k, v + k);
-            spari_rotate_back(root + 3, a + k, a + k);
-        }
-        spari_quat_mul(back, s->q + 7 * i + 3, q + 3);
-        spari_cross(W, d, c1);
-        for (int k = 0; k < 3; k++) {
-            q[k] = d[k] - arm[k];
-            v[k] -= c1[k];
-            c1[k] += 2 * v[k];
-        }
-        spari_cross(W, c1, c2);
-        spari_cross(A, d, c3);
-        spari_cross(W, v + 3, c1);
-        for (int k = 0; k < 3; k++) {
-            a[k] -= c2[k] + c3[k];
-            a[3 + k] -= c1[k];
-        }
-    }
-    memcpy(own->b, s->b, (size_t)(6 * m->solver->n) * sizeof *own->b);
-}
-
-/* And back, into what the body takes. */
-static void show(const spar_member *m, ends *e) {
-    const double *root = e->root;
-    double W[3], A[3];
-    if (!root) {
-        return;
-    }
-    spari_rotate_back(root + 3, root + 10, W);
-    spari_rotate_back(root + 3, root + 16, A);
-    for (int i = 0; i < m->solver->n; i++) {
-        const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
-        double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
-                                                  *B = e->seen.a + 6 * i;
-        spari_member_arm(m, i, arm);
-        for (int k = 0; k < 3; k++) {
-            d[k] = arm[k] + e->to.q[7 * i + k];
-        }
-        spari_cross(W, d, c1);
-        for (int k = 0; k < 3; k++) {
-            V[k] = v[k] + c1[k];
-            V[3 + k] = v[3 + k] + W[k];
-            c1[k] += 2 * v[k];
-        }
-        spari_cross(W, c1, c2);
-        spari_cross(A, d, c3);
-        spari_cross(W, v + 3, c1);
-        for (int k = 0; k < 3; k++) {
-            B[k] = a[k] + c2[k] + c3[k];
-            B[3 + k] = a[3 + k] + A[k] + c1[k];
-        }
-        spari_rotate(root + 3, d, d);
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate(root + 3, V + k, V + k);
-            spari_rotate(root + 3, B + k, B + k);
-        }
-        for (int k = 0; k < 3; k++) {
-            q[k] = root[k] + d[k] - arm[k];
-            V[k] += root[7 + k];
-            B[k] += root[13 + k];
-        }
-        spari_quat_mul(root + 3, e->to.q + 7 * i + 3, q + 3);
-        spari_quat_normalise(q + 3);
-    }
-    memcpy(e->seen.b, e->to.b, (size_t)(6 * m->solver->n) * sizeof(double));
-}
-
-/* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */
-static void lose_jump(const spar_member *m, double h, const double *from, const double *to, spari_state *own) {
-    double J[6], E[6], back[4], less[3];
-    spari_solver_jump(from, to, h, J, E);
-    for (int k = 0; k < 3; k++) {
-        less[k] = -E[3 + k];
-    }
-    spari_quat_exp(less, back);
-    for (int i = 1; i < m->solver->n; i++) {
-        double *q = own->q + 7 * i, *v = own->v + 6 * i, d[3], c1[3], c2[3];
-        spari_member_arm(m, i, d);
-        for (int k = 0; k < 3; k++) {
-            d[k] += q[k];
-        }
-        spari_cross(J + 3, d, c1);
-        spari_cross(E + 3, d, c2);
-        for (int k = 0; k < 3; k++) {
-            v[k] -= J[k] + c1[k];
-            v[3 + k] -= J[3 + k];
-            q[k] -= E[k] + c2[k];
-        }
-        spari_quat_mul(back, q + 3, q + 3);
-    }
-}
-
-/* q, v, a of the root node */
-static void root_of(const spari_state *s, double root[19]) {
-    memcpy(root, s->q, 7 * sizeof *root);
-    memcpy(root + 7, s->v, 6 * sizeof *root);
-    memcpy(root + 13, s->a, 6 * sizeof *root);
-}
-
-static ends ends_of(const spar_member *m, const spari_scheme *c, const double *root, double ratio, spari_state *from,
-                    spari_state *to) {
-    spari_solver *s = m->solver;
-    ends e = {*from, *to, *to, NULL, 0};
-    if (s->own[0].q && !c->still) {
-        double before[19], turn[4], psi[3], way[3];
-        root_of(from, before);
-        spari_quat_conj(before + 3, turn);
-        spari_quat_mul(root + 3, turn, turn);
-        spari_quat_log(turn, psi);
-        for (int k = 0; k < 3; k++) {
-            way[k] = root[k] - before[k];
-        }
-        e.from = s->own[0], e.to = s->own[1], e.root = root;
-        e.carried = spari_norm(way) / m->body->length + spari_norm(psi);
-        look_from(m, before, from, &e.from);
-        lose_jump(m, c->h, before, root, &e.from);
-    }
-    spari_scheme_stretch_by(ratio, 6 * s->n, e.from.a, e.from.b);
-    return e;
-}
 
 /* ---- one substep ---- */
 
@@ -192,7 +44,7 @@ typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
 
 /* Starting values of Newton. Smooth motion: the acceleration stays. Where stiff parts ring, their acceleration says
    nothing of the next: the velocity stays. Where the step is longer than the motion lasts: the place stays. */
-static void predict(const spar_member *member, const spari_scheme *c, guess stays, ends *e, double *x) {
+static void predict(const spar_member *member, const spari_scheme *c, guess stays, spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int n = member->solver->n;
     double h = c->h;
@@ -211,12 +63,12 @@ static void predict(const spar_member *member, const spari_scheme *c, guess stay
         }
         place_node(c, from, to, x, i);
     }
-    show(member, e);
+    spari_root_show(member, e);
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
 static void carry(const spar_member *member, const spari_scheme *c, const double *root, const double turn[4],
-                  const ends *e, double *x) {
+                  const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     const spari_solver *s = member->solver;
     int driven = member->root == SPAR_ROOT_DRIVEN;
@@ -238,7 +90,7 @@ static void carry(const spar_member *member, const spari_scheme *c, const double
 }
 
 /* A driven root goes where it is told. */
-static void impose_root(const spar_member *member, const double *root, const ends *e, double *x) {
+static void impose_root(const spar_member *member, const double *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int first, end;
     spari_solver_fixed(member, &first, &end);
@@ -333,7 +185,8 @@ static void turn_matrix(const double q[4], double T[9]) {
 
 /* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
    d x = I - k omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
-static void update_tangent_operators(const spari_solver *s, const spari_scheme *c, const ends *e, const double *x) {
+static void update_tangent_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e,
+                                     const double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     double k = c->still ? 0 : c->h * c->h * c->cv / 12;
     for (int i = 0; i < s->n; i++) {
@@ -359,8 +212,8 @@ static void update_tangent_operators(const spari_solver *s, const spari_scheme *
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply_correction(const spar_member *member, const spari_scheme *c, ends *e, double longest, double *x,
-                               double *dx) {
+static double apply_correction(const spar_member *member, const spari_scheme *c, spari_ends *e, double longest,
+                               double *x, double *dx) {
     const spari_state *to = &e->to;
     const spari_solver *s = member->solver;
     double largest = 0, length = member->body->length;
@@ -388,7 +241,7 @@ static double apply_correction(const spar_member *member, const spari_scheme *c,
         }
         place_node(c, &e->from, to, x, i);
     }
-    show(member, e);
+    spari_root_show(member, e);
     return largest;
 }
 
@@ -427,7 +280,7 @@ static int close_to(double x, double kept) {
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
    what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
    that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spar_member *member, const spari_scheme *c, const double *root, effort how, ends *e,
+static const char *attempt(spar_member *member, const spari_scheme *c, const double *root, effort how, spari_ends *e,
                            double *x, int *iterations) {
     const spar_session *session = member->session;
     spari_solver *s = member->solver;
@@ -472,7 +325,7 @@ static const char *attempt(spar_member *member, const spari_scheme *c, const dou
 }
 
 /* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spar_member *member, const spari_scheme *c, const double *root, const double turn[4], ends *e,
+static int newton(spar_member *member, const spari_scheme *c, const double *root, const double turn[4], spari_ends *e,
                   double *x) {
     const char *wrong = NULL;
     int iterations = 0;
@@ -496,42 +349,6 @@ static int newton(spar_member *member, const spari_scheme *c, const double *root
         "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
         "or look at the loads",
         member->name, wrong, iterations, member->session->time);
-}
-
-/* Root motion at s in (0, 1] of the step: cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1
- * omega. */
-void spari_solver_root_at(const spar_member *member, double s, double dt, double out[19]) {
-    const double *a = member->drive[0], *b = member->drive[1];
-    if (s >= 1) {
-        memcpy(out, b, 19 * sizeof *out);
-        return;
-    }
-    double c[4], p[4], psi1[3], t[9], rate1[3], psi[3], rate[3], h00 = 1 - s * s * (3 - 2 * s),
-                                                                 h01 = s * s * (3 - 2 * s);
-    double h10 = s * (1 - s) * (1 - s), h11 = -s * s * (1 - s), d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s),
-           d11 = s * (3 * s - 2);
-    spari_quat_conj(a + 3, c);
-    spari_quat_mul(b + 3, c, p);
-    spari_quat_log(p, psi1);
-    spari_tangent_inverse(psi1, t);
-    for (int k = 0; k < 3; k++) {
-        rate1[k] = t[3 * k] * b[10] + t[3 * k + 1] * b[11] + t[3 * k + 2] * b[12];
-    }
-    for (int k = 0; k < 3; k++) {
-        out[k] = h00 * a[k] + h01 * b[k] + dt * (h10 * a[7 + k] + h11 * b[7 + k]);
-        out[7 + k] = d01 * (b[k] - a[k]) / dt + d10 * a[7 + k] + d11 * b[7 + k];
-        psi[k] = h01 * psi1[k] + dt * (h10 * a[10 + k] + h11 * rate1[k]);
-        rate[k] = d01 * psi1[k] / dt + d10 * a[10 + k] + d11 * rate1[k];
-    }
-    spari_quat_exp(psi, p);
-    spari_quat_mul(p, a + 3, out + 3);
-    spari_tangent(psi, t);
-    for (int k = 0; k < 3; k++) {
-        out[10 + k] = t[3 * k] * rate[0] + t[3 * k + 1] * rate[1] + t[3 * k + 2] * rate[2];
-    }
-    for (int k = 13; k < 19; k++) {
-        out[k] = (1 - s) * a[k] + s * b[k];
-    }
 }
 
 /* Accelerations at t^0: those of the initial rigid-body field, and what the balance of forces there asks beyond them,
@@ -577,8 +394,8 @@ static int start(spar_member *member, const spari_scheme *c) {
     const double *a = b->a;
     if (s->own[0].q) {
         double root[19];
-        root_of(b, root);
-        look_from(member, root, b, &s->own[0]);
+        spari_root_of(b, root);
+        spari_root_look_from(member, root, b, &s->own[0]);
         a = s->own[0].a;
     }
     memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
@@ -594,7 +411,7 @@ static void swap(spari_state *a, spari_state *b) {
 
 /* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
    stands in the root's axes. */
-static int begin_leap(spar_member *member, const spari_scheme *c, ends *e, const spari_state *from) {
+static int begin_leap(spar_member *member, const spari_scheme *c, spari_ends *e, const spari_state *from) {
     spari_solver *s = member->solver;
     double *b = e->from.b, root[19];
     int n6 = 6 * s->n, turned = e->root != NULL;
@@ -602,7 +419,7 @@ static int begin_leap(spar_member *member, const spari_scheme *c, ends *e, const
         memcpy(b, s->leapt, (size_t)n6 * sizeof *b);
         return SPAR_OK;
     }
-    root_of(from, root);
+    spari_root_of(from, root);
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate(root + 3, b + i, b + i);
     }
@@ -642,12 +459,12 @@ int spari_solver_advance(spar_member *member, double dt) {
         if (member->arms) {
             spari_arms_at(member->arms, f);
         }
-        spari_solver_root_at(member, f, dt, root);
+        spari_root_at(member, f, dt, root);
         if (member->root == SPAR_ROOT_DRIVEN) {
             spari_quat_conj(before + 3, conj);
             spari_quat_mul(root + 3, conj, turn);
         }
-        ends e = ends_of(member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
+        spari_ends e = spari_root_ends(member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
         if (k == 1 && leaps) {
             SPARI_TRY(begin_leap(member, &c, &e, &s->from));
         }

@@ -8,6 +8,7 @@
 #include "../member/body.h"
 #include "../member/pose.h"
 #include "leap.h"
+#include "root.h"
 #include "scheme.h"
 #include "solver.h"
 #include "turn.h"
@@ -264,7 +265,7 @@ static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const 
 static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
-    spari_solver_jump(from->root, to->root, h, jump[0], jump[1]);
+    spari_root_jump(from->root, to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
         double *x = rows[s];
@@ -356,7 +357,7 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
     return 1;
 }
 
-/* As start_accelerations() of alpha.c: accelerations at t^0 through M + K / cm. */
+/* As start() of alpha.c: accelerations at t^0 through M + K / cm. */
 static int start_accelerations(spari_frame *f, spar_member *m, const spari_scheme *c) {
     spari_frame_state *b = &f->begin;
     double omega[3];
@@ -404,7 +405,7 @@ static double damped_power(spari_frame *f, const spari_frame_state *s) {
 static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
     memcpy(f->to.root, f->begin.root, sizeof f->to.root);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_solver_root_at(m, s, dt, f->to.root);
+        spari_root_at(m, s, dt, f->to.root);
     }
 }
 

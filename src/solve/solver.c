@@ -103,25 +103,6 @@ void spari_solver_fixed(const spar_member *member, int *first, int *end) {
     *end = member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
 }
 
-void spari_solver_jump(const double *from, const double *to, double h, double velocity[6], double place[6]) {
-    double back[4], turn[4];
-    for (int k = 0; k < 3; k++) {
-        place[k] = to[k] - from[k];
-    }
-    spari_quat_conj(from + 3, back);
-    spari_quat_mul(to + 3, back, turn);
-    spari_quat_log(turn, place + 3);
-    for (int k = 0; k < 6; k++) {
-        const double *v = from + 7, *a = from + 13, *b = to + 13;
-        velocity[k] = to[7 + k] - v[k] - 0.5 * h * (a[k] + b[k]);
-        place[k] -= h * (v[k] + velocity[k] + h * (a[k] / 3 + b[k] / 6));
-    }
-    for (int k = 0; k < 6; k += 3) {
-        spari_rotate_back(to + 3, velocity + k, velocity + k);
-        spari_rotate_back(to + 3, place + k, place + k);
-    }
-}
-
 void spari_solver_gather(const spar_member *m, const double *nodal, double *unique) {
     int P = m->per_element;
     memset(unique, 0, (size_t)m->body->unique * 6 * sizeof *unique);

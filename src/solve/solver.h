@@ -61,12 +61,6 @@ void spari_solver_load(spari_solver *solver, const double *state);
 void spari_solver_fixed(const spar_member *member, int *first, int *end);
 /* Loads of the member's nodes summed onto the unknowns' nodes. */
 void spari_solver_gather(const spar_member *member, const double *nodal, double *unique);
-/* Motion q, v, a of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
-void spari_solver_root_at(const spar_member *member, double s, double dt, double out[19]);
-/* What a driven root from [19] does until to [19], h later, beyond what its accelerations, then its velocities say: a
-   jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
-   order in h for smooth driving. */
-void spari_solver_jump(const double *from, const double *to, double h, double velocity[6], double place[6]);
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv);
