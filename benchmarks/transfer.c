@@ -8,9 +8,9 @@
      transfer projection    microseconds and errors of the nearest point: bounds, RPOLY, GSL's companion matrix
 
    Times are the least of several runs: the machine may be shared. One core. */
-#include "transfer/projection.h"
 #include "math/basis.h"
 #include "plain.h"
+#include "transfer/projection.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_poly.h>
 #include <math.h>

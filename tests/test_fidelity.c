@@ -3,8 +3,8 @@
 
 #include <stdio.h>
 
-#include "solve/rung.h"
 #include "solve/frame.h"
+#include "solve/rung.h"
 #include "solve/solver.h"
 
 static double K[36], M[36];

@@ -1,8 +1,8 @@
 /* The nearest point on a line: against a scan that knows nothing of polynomials, and against cases with exact answers.
  * The oracle's own rounding is about 1e-15 of the line's size; what is asked is 1e-12. SPAR_TEST_LONG=1 in the
  * environment takes 10^6 points instead of some thousands. */
-#include "transfer/projection.h"
 #include "support/lines.h"
+#include "transfer/projection.h"
 #include <cmocka.h>
 #include <math.h>
 #include <spar/spar.h>

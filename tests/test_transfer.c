@@ -1,8 +1,8 @@
 /* The transfer kernels against the formulas written out node by node, for every vector width this processor has.
  * Tolerances are relative to the size of what is summed: 1e-13, some hundred roundings. */
-#include "transfer/transfer.h"
 #include "math/rotation.h"
 #include "support/lines.h"
+#include "transfer/transfer.h"
 #include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>

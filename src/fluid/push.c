@@ -203,7 +203,7 @@ int spari_fluid_may_push(const spar_fluid *fluid, const char *caller) {
 
 static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
     spar_session *session = fluid->member->session;
-    const spari_nodes *s;
+    const spari_nodes *s = NULL;
     SPARI_TRY(may_push(fluid, caller, &s));
     if (!s) {
         return SPAR_OK;

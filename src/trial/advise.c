@@ -359,7 +359,7 @@ static int search_plans(spari_advisor *d, const spari_plan *present, spari_outco
 
 /* Memory for the advice of members that have none yet, before the work begins: [members], else NULL. */
 static int make_remakes(const spari_advisor *d, spari_remake ***room) {
-    spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof *all);
+    spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof(spari_remake *));
     int k = 0, ok = all != NULL;
     for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
         ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));

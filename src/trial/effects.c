@@ -339,6 +339,8 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(spari_named(s, __func__, fill_rows(s, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
-    memcpy(table, made, sizeof made);
+    if (table) {                                 /* checked above */
+        memcpy(table, made, sizeof made);
+    }
     return SPAR_OK;
 }
