@@ -403,6 +403,31 @@ static void test_matrices_have_a_place(void **state) {
     spar_session_destroy(&s);
 }
 
+/* The clock stays a number, and so does every dt that a trial is made with. */
+static int nothing(spar_session *s, double t, double dt, int iteration, void *context) {
+    (void)s, (void)iteration, (void)context;
+    assert_true(isfinite(t) && isfinite(dt) && dt > 0);
+    return 0;
+}
+
+static void test_clock_beyond_numbers(void **state) {
+    (void)state;
+    double report[SPAR_TRY_COUNT], advice[SPAR_ADVICE_COUNT], t;
+    spar_session *s = scene_session();
+    OK(s, spar_step(s, 1e308, nothing, NULL, NULL));
+    assert_int_equal(spar_step(s, 1e308, nothing, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_session_message(s), "clock"));
+    OK(s, spar_session_get_time(s, &t, NULL, NULL));
+    assert_true(t == 1e308);
+    OK(s, spar_step(s, 1, nothing, NULL, NULL));
+    static const double dt[] = {1e308, 1e302, 5e-324};
+    for (size_t k = 0; k < sizeof dt / sizeof *dt; k++) {
+        assert_int_equal(spar_session_try(s, dt[k], 8, NULL, nothing, NULL, 0, report), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_session_advise(s, 0.1, dt[k], 8, NULL, nothing, NULL, advice), SPAR_ERR_ARGUMENT);
+    }
+    spar_session_destroy(&s);
+}
+
 static char warned[1024];
 
 static void hear(const spar_session *s, int level, const char *text, void *context) {
@@ -453,6 +478,7 @@ int main(void) {
         cmocka_unit_test(test_velocities_beyond_numbers),
         cmocka_unit_test(test_modes_beyond_numbers),
         cmocka_unit_test(test_matrices_have_a_place),
+        cmocka_unit_test(test_clock_beyond_numbers),
         cmocka_unit_test(test_too_few_nodes_are_blamed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -33,6 +33,8 @@ static int check_begin(spar_session *s, double dt) {
     }
     SPARI_REQUIRE(s, isfinite(dt) && dt > 0, SPAR_ERR_ARGUMENT, "%s: dt is %g; give a positive number of seconds", call,
                   dt);
+    SPARI_REQUIRE(s, isfinite(s->time + dt), SPAR_ERR_ARGUMENT,
+                  "%s: the clock stands at %g s and cannot go on by %g s; give a smaller dt", call, s->time, dt);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);

@@ -437,6 +437,11 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_SAMPLES == 0, SPAR_ERR_ARGUMENT,
                   "%s: %lld steps; give a multiple of %d, as runs are compared at so many times", call,
                   (long long)run->steps, SPARI_SAMPLES);
+    /* advice varies dt, and looks further than it was asked */
+    const double least = 1e-300, longer = 1e6;
+    SPARI_REQUIRE(s, run->dt >= least && isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
+                  "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,
+                  run->dt, s->time);
     return SPAR_OK;
 }
 

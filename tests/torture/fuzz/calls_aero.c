@@ -32,6 +32,7 @@ void do_spar_polar_create(call *c) {
         fuzz_finding("handle", "%s answers %d and %s a handle", c->what->name, c->status, p ? "writes" : "writes no");
     }
     c->w->polar[k] = p;
+    c->w->absurd |= p && c->wild;
 }
 
 void do_spar_polar_set_interpolation(call *c) {
@@ -160,6 +161,7 @@ void do_spar_aero_solve(call *c) {
     }
     double density = arg_real(c, 1, 1.3), *wind = arg_reals(c, a->a ? 3 * a->blades * a->n : 0, -12, 12),
            theta = chance(c, 80) ? 1 : arg_real(c, 0, 1);
+    c->wild |= c->w->absurd;
     RUN(c, spar_aero_solve(a->a, density, wind, theta));
 }
 

@@ -216,7 +216,8 @@ typedef struct world {
     int failures;  /* within callbacks */
     int quiet;     /* the fuzzer's own questions */
     int verbose;
-    int fault; /* state of the injected fault */
+    int absurd; /* a polar with odd numbers has been made: loads from it are wild */
+    int fault;  /* state of the injected fault */
     char folder[64];
     int64_t beams_files;
 } world;

@@ -401,6 +401,7 @@ void fuzz_world_end(world *w) {
     for (int i = 0; i < POLARS; i++) {
         spar_polar_destroy(&w->polar[i]);
     }
+    w->absurd = 0;
     for (int i = 0; i < SESSIONS; i++) {
         spar_session_destroy(&w->session[i].s);
     }
