@@ -174,9 +174,10 @@ SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, 
    rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
    50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
-/* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2.
-   As many loads are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has
-   been raised. SPAR_ERR_MEMORY: the order is as before. */
+/* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2;
+   no farther than ten times the last step, so that a much longer one does not start from its rounding. As many loads
+   are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has been raised.
+   SPAR_ERR_MEMORY: the order is as before. */
 SPAR_API int spar_session_set_predictor(spar_session *session, int order);
 /* How a step is iterated. scheme: in, SPAR_COUPLING_*. Done when the change of the fluid's nodal loads is below atol
    + rtol |loads|, in newtons, moments by the member's length; max_iterations >= 1, past which spar_step_check answers
@@ -555,7 +556,8 @@ SPAR_API int spar_step_accept(spar_session *session);
 /* Back to t^n, as if the step had not begun. */
 SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
-   success; anything else ends the step with SPAR_ERR_USER. */
+   success; anything else ends the step with SPAR_ERR_USER. The step stays spar_step's: the calls that
+   begin, solve, check, accept and reject one are SPAR_ERR_STATE from here, on the rank that makes them. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
 /* The whole step. dt: in, s; solve: in, NULL: no fluid (on this rank: others may have one); context: in, handed to
    solve; iterations: out, how many it took, NULL: not wanted. Accepts, or after a failure of any part rejects and

@@ -60,6 +60,7 @@ struct spar_session {
     int iterating; /* the last check asked for another iteration */
     int started;   /* the clock has run */
     int failed;    /* the last check of the step under way failed */
+    int lent;      /* the host's fluid solver runs inside spar_step, to which the step under way belongs */
     int trial;     /* a trial run is under way (trial.h) */
 
     const spari_setting *settings;

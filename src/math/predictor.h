@@ -7,12 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Weights at t^{n+1} of the values at t^n, t^{n-1}, t^{n-2}: the polynomial of `order` 0, 1 or 2 through them, steps of
-   any length, last[0] the step to t^n and last[1] the one before. Order 1 is the spec's f + dt^{n+1}/dt^n (f^n -
-   f^{n-1}). */
+/* A polynomial through values at a distance of a carries whatever is in them to a distance of dt with a weight of dt/a
+   and more (a first step of 1e-30 s, then one of 1 ms: 1e27). So it reaches no farther than so many of the last step,
+   and a curve through three values is drawn only where they do not stand closer together than that. */
+enum { SPARI_REACH = 10 };
+
+/* Weights at t^{n+1} of the values at t^n, t^{n-1}, t^{n-2}: the polynomial of `order` 0, 1 or 2 through them, last[0]
+   the step to t^n and last[1] the one before. Order 1 is the spec's f + dt^{n+1}/dt^n (f^n - f^{n-1}). */
 static inline void spari_predictor(int order, double dt, const double last[2], double w[3]) {
     w[0] = 1, w[1] = w[2] = 0;
-    if (order == 1) {
+    dt = dt > SPARI_REACH * last[0] ? SPARI_REACH * last[0] : dt;
+    if (order == 1 || (order == 2 && last[0] > SPARI_REACH * last[1])) {
         w[1] = -dt / last[0];
         w[0] = 1 - w[1];
     } else if (order == 2) {

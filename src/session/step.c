@@ -24,6 +24,15 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
     return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->phase], cure);
 }
 
+/* What ends or moves on a step is for who began it. Refused before the ranks meet: they are at another call. */
+static int refuse_lent(spar_session *s, const char *call) {
+    SPARI_REQUIRE(s, !s->lent, SPAR_ERR_STATE,
+                  "%s: the step under way is spar_step's, which has called this fluid solver; pull, push and return "
+                  "from it, or make the step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
+                  call);
+    return SPAR_OK;
+}
+
 /* ---- begin ---- */
 
 static int check_begin(spar_session *s, double dt) {
@@ -68,6 +77,7 @@ int spar_step_begin(spar_session *session, double dt) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
     spar_session *s = session;
+    SPARI_TRY(refuse_lent(s, __func__));
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, dt)));
@@ -145,6 +155,7 @@ int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
+    SPARI_TRY(refuse_lent(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
@@ -203,6 +214,7 @@ static int check_iteration(spar_session *s, int status, int *done) {
 int spar_step_check(spar_session *session, int *done) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
+    SPARI_TRY(refuse_lent(session, __func__));
     return check_iteration(session, SPAR_OK, done);
 }
 
@@ -220,6 +232,7 @@ int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
     spar_session *s = session;
+    SPARI_TRY(refuse_lent(s, __func__));
     int status = SPAR_OK;
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
@@ -269,6 +282,7 @@ int spar_step_reject(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
+    SPARI_TRY(refuse_lent(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
@@ -287,7 +301,9 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
             s->parted = 0;
             spari_host host;
             spari_host_begin(&host);
+            s->lent = 1;
             int answer = solve(s, s->time, s->dt, s->iteration, context);
+            s->lent = 0;
             spari_host_end(&host);
             if (s->parted) { /* this rank alone called the others from here: they met it, and know */
                 return SPAR_ERR_COMM;
@@ -305,13 +321,14 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
 
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     SPARI_QUIET;
+    SPARI_TRY(session ? refuse_lent(session, __func__) : SPAR_OK);
     SPARI_TRY(spar_step_begin(session, dt));
     int status = iterate(session, solve, context);
     if (iterations) {
         *iterations = session->iteration;
     }
-    if (status != SPAR_OK && status != SPAR_ERR_COMM) {
-        (void)spar_step_reject(session); /* the message stands: rejecting a step under way cannot fail */
+    if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(session) != SPAR_OK) {
+        status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
     }
     status = status == SPAR_OK ? spar_step_accept(session) : status;
     if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */

@@ -58,6 +58,7 @@ typedef struct scene {
     spar_fluid *fluid;
     spar_aero *aero;
     double beginning[3]; /* where the body was at t^n; unused but by the fluid */
+    int answer;          /* of that call */
     int inner;           /* this rank makes this call from its fluid solver, or, less 100, from before a step */
     int nan_at, user_at, calls;
 } scene;
@@ -117,7 +118,7 @@ static int solve(spar_session *s, double t, double step, int iteration, void *co
     (void)iteration;
     c->calls++;
     if (c->inner > 0 && c->inner < 100) {
-        (void)inner_call(c);
+        c->answer = inner_call(c);
     }
     if (c->calls == c->user_at) {
         return 77;
@@ -283,7 +284,7 @@ static const struct call {
     {"spar_session_advise", make_advise, IDLE, TRIAL | TOLERANCE | NEEDS_SOLVE},
     {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
 };
-enum { CREATE = 0, DESTROY = 1, COMMIT = 2, STEP = 10, TRY = 13, CALLS = sizeof calls / sizeof *calls };
+enum { CREATE = 0, DESTROY = 1, COMMIT = 2, BEGIN = 5, STEP = 10, TRY = 13, CALLS = sizeof calls / sizeof *calls };
 
 /* What else the headers have: every function is here or above. */
 static const char local[] =
@@ -844,10 +845,16 @@ static void inner_calls(void) {
                     }
                     start(INNER, "%s from a callback of %s on rank %d", calls[i].name, calls[outer].name, bad);
                     hit.inner = rank == bad ? where + i : 0;
-                    int status = calls[outer].make(&hit, &a);
+                    int status = calls[outer].make(&hit, &a), own = where == 1 && BEGIN <= i && i <= STEP;
                     (void)alike(status, spar_session_message(hit.session));
-                    if (status == SPAR_OK) {
-                        fail_case("goes unnoticed", status, "");
+                    if (own && rank == bad && hit.answer != SPAR_ERR_STATE) {
+                        fail_case("does to a step under way what is spar_step's", hit.answer, "");
+                    }
+                    if ((status == SPAR_OK) != own) {
+                        fail_case(own ? "disturbs the others" : "goes unnoticed", status, "");
+                    }
+                    if (own && outer == STEP) {
+                        MUST(calm.session, make_step(&calm, &a));
                     }
                     goes_on(&hit, &calm, IDLE);
                 }
