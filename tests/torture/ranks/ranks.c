@@ -334,10 +334,22 @@ static int taken(int share) {
     return take;
 }
 
+/* The long form tells every ten seconds where it is. */
+static void tell(void) {
+    static double told;
+    double now = MPI_Wtime();
+    if (rank == 0 && deadline == 0 && now - told > 10) {
+        printf("   %d cases on %d ranks: %s\n", cases, size, name);
+        (void)fflush(stdout);
+        told = now;
+    }
+}
+
 static void start(int kind, const char *format, const char *a, const char *b, int bad) {
     (void)snprintf(name, sizeof name, format, a, b, bad);
     cases++;
     kinds[kind]++;
+    tell();
     (void)alarm(LIMIT);
 }
 
