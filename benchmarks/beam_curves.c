@@ -31,7 +31,7 @@ static void deflect(int64_t n, const double *eta, const double *xyz, const doubl
     MUST(s, spar_beam_set_axis(b, n, eta, xyz, NULL));
     MUST(s, spar_beam_set_sections(b, 1, eta, K, NULL));
     MUST(s, spar_member_commit(b));
-    MUST(s, spar_member_add_load(b, nodes - 1, load));
+    MUST(s, spar_member_set_load(b, nodes - 1, SPAR_LOAD_DEAD, load));
     MUST(s, spar_member_solve_static(b, 4));
     tip(b, u);
     spar_session_destroy(&s);
@@ -89,7 +89,7 @@ static void swing(double dt, double rho, double u[3]) {
     int n = (int)(0.4 / dt + 0.5);
     for (int k = 1; k <= n; k++) {
         double load[6] = {0, 0, 25 * pow(1 - cos(10 * k * dt), 2), 0, 0, 0};
-        MUST(s.session, spar_member_add_load(s.member, 7, load));
+        MUST(s.session, spar_member_set_load(s.member, 7, SPAR_LOAD_DEAD, load));
         step(&s);
     }
     tip(s.member, u);
@@ -146,7 +146,7 @@ static double jumping(int nodes, int rule, int points, int *used) {
     MUST(s, spar_beam_set_sections(b, 2 * PIECES, eta, K, NULL));
     MUST(s, spar_beam_set_quadrature(b, rule, points));
     MUST(s, spar_member_commit(b));
-    MUST(s, spar_member_add_load(b, nodes - 1, load));
+    MUST(s, spar_member_set_load(b, nodes - 1, SPAR_LOAD_DEAD, load));
     MUST(s, spar_member_solve_static(b, 1));
     tip(b, u);
     *used = b->body->first[1];

@@ -83,7 +83,7 @@ static inline void box_scene(scene *s, int elements, int nodes, double dt, doubl
     MUST(s->session, spar_beam_set_sections(s->member, 1, eta, K, M));
     MUST(s->session, spar_beam_set_quadrature(s->member, SPAR_QUADRATURE_GAUSS, nodes));
     MUST(s->session, spar_member_commit(s->member));
-    MUST(s->session, spar_member_add_load(s->member, (int64_t)elements * nodes - 1, load));
+    MUST(s->session, spar_member_set_load(s->member, (int64_t)elements * nodes - 1, SPAR_LOAD_DEAD, load));
 }
 
 static const double turning = 1.0006; /* rad/s */
@@ -110,7 +110,7 @@ static inline void blade_scene(scene *s, nrel5mw *turbine, int nodes, int points
     for (int i = 0; i < 3; i++) {
         omega[i] = turning * s->rotor.axis[i];
     }
-    MUST(s->session, spar_member_set_velocity(s->member, s->rotor.hub, zero, omega));
+    MUST(s->session, spar_member_set_initial_velocity(s->member, s->rotor.hub, zero, omega));
 }
 
 static inline void step(scene *s) {

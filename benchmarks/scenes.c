@@ -143,7 +143,7 @@ static int build_blade(scene_run *r, double gust) {
     for (int i = 0; i < 3; i++) {
         omega[i] = b->speed * b->rotor.axis[i];
     }
-    TRY(spar_member_set_velocity(r->member, b->rotor.hub, NULL, omega));
+    TRY(spar_member_set_initial_velocity(r->member, b->rotor.hub, NULL, omega));
     TRY(nrel5mw_create_sections(&turbine, &b->rotor, 0, r->member, &r->fluid, twist));
     TRY(spar_fluid_set_interpolation(r->fluid, r->knobs.consistent));
     TRY(nrel5mw_create_aero(&turbine, &b->rotor, 1, &r->fluid, twist, &b->aero));

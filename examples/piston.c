@@ -74,7 +74,7 @@ static int march(spar_session *s, column *water, outcome *out) {
         const double load[6] = {force * sin(frequency * dt * i)};
         int iterations = 0, status = SPAR_OK;
         for (int k = 0; k < PIPES && status == SPAR_OK; k++) {
-            status = spar_member_add_load(water[k].piston, 0, load);
+            status = spar_member_set_load(water[k].piston, 0, SPAR_LOAD_DEAD, load);
         }
         if (status == SPAR_OK) {
             status = spar_step(s, dt, solve_water, water, &iterations);

@@ -168,7 +168,7 @@ static int spin(scene *s, int b) {
     for (int i = 0; i < 3; i++) {
         omega[i] = s->report.speed * s->rotor.axis[i];
     }
-    TRY(spar_member_set_velocity(s->blade[b], s->rotor.hub, NULL, omega));
+    TRY(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, NULL, omega));
     return SPAR_OK;
 }
 

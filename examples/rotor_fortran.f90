@@ -667,7 +667,7 @@ contains
   subroutine spin(b)
     integer, intent(in) :: b
 
-    call blade(b)%set_velocity(x0=hub, omega=speed * shaft)
+    call blade(b)%set_initial_velocity(x0=hub, omega=speed * shaft)
   end subroutine spin
 
   ! Sections on the line first, to learn the frames there; then with the aerodynamic centres in these frames.

@@ -135,7 +135,7 @@ module spar
     procedure :: set_external => member_set_external
     procedure :: set_effects => member_set_effects
     procedure :: set_fidelity => member_set_fidelity
-    procedure :: set_velocity => member_set_velocity
+    procedure :: set_initial_velocity => member_set_initial_velocity
     procedure :: set_owner => member_set_owner
     procedure :: commit => member_commit
     procedure, private :: member_get_count_64, member_get_count_32
@@ -144,10 +144,8 @@ module spar
     procedure :: get_motion => member_get_motion
     procedure :: set_motion => member_set_motion
     procedure :: drive_root => member_drive_root
-    procedure, private :: member_add_load_64, member_add_load_32
-    generic :: add_load => member_add_load_64, member_add_load_32
-    procedure, private :: member_add_follower_64, member_add_follower_32
-    generic :: add_follower => member_add_follower_64, member_add_follower_32
+    procedure, private :: member_set_load_64, member_set_load_32
+    generic :: set_load => member_set_load_64, member_set_load_32
     procedure :: set_line_load => member_set_line_load
     procedure :: get_loads => member_get_loads
     procedure :: get_reaction => member_get_reaction
@@ -155,7 +153,7 @@ module spar
     procedure :: get_energy => member_get_energy
     procedure :: get_work => member_get_work
     procedure :: solve_static => member_solve_static
-    procedure :: get_modes => member_get_modes
+    procedure :: solve_modes => member_solve_modes
     procedure :: set_modal_damping => member_set_modal_damping
     procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
@@ -997,14 +995,14 @@ contains
     call finish(spar_member_set_fidelity(self%handle, kind, n), self%session, stat, errmsg)
   end subroutine member_set_fidelity
 
-  subroutine member_set_velocity(self, x0, v0, omega, stat, errmsg)
+  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_set_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
-  end subroutine member_set_velocity
+    call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
+  end subroutine member_set_initial_velocity
 
   subroutine member_set_owner(self, rank, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -1137,9 +1135,10 @@ contains
     fault = 'nodes are 1 to ' // trim(text_of(n)) // '; there is no node ' // trim(text_of(node))
   end subroutine need_node
 
-  subroutine member_add_load_64(self, node, load, stat, errmsg)
+  subroutine member_set_load_64(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int64_t), intent(in) :: node
+    integer(c_int), intent(in) :: kind
     real(c_double), intent(in) :: load(6)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -1147,53 +1146,28 @@ contains
 
     call need_node(fault, self, node)
     if (allocated(fault)) then
-      call refuse('member%add_load', fault, stat, errmsg, self%name)
+      call refuse('member%set_load', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_member_add_load(self%handle, node - 1, load), self%session, stat, errmsg)
-  end subroutine member_add_load_64
+    call finish(spar_member_set_load(self%handle, node - 1, kind, load), self%session, stat, errmsg)
+  end subroutine member_set_load_64
 
-  subroutine member_add_load_32(self, node, load, stat, errmsg)
+  subroutine member_set_load_32(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int), intent(in) :: node
+    integer(c_int), intent(in) :: kind
     real(c_double), intent(in) :: load(6)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call self%add_load(int(node, c_int64_t), load, stat, errmsg)
-  end subroutine member_add_load_32
+    call self%set_load(int(node, c_int64_t), kind, load, stat, errmsg)
+  end subroutine member_set_load_32
 
-  subroutine member_add_follower_64(self, node, load, stat, errmsg)
+  subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int64_t), intent(in) :: node
-    real(c_double), intent(in) :: load(6)
-    integer(c_int), intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need_node(fault, self, node)
-    if (allocated(fault)) then
-      call refuse('member%add_follower', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_add_follower(self%handle, node - 1, load), self%session, stat, errmsg)
-  end subroutine member_add_follower_64
-
-  subroutine member_add_follower_32(self, node, load, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: node
-    real(c_double), intent(in) :: load(6)
-    integer(c_int), intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%add_follower(int(node, c_int64_t), load, stat, errmsg)
-  end subroutine member_add_follower_32
-
-  subroutine member_set_line_load(self, eta, load, kind, stat, errmsg)
-    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: kind
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in) :: load(:,:)
-    integer(c_int), intent(in) :: kind
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
@@ -1203,7 +1177,7 @@ contains
       call refuse('member%set_line_load', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_beam_set_line_load(self%handle, size(eta, kind=c_int64_t), eta, load, kind), &
+    call finish(spar_beam_set_line_load(self%handle, kind, size(eta, kind=c_int64_t), eta, load), &
         self%session, stat, errmsg)
   end subroutine member_set_line_load
 
@@ -1299,7 +1273,7 @@ contains
         errmsg)
   end subroutine member_set_modal_damping
 
-  subroutine member_get_modes(self, frequency_hz, shapes, stat, errmsg)
+  subroutine member_solve_modes(self, frequency_hz, shapes, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: frequency_hz(:)
     real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:)
@@ -1317,12 +1291,12 @@ contains
     if (present(shapes)) call need(fault, 'shapes', shape(shapes, kind=c_int64_t), &
         [6_c_int64_t, n, size(frequency_hz, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse('member%get_modes', fault, stat, errmsg, self%name)
+      call refuse('member%solve_modes', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_member_get_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
+    call finish(spar_member_solve_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
         shapes), self%session, stat, errmsg)
-  end subroutine member_get_modes
+  end subroutine member_solve_modes
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self

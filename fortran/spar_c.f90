@@ -284,12 +284,12 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_set_fidelity
 
-    function spar_member_set_velocity(member, x0, v0, omega) bind(c) result(status)
+    function spar_member_set_initial_velocity(member, x0, v0, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member
       real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
       integer(c_int) :: status
-    end function spar_member_set_velocity
+    end function spar_member_set_initial_velocity
 
     function spar_member_set_owner(member, rank) bind(c) result(status)
       import :: c_int, c_ptr
@@ -339,29 +339,22 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_drive_root
 
-    function spar_member_add_load(member, node, load) bind(c) result(status)
+    function spar_member_set_load(member, node, kind, load) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
       integer(c_int64_t), value :: node
+      integer(c_int), value :: kind
       real(c_double), intent(in), optional :: load(6)
       integer(c_int) :: status
-    end function spar_member_add_load
+    end function spar_member_set_load
 
-    function spar_member_add_follower(member, node, load) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), value :: node
-      real(c_double), intent(in), optional :: load(6)
-      integer(c_int) :: status
-    end function spar_member_add_follower
-
-    function spar_beam_set_line_load(beam, n, eta, load, kind) bind(c) result(status)
+    function spar_beam_set_line_load(beam, kind, n, eta, load) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam
+      integer(c_int), value :: kind
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: eta(*)
       real(c_double), intent(in), optional :: load(*)
-      integer(c_int), value :: kind
       integer(c_int) :: status
     end function spar_beam_set_line_load
 
@@ -418,13 +411,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_set_modal_damping
 
-    function spar_member_get_modes(member, n, frequency_hz, shapes) bind(c) result(status)
+    function spar_member_solve_modes(member, n, frequency_hz, shapes) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
       integer(c_int64_t), value :: n
       real(c_double), intent(inout), optional :: frequency_hz(*), shapes(*)
       integer(c_int) :: status
-    end function spar_member_get_modes
+    end function spar_member_solve_modes
 
     function spar_fluid_create(member, name, fluid) bind(c) result(status)
       import :: c_char, c_int, c_ptr

@@ -45,7 +45,7 @@ static void begin(scene *s, int alone) {
     }
     for (int b = 0; b < BLADES; b++) {
         OK(nrel5mw_create_blade(&s->data, &s->rotor, s->session, b, 1, NODES, &s->blade[b]));
-        OK(spar_member_set_velocity(s->blade[b], s->rotor.hub, still, omega));
+        OK(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, still, omega));
         OK(spar_member_commit(s->blade[b]));
         if (b % size == rank) {
             OK(nrel5mw_create_sections(&s->data, &s->rotor, b, s->blade[b], &s->fluid[s->here], twist));

@@ -40,7 +40,7 @@ static void build(scene *s, int elements, int nodes) {
     }
     for (int b = 0; b < BLADES; b++) {
         OK(nrel5mw_create_blade(&s->data, &s->rotor, s->session, b, elements, nodes, &s->blade[b]));
-        OK(spar_member_set_velocity(s->blade[b], s->rotor.hub, still, omega));
+        OK(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, still, omega));
         OK(spar_member_commit(s->blade[b]));
         OK(nrel5mw_create_sections(&s->data, &s->rotor, b, s->blade[b], &s->fluid[b], twist));
     }

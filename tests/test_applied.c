@@ -59,10 +59,10 @@ static void load_all(spar_session *s, spar_member *b, int which) {
     const double line[30] = {1, 2, 3, 0.1, 0.2, 0.3, -1, 1,  0.5, 0.4, -0.3, 0.2, 2, 2, -2,
                              0, 0, 0, 4,   1,   0,   1,  -1, 1,   0.3, 0.2,  0.1, 1, 1, 1};
     if (which == 0) {
-        OK(s, spar_member_add_follower(b, 9, nodal));
-        OK(s, spar_member_add_follower(b, 4, nodal));
+        OK(s, spar_member_set_load(b, 9, SPAR_LOAD_FOLLOWER, nodal));
+        OK(s, spar_member_set_load(b, 4, SPAR_LOAD_FOLLOWER, nodal));
     } else {
-        OK(s, spar_beam_set_line_load(b, 5, eta, line, which == 1 ? SPAR_LOAD_DEAD : SPAR_LOAD_FOLLOWER));
+        OK(s, spar_beam_set_line_load(b, which == 1 ? SPAR_LOAD_DEAD : SPAR_LOAD_FOLLOWER, 5, eta, line));
     }
 }
 
@@ -112,7 +112,7 @@ static void test_resultants(void **state) {
     scene_box(K, M);
     spar_member *b = scene_beam(s, "b", 2, 5, L, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_beam_set_line_load(b, 1, eta, line, SPAR_LOAD_DEAD));
+    OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 1, eta, line));
     OK(s, spar_member_get_reference(b, x, NULL));
     scatter(b, 3, unique);
     spari_member_from_unique(b, 7, unique, q);
@@ -140,7 +140,7 @@ static void test_resultants(void **state) {
         NEAR(force[k], L * line[k], 1e-12);
         NEAR(moment[k], L * line[3 + k] + first[k], 1e-12);
     }
-    OK(s, spar_beam_set_line_load(b, 0, NULL, NULL, SPAR_LOAD_DEAD));
+    OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 0, NULL, NULL));
     OK(s, spar_member_get_loads(b, load));
     for (int i = 0; i < 60; i++) {
         assert_true(load[i] == 0);
@@ -173,7 +173,7 @@ static void test_small_uniform_loads(void **state) {
             spar_member *b = scene_beam(s, "b", 2, 8, L, K, NULL);
             OK(s, spar_member_set_effects(b, linear ? 0 : SPAR_EFFECT_LARGE_ROTATION));
             OK(s, spar_member_commit(b));
-            OK(s, spar_beam_set_line_load(b, 4, eta, load, kind));
+            OK(s, spar_beam_set_line_load(b, kind, 4, eta, load));
             OK(s, spar_member_solve_static(b, 1));
             scene_tip(b, q);
             double shear = w * (L * L - a * a) / 2 / stiff;
@@ -184,8 +184,8 @@ static void test_small_uniform_loads(void **state) {
             NEAR(r[2], -w * (L - a), 1e-7 * w);
             NEAR(r[4], w * (L * L - a * a) / 2, 1e-7 * w);
             moment[1] = 0, moment[4] = -w;
-            OK(s, spar_beam_set_line_load(b, 1, eta, moment, kind));
-            OK(s, spar_beam_set_line_load(b, 0, NULL, NULL, 1 - kind));
+            OK(s, spar_beam_set_line_load(b, kind, 1, eta, moment));
+            OK(s, spar_beam_set_line_load(b, 1 - kind, 0, NULL, NULL));
             OK(s, spar_member_solve_static(b, 1));
             scene_tip(b, q);
             NEAR(q[2], w * L * L * L / 3 / EI, 1e-7 * w);
@@ -225,7 +225,7 @@ static void test_follower_cantilever(void **state) {
     for (int i = 0; i < 5; i++) {
         double load[6] = {0, 0, force[i], 0, 0, 0}, q[7], r[6], along, across, t;
         elastica(force[i] / EI, L, &t, &along, &across);
-        OK(s, spar_member_add_follower(b, 31, load));
+        OK(s, spar_member_set_load(b, 31, SPAR_LOAD_FOLLOWER, load));
         OK(s, spar_member_solve_static(b, 4));
         scene_tip(b, q);
         /* the tip is `along` ahead of the root and `across` to the side in the frame that has turned by t */
@@ -259,7 +259,7 @@ static void test_weight_as_line_load(void **state) {
         OK(s, spar_member_commit(b));
         if (k == 1) {
             double load[6] = {0, 0, 20 * g[2], 0, 0, 0};
-            OK(s, spar_beam_set_line_load(b, 1, eta, load, SPAR_LOAD_DEAD));
+            OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 1, eta, load));
         }
         scene_run(s, 0.01, 5);
         scene_tip(b, after[k]);
@@ -292,9 +292,9 @@ static void test_rigid_thrust(void **state) {
         spar_member *b = NULL;
         OK(s, spar_session_set_newton(s, 1e-12, 1e-12, 6));
         OK(s, spar_rigid_create(s, "b", NULL, NULL, M, &b));
-        OK(s, spar_member_set_velocity(b, NULL, NULL, w));
+        OK(s, spar_member_set_initial_velocity(b, NULL, NULL, w));
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_follower(b, 0, F));
+        OK(s, spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, F));
         scene_run(s, T / (50 << k), 50 << k);
         OK(s, spar_member_get_motion(b, q, NULL, NULL));
         double x = F[0] / m * (1 - cos(w[2] * T)) / w[2] / w[2],
@@ -323,8 +323,8 @@ static void test_saved(void **state) {
     OK(s, spar_session_save(s, path));
     scene_run(s, 0.01, 3);
     OK(s, spar_member_get_motion(b, q[0], NULL, NULL));
-    OK(s, spar_member_add_follower(b, 9, zero));
-    OK(s, spar_beam_set_line_load(b, 0, NULL, NULL, SPAR_LOAD_FOLLOWER));
+    OK(s, spar_member_set_load(b, 9, SPAR_LOAD_FOLLOWER, zero));
+    OK(s, spar_beam_set_line_load(b, SPAR_LOAD_FOLLOWER, 0, NULL, NULL));
     OK(s, spar_session_load(s, path));
     scene_run(s, 0.01, 3);
     OK(s, spar_member_get_motion(b, q[1], NULL, NULL));
@@ -348,19 +348,19 @@ static void test_refusals(void **state) {
     double q[4] = {1, 0, 0, 0}, x[3] = {0};
     spar_member *p = NULL;
     OK(s, spar_point_create(s, "p", x, q, &p));
-    assert_int_equal(spar_member_add_follower(p, 0, load), SPAR_ERR_STATE);
+    assert_int_equal(spar_member_set_load(p, 0, SPAR_LOAD_FOLLOWER, load), SPAR_ERR_STATE);
     OK(s, spar_member_commit(p));
-    assert_int_equal(spar_beam_set_line_load(p, 1, eta, load, SPAR_LOAD_DEAD), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_set_line_load(b, 3, eta, load, SPAR_LOAD_DEAD), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(p, SPAR_LOAD_DEAD, 1, eta, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 3, eta, load), SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(spar_session_message(s), "eta 2"));
-    assert_int_equal(spar_beam_set_line_load(b, 1, eta, bad, SPAR_LOAD_DEAD), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_set_line_load(b, 1, eta, load, 2), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_set_line_load(b, 1, NULL, load, 0), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_set_line_load(b, -1, eta, load, 0), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_add_follower(b, 10, load), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_add_follower(b, 0, bad), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_add_follower(b, 0, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_add_follower(NULL, 0, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 1, eta, bad), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(b, 2, 1, eta, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(b, 0, 1, NULL, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_set_line_load(b, 0, -1, eta, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_load(b, 10, SPAR_LOAD_FOLLOWER, load), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, bad), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_set_load(NULL, 0, SPAR_LOAD_FOLLOWER, load), SPAR_ERR_ARGUMENT);
     assert_null(b->applied);
     spar_session_destroy(&s);
 }

@@ -151,7 +151,7 @@ static void test_elements_agree(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "b", E[k], P[k], 10, K, M);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, E[k] * P[k] - 1, load));
+        OK(s, spar_member_set_load(b, E[k] * P[k] - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q);
         NEAR(q[0], -0.0902726627566, 1e-10);
@@ -177,7 +177,7 @@ static void test_nodes_given_agree_with_the_axis(void **state) {
         OK(s, spar_beam_set_sections(b, 1, eta, K, M));
         OK(s, spar_member_commit(b));
         OK(s, spar_member_get_reference(b, x, q));
-        OK(s, spar_member_add_load(b, 19, load));
+        OK(s, spar_member_set_load(b, 19, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, tip[k]);
         spar_session_destroy(&s);
@@ -207,7 +207,7 @@ static void test_kink(void **state) {
     OK(s, spar_beam_set_nodes(b, 12, x, q));
     OK(s, spar_beam_set_sections(b, 1, eta, C, NULL));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 11, load));
+    OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, tip);
     double w = 1e-4 * L * L * L * (2 / (3 * EI) + 1 / GJ);

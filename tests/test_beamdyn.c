@@ -20,7 +20,7 @@ static void test_bend(void **state) {
     OK(s, spar_beam_create(s, "b", 1, 14, &b));
     OK(s, spar_beam_read_beamdyn(b, DATA "bend_primary.inp", NULL));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 13, load));
+    OK(s, spar_member_set_load(b, 13, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 2));
     scene_tip(b, q);
     NEAR(q[0], -23.6459716009, 1e-8);

@@ -26,7 +26,7 @@ static double free_body(double dt, double rho, double *momentum) {
     scene_mass(M, 2, c, J);
     OK(s, spar_rigid_create(s, "body", c, NULL, M, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     OK(s, spar_session_set_integrator(s, rho, 1));
     scene_run(s, dt, (int64_t)(5 / dt + 0.5));
     OK(s, spar_member_get_motion(r, q, v, NULL));
@@ -64,7 +64,7 @@ static void top_state(double dt, double x[3], double q[4], double reaction[6]) {
     OK(s, spar_rigid_create(s, "top", zero, NULL, M, &r));
     OK(s, spar_member_set_root(r, SPAR_ROOT_PINNED));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, zero, zero, w));
+    OK(s, spar_member_set_initial_velocity(r, zero, zero, w));
     OK(s, spar_session_set_integrator(s, 0.9, 1));
     scene_run(s, dt, (int64_t)(0.5 / dt + 0.5));
     OK(s, spar_member_get_motion(r, motion, NULL, NULL));
@@ -110,7 +110,7 @@ static void test_point_follows(void **state) {
     spar_member *p;
     OK(s, spar_point_create(s, "hub", x, NULL, &p));
     OK(s, spar_member_commit(p));
-    OK(s, spar_member_set_velocity(p, x0, v0, w));
+    OK(s, spar_member_set_initial_velocity(p, x0, v0, w));
     OK(s, spar_member_get_motion(p, NULL, v, NULL));
     double r[3] = {1, 1, 3}, c[3];
     spari_cross(w, r, c);
@@ -143,7 +143,7 @@ static double step_loaded(double dt, double T, double q[7]) {
     scene_box(K, M);
     spar_member *b = scene_beam(s, "box", 4, 8, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 31, load));
+    OK(s, spar_member_set_load(b, 31, SPAR_LOAD_DEAD, load));
     OK(s, spar_session_set_integrator(s, 1, 1));
     scene_run(s, dt, (int64_t)(T / dt + 0.5));
     scene_tip(b, q);
@@ -171,7 +171,7 @@ static void test_free_beam_keeps_momentum_and_energy(void **state) {
     spar_member *b = scene_beam(s, "free", 1, 8, 10, K, M);
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_velocity(b, x0, v0, w));
+    OK(s, spar_member_set_initial_velocity(b, x0, v0, w));
     OK(s, spar_session_set_integrator(s, 1, 1));
     OK(s, spar_member_get_energy(b, e0));
     scene_run(s, 1e-3, 6000);
@@ -204,10 +204,10 @@ static void turning_scene(const double p[4], double q[7], double v[6], double r[
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_commit(b));
     spari_rotate(p, w, wt);
-    OK(s, spar_member_set_velocity(b, zero, zero, wt));
+    OK(s, spar_member_set_initial_velocity(b, zero, zero, wt));
     spari_rotate(p, load, L);
     spari_rotate(p, load + 3, L + 3);
-    OK(s, spar_member_add_load(b, 7, L));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, L));
     for (int n = 1; n <= 100; n++) {
         double root[7] = {0, 0, 0, 1, 0, 0, 0}, rate[6] = {0, 0, 0, wt[0], wt[1], wt[2]},
                psi[3] = {wt[0] * n * dt, wt[1] * n * dt, wt[2] * n * dt};
@@ -261,7 +261,7 @@ static void test_steady_rotation_over_many_turns(void **state) {
     spar_member *b = scene_beam(s, "rod", 1, 8, 1, K, M);
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_velocity(b, zero, zero, w));
+    OK(s, spar_member_set_initial_velocity(b, zero, zero, w));
     OK(s, spar_session_set_integrator(s, 0.5, 2));
     int n = 31416;
     double dt = 0.01;
@@ -338,7 +338,7 @@ static void test_reject_leaves_no_trace(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "box", 1, 6, 10, K, M);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 5, load));
+        OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
         for (int n = 0; n < 20; n++) {
             if (k && n % 3 == 0) {
                 OK(s, spar_step_begin(s, 0.004));

@@ -25,7 +25,7 @@ static void test_linear_is_the_limit_of_small_motion(void **state) {
         for (int linear = 0; linear < 2; linear++) {
             spar_session *s = scene_session();
             spar_member *b = beam_with(s, linear ? SPAR_EFFECT_INERTIA : -1, SPAR_ROOT_FIXED);
-            OK(s, spar_member_add_load(b, 7, load));
+            OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
             OK(s, spar_session_set_integrator(s, 0.9, 1));
             scene_run(s, 1e-3, 100);
             scene_tip(b, q[linear]);
@@ -43,7 +43,7 @@ static void test_linear_factors_once(void **state) {
     double load[6] = {0, 0, 1, 0, 0, 0};
     spar_session *s = scene_session();
     spar_member *b = beam_with(s, SPAR_EFFECT_INERTIA, SPAR_ROOT_FIXED);
-    OK(s, spar_member_add_load(b, 7, load));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
     scene_run(s, 1e-3, 1);
     int64_t factors = b->solver->factors;
     scene_run(s, 1e-3, 500);
@@ -65,7 +65,7 @@ static void test_linear_static(void **state) {
         OK(s, spar_member_set_effects(b, gravity ? SPAR_EFFECT_GRAVITY : 0));
         OK(s, spar_member_commit(b));
         load[2] = gravity ? 0 : 10;
-        OK(s, spar_member_add_load(b, 11, load));
+        OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q);
         double w =
@@ -83,7 +83,7 @@ static void test_without_inertia(void **state) {
     for (int k = 0; k < 2; k++) {
         spar_session *s = scene_session();
         spar_member *b = beam_with(s, k ? SPAR_EFFECT_LARGE_ROTATION : -1, SPAR_ROOT_FIXED);
-        OK(s, spar_member_add_load(b, 7, load));
+        OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
         if (k) {
             scene_run(s, 0.5, 1);
             OK(s, spar_member_get_energy(b, e));
@@ -132,7 +132,7 @@ static void test_gyroscopic(void **state) {
         OK(s, spar_member_set_effects(r, SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION |
                                              (k ? SPAR_EFFECT_GYROSCOPIC : 0)));
         OK(s, spar_member_commit(r));
-        OK(s, spar_member_set_velocity(r, c, c, w));
+        OK(s, spar_member_set_initial_velocity(r, c, c, w));
         scene_run(s, 1e-3, 1000);
         OK(s, spar_member_get_motion(r, q, v, NULL));
         spari_rotate_back(q + 3, v + 3, L);
@@ -161,7 +161,7 @@ static void test_centrifugal(void **state) {
         spar_member *r;
         OK(s, spar_rigid_create(s, "r", x, NULL, mass, &r));
         OK(s, spar_member_set_root(r, SPAR_ROOT_DRIVEN));
-        OK(s, spar_member_set_velocity(r, x, x, v + 3));
+        OK(s, spar_member_set_initial_velocity(r, x, x, v + 3));
         OK(s, spar_member_set_effects(r, SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION |
                                              (k ? SPAR_EFFECT_GYROSCOPIC : 0)));
         OK(s, spar_member_commit(r));
@@ -191,11 +191,11 @@ static void test_damping(void **state) {
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_get_modes(b, 1, f, shape));
+    OK(s, spar_member_solve_modes(b, 1, f, shape));
     double load[6] = {0, 0, 1, 0, 0, 0}, none[6] = {0};
-    OK(s, spar_member_add_load(b, 7, load));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_member_add_load(b, 7, none));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, none));
     OK(s, spar_session_set_integrator(s, 1, 1));
     double e0[4], e1[4], omega = 6.283185307179586 * f[0], period = 1 / f[0], before[4];
     int n = 400;
@@ -223,9 +223,9 @@ static void test_damping_off(void **state) {
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 7, load));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_member_add_load(b, 7, none));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, none));
     OK(s, spar_session_set_integrator(s, 1, 1));
     OK(s, spar_member_get_energy(b, e0));
     scene_run(s, 1e-3, 1000);
@@ -295,7 +295,7 @@ static void test_external(void **state) {
     OK(s, spar_beam_set_axis(b, 2, eta, xyz, NULL));
     OK(s, spar_member_set_external(b, 1));
     OK(s, spar_member_commit(b)); /* needs no sections */
-    OK(s, spar_member_add_load(b, 2, load));
+    OK(s, spar_member_set_load(b, 2, SPAR_LOAD_DEAD, load));
     OK(s, spar_step_begin(s, 0.1));
     OK(s, spar_member_get_loads(b, out));
     assert_memory_equal(out + 12, load, sizeof load);

@@ -22,8 +22,8 @@ static void test_static(void **state) {
             gsl_integration_glfixed_point(0, 1, (size_t)k, &l, &w, gauss);
         }
         force[1] = 40 * l, force[2] = 100 * l, line[2] = 5 * l;
-        OK(s, spar_member_add_load(b, P - 1, force));
-        OK(s, spar_beam_set_line_load(b, 1, eta, line, SPAR_LOAD_DEAD));
+        OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, force));
+        OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 1, eta, line));
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_member_get_motion(b, q, NULL, NULL));
         OK(s, spar_member_get_loads(b, load));
@@ -60,9 +60,9 @@ static double defect(int n, double T) {
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, P - 1, dead));
-    OK(s, spar_member_add_follower(b, P / 2, follower));
-    OK(s, spar_beam_set_line_load(b, 2, eta, line, SPAR_LOAD_FOLLOWER));
+    OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, dead));
+    OK(s, spar_member_set_load(b, P / 2, SPAR_LOAD_FOLLOWER, follower));
+    OK(s, spar_beam_set_line_load(b, SPAR_LOAD_FOLLOWER, 2, eta, line));
     OK(s, spar_member_solve_static(b, 1));
     OK(s, spar_member_get_work(b, work));
     assert_true(work[0] == 0 && work[1] == 0 && work[2] == 0);
@@ -104,7 +104,7 @@ static void test_dead_force(void **state) {
     spar_member *b = scene_beam(s, "b", 1, P, 10, K, M);
     OK(s, spar_session_set_integrator(s, 1, 3));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, P - 1, load));
+    OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_get_work(b, work));
     for (int i = 0; i < 5; i++) {
         scene_run(s, 0.01, 10);

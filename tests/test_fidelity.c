@@ -27,8 +27,8 @@ static spar_session *turning(int fidelity, int64_t modes, int root, double size,
     OK(s, spar_member_set_root(b, root));
     OK(s, spar_member_set_fidelity(b, fidelity, modes));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_velocity(b, x0, x0, omega));
-    OK(s, spar_member_add_load(b, 11, load));
+    OK(s, spar_member_set_initial_velocity(b, x0, x0, omega));
+    OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
     *out = b;
     return s;
 }
@@ -162,8 +162,8 @@ static void test_free_frequencies(void **state) {
         OK(s, spar_member_set_root(b, cases[k].root));
         OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, cases[k].rigid + 6));
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_get_modes(b, cases[k].rigid + 6, f, NULL));
-        assert_int_equal(spar_member_get_modes(b, cases[k].rigid + 7, f, NULL), SPAR_ERR_ARGUMENT);
+        OK(s, spar_member_solve_modes(b, cases[k].rigid + 6, f, NULL));
+        assert_int_equal(spar_member_solve_modes(b, cases[k].rigid + 7, f, NULL), SPAR_ERR_ARGUMENT);
         for (int i = 0; i < cases[k].rigid; i++) {
             NEAR(f[i], 0, 1e-6);
         }
@@ -186,7 +186,7 @@ static void test_modal_falls(void **state) {
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 12));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_velocity(b, x0, v, spin));
+    OK(s, spar_member_set_initial_velocity(b, x0, v, spin));
     OK(s, spar_member_get_work(b, work));
     OK(s, spar_member_get_energy(b, e[0]));
     assert_int_equal(spar_member_solve_static(b, 1), SPAR_ERR_STATE);
@@ -216,9 +216,9 @@ static void test_rigid_modes(void **state) {
         spar_member *b;
         spar_session *s = turning(SPAR_FIDELITY_RIGID, 0, SPAR_ROOT_PINNED, 0, k ? none : g, &b);
         if (k) {
-            OK(s, spar_member_add_load(b, 11, load));
+            OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
         }
-        OK(s, spar_member_get_modes(b, 3, f, &shape[0][0][0]));
+        OK(s, spar_member_solve_modes(b, 3, f, &shape[0][0][0]));
         NEAR(f[0], 0, 1e-7);                                                    /* about its own axis */
         double swing[2] = {m * 100 / 3 + 10 * M[35], m * 100 / 3 + 10 * M[28]}; /* about z, about y */
         for (int i = 0; i < 2; i++) {
@@ -227,7 +227,7 @@ static void test_rigid_modes(void **state) {
             NEAR(fabs(shape[1 + i][11][1 + i]), 10 / sqrt(swing[i]), 1e-9); /* y, then z, of unit modal mass */
             NEAR(shape[1 + i][0][1 + i], 0, 1e-14);
         }
-        assert_int_equal(spar_member_get_modes(b, 4, f, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_member_solve_modes(b, 4, f, NULL), SPAR_ERR_ARGUMENT);
         spar_session_destroy(&s);
     }
 }
@@ -253,7 +253,7 @@ static void test_rigid_is_the_stiff_limit(void **state) {
             OK(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
             OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
             OK(s, spar_member_commit(b));
-            OK(s, spar_member_add_load(b, 5, load));
+            OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
             OK(s, spar_member_get_work(b, work[i]));
             scene_run(s, 1e-3, 500);
             scene_tip(b, q[i]);
@@ -284,7 +284,7 @@ static void test_rigid_free_centre(void **state) {
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 5, load));
+    OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
     scene_run(s, 1e-3, 500);
     scene_tip(b, q);
     double c[3] = {-5, 0, 0}, r[3]; /* from the tip to the centre */
@@ -397,9 +397,9 @@ static void test_energy(void **state) {
         OK(s, spar_member_set_fidelity(b, modal ? SPAR_FIDELITY_MODAL : SPAR_FIDELITY_LINEAR, 5));
         OK(s, spar_member_commit(b));
         OK(s, spar_session_set_integrator(s, 1, 1));
-        OK(s, spar_member_add_load(b, 7, load));
+        OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
-        OK(s, spar_member_add_load(b, 7, none));
+        OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, none));
         OK(s, spar_member_get_energy(b, e[0]));
         scene_run(s, 1e-3, 400);
         OK(s, spar_member_get_energy(b, e[1]));
@@ -419,7 +419,7 @@ static void test_sudden_start(void **state) {
         spar_member *b;
         spar_session *s = turning(rungs[k], 12, SPAR_ROOT_DRIVEN, 0.1, NULL, &b);
         const double none[3] = {0};
-        OK(s, spar_member_set_velocity(b, none, none, none));
+        OK(s, spar_member_set_initial_velocity(b, none, none, none));
         for (int i = 1; i <= 50; i++) {
             const double q[7] = {0, 0, 2e-4 * i, 1, 0, 0, 0}, v[6] = {0, 0, 0.1, 0, 0, 0};
             OK(s, spar_member_drive_root(b, q, v, NULL));

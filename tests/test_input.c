@@ -21,7 +21,7 @@ static void still_works(spar_session *s, const char *name) {
     double load[6] = {0, 0, 150, 0, 0, 0}, q[7];
     spar_member *b = scene_beam(s, name, 1, 12, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 11, load));
+    OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     NEAR(q[2], 1.2297364829237, 1e-10); /* composite box, see test_static.c */
@@ -187,18 +187,19 @@ static void test_use_before_commit_and_loads(void **state) {
     spar_member *b = scene_beam(s, "b", 1, 4, 10, K, M);
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_motion(b, q, NULL, NULL));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_energy(b, e));
-    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_add_load(b, 0, load));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_set_load(b, 0, SPAR_LOAD_DEAD, load));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_solve_static(b, 1));
-    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_modes(b, 1, f, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_solve_modes(b, 1, f, NULL));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_step_begin(s, 0.1));
     OK(s, spar_member_commit(b));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no node 4", spar_member_add_load(b, 4, load));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no node -1", spar_member_add_load(b, -1, load));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_member_add_load(b, 3, load));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_add_load(b, 3, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no node 4", spar_member_set_load(b, 4, SPAR_LOAD_DEAD, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no node -1", spar_member_set_load(b, -1, SPAR_LOAD_DEAD, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no kind of load 2", spar_member_set_load(b, 3, 2, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, NULL));
     REFUSED(s, SPAR_ERR_STATE, "external", spar_member_set_motion(b, q, NULL, NULL));
     REFUSED(s, SPAR_ERR_STATE, "driven", spar_member_drive_root(b, q, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "modes", spar_member_get_modes(b, 100, f, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "modes", spar_member_solve_modes(b, 100, f, NULL));
     still_works(s, "after");
     spar_session_destroy(&s);
 }
@@ -229,7 +230,7 @@ static void test_steps(void **state) {
     assert_int_equal(done, 1);
     OK(s, spar_step_accept(s));
     REFUSED(s, SPAR_ERR_STATE, "clock has started", spar_beam_create(s, "late", 1, 4, &late));
-    REFUSED(s, SPAR_ERR_STATE, "clock has started", spar_member_set_velocity(b, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "clock has started", spar_member_set_initial_velocity(b, NULL, NULL, NULL));
     double t;
     int64_t step;
     OK(s, spar_session_get_time(s, &t, &step, NULL));

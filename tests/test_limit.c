@@ -45,11 +45,11 @@ static void test_euler_column(void **state) {
             spar_session *s = scene_session();
             spar_member *b = column(s, elements, L, EI, k ? 3 : 1);
             double load[6] = {-2 * critical, 0, 0, 0, 0, 0};
-            OK(s, spar_member_add_load(b, 8 * elements - 1, load));
+            OK(s, spar_member_set_load(b, 8 * elements - 1, SPAR_LOAD_DEAD, load));
             expect_end(s, b, 1, 0.5, 2e-4);
             expect_end(s, b, 7, 0.5, 1e-4);
             load[0] = -0.999 * critical;
-            OK(s, spar_member_add_load(b, 8 * elements - 1, load));
+            OK(s, spar_member_set_load(b, 8 * elements - 1, SPAR_LOAD_DEAD, load));
             OK(s, spar_member_solve_static(b, 1));
             spar_session_destroy(&s);
         }
@@ -66,7 +66,7 @@ static void test_heavy_column(void **state) {
         spar_session *s = scene_session();
         spar_member *b = column(s, 1, L, EI, 2);
         if (k == 0) {
-            OK(s, spar_beam_set_line_load(b, 1, eta, load, SPAR_LOAD_DEAD));
+            OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 1, eta, load));
         } else {
             OK(s, spar_session_set_gravity(s, g));
         }
@@ -87,7 +87,7 @@ static void test_spinning_bar(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "mast", 1, 12, L, K, M);
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
-    OK(s, spar_member_set_velocity(b, NULL, NULL, w));
+    OK(s, spar_member_set_initial_velocity(b, NULL, NULL, w));
     OK(s, spar_member_commit(b));
     expect_end(s, b, 1, 0.25 * pi * pi / 4, 1e-3);
     spar_session_destroy(&s);
@@ -103,7 +103,7 @@ static void test_imperfect_column(void **state) {
         spar_session *s = scene_session();
         spar_member *b = column(s, 2, L, EI, 2);
         double load[6] = {-3 * critical, 0, 3e-3 * critical, 0, 0, 0};
-        OK(s, spar_member_add_load(b, 15, load));
+        OK(s, spar_member_set_load(b, 15, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, k ? 20 : 1));
         scene_tip(b, q[k]);
         spar_session_destroy(&s);

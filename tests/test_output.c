@@ -213,7 +213,7 @@ static void move(moved *m) {
             m->a[6 * i + k] = -s * (k + 1.5);
             m->load[6 * i + k] = i + 0.1 * k;
         }
-        OK(m->session, spar_member_add_load(m->beam, i, m->load + 6 * i));
+        OK(m->session, spar_member_set_load(m->beam, i, SPAR_LOAD_DEAD, m->load + 6 * i));
     }
     OK(m->session, spar_member_set_motion(m->beam, m->q, m->v, m->a));
 }

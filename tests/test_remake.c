@@ -18,10 +18,10 @@ static spar_member *bent_beam(spar_session *s) {
     OK(s, spar_member_commit(b));
     for (int64_t i = 1; i < ELEMENTS * NODES; i++) {
         const double load[6] = {0.2 * sin((double)i), 0.3, 0.1 * (double)i, 0.01, 0.02, -0.03 * (double)i};
-        OK(s, spar_member_add_load(b, i, load));
+        OK(s, spar_member_set_load(b, i, SPAR_LOAD_DEAD, load));
     }
-    OK(s, spar_member_add_follower(b, ELEMENTS * NODES - 1, follower));
-    OK(s, spar_beam_set_line_load(b, 2, eta, line, SPAR_LOAD_DEAD));
+    OK(s, spar_member_set_load(b, ELEMENTS * NODES - 1, SPAR_LOAD_FOLLOWER, follower));
+    OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 2, eta, line));
     OK(s, spar_member_solve_static(b, 4));
     return b;
 }

@@ -32,7 +32,7 @@ static void test_sections_are_linear(void **state) {
         spar_member *b = beam_of(s, rungs[k], UNKNOWNS - 6, SPAR_ROOT_FIXED);
         double tip[7], r[6], strain[6], force[6], energy[4], work = 0;
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, NODES - 1, load));
+        OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, tip);
         assert_true(fabs(tip[2]) > 10);
@@ -79,7 +79,7 @@ static void test_sections_turn_with_the_root(void **state) {
             OK(s, spar_member_drive_root(b, q, NULL, NULL));
             scene_run(s, 1, 1);
         }
-        OK(s, spar_member_add_load(b, NODES - 1, load));
+        OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_beam_get_section(b, 1, &eta, NULL, force[turned], NULL, NULL));
         spar_session_destroy(&s);
@@ -111,9 +111,9 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_commit(b));
     if (root == SPAR_ROOT_FREE) {
-        OK(s, spar_member_set_velocity(b, x0, v0, spin));
+        OK(s, spar_member_set_initial_velocity(b, x0, v0, spin));
     }
-    OK(s, spar_member_add_load(b, NODES - 1, load));
+    OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
     for (int64_t k = 0; k <= (int64_t)(time / dt + 0.5); k++) {
         if (k > 0 && root == SPAR_ROOT_DRIVEN) {
             double w = 3, p = 0.05 * A * (1 - cos(w * (double)k * dt)), v = 0.05 * A * w * sin(w * (double)k * dt),
@@ -142,7 +142,7 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
     OK(s, spar_beam_get_section(b, 1, &eta, NULL, now.section, NULL, NULL));
     if (modes >= FREQUENCIES || fidelity == SPAR_FIDELITY_EXACT || fidelity == OFF) {
         double f[FREQUENCIES];
-        OK(s, spar_member_get_modes(b, FREQUENCIES, f, NULL));
+        OK(s, spar_member_solve_modes(b, FREQUENCIES, f, NULL));
         memcpy(now.frequency, f + 6 - held, (size_t)(FREQUENCIES - 6 + held) * sizeof *f); /* the elastic ones */
     }
     spar_session_destroy(&s);
@@ -227,13 +227,13 @@ static void test_static_turning(void **state) {
         spar_session *s = scene_session();
         spar_member *b = beam_of(s, rungs[k], UNKNOWNS - 6, SPAR_ROOT_DRIVEN);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_get_modes(b, 6, rest, NULL));
-        OK(s, spar_member_set_velocity(b, x0, x0, omega));
-        OK(s, spar_member_add_load(b, NODES - 1, load));
+        OK(s, spar_member_solve_modes(b, 6, rest, NULL));
+        OK(s, spar_member_set_initial_velocity(b, x0, x0, omega));
+        OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, tip[k]);
         OK(s, spar_member_get_motion(b, NULL, v[k], NULL));
-        OK(s, spar_member_get_modes(b, 6, f[k], NULL));
+        OK(s, spar_member_solve_modes(b, 6, f[k], NULL));
         OK(s, spar_member_get_reaction(b, reaction[k]));
         spar_session_destroy(&s);
     }

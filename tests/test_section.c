@@ -16,7 +16,7 @@ static void test_arc(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, 15, L, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 14, load));
+    OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     OK(s, spar_beam_get_section(b, 5, eta, strain, force, x, q));
     for (int i = 0; i < 5; i++) {
@@ -53,7 +53,7 @@ static void test_balance(void **state) {
     OK(s, spar_beam_set_axis(b, 40, eta, xyz, twist));
     OK(s, spar_beam_set_sections(b, 1, eta, K, M));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 13, F));
+    OK(s, spar_member_set_load(b, 13, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
     double force[6 * 40], x[3 * 40], q[4 * 40], r[6];
     OK(s, spar_beam_get_section(b, 40, eta, NULL, force, x, q));
@@ -95,7 +95,7 @@ static void test_balance_at_gauss_points(void **state) {
     gsl_integration_glfixed_table_free(gauss);
     OK(s, spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, P - 1));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, P - 1, F));
+    OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
     OK(s, spar_beam_get_section(b, P - 1, eta, NULL, force, NULL, q));
     for (int i = 0; i < P - 1; i++) {
@@ -118,7 +118,7 @@ static void test_linear(void **state) {
     spar_member *b = scene_beam(s, "b", 1, 4, L, K, NULL);
     OK(s, spar_member_set_effects(b, 0));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 3, F));
+    OK(s, spar_member_set_load(b, 3, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
     OK(s, spar_beam_get_section(b, 3, eta, strain, force, NULL, NULL));
     for (int i = 0; i < 3; i++) {
@@ -142,7 +142,7 @@ static void test_damping(void **state) {
     spar_member *b = scene_beam(s, "b", 1, 2, L, K, M);
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 1, F));
+    OK(s, spar_member_set_load(b, 1, SPAR_LOAD_DEAD, F));
     scene_run(s, h, 60);
     for (int i = 0; i < 3; i++) {
         scene_run(s, h, 1);

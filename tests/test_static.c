@@ -16,7 +16,7 @@ static void test_roll_up(void **state) {
         spar_member *b = scene_beam(s, "roll", 1, 15, L, K, NULL);
         double M = lambda[k] * pi * EI / L, load[6] = {0, 0, 0, 0, -M, 0}, q[7], r = EI / M, reaction[6];
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 14, load));
+        OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q);
         NEAR(q[0], r * sin(L / r) - L, L * tolerance[k]);
@@ -37,7 +37,7 @@ static void test_roll_up_does_not_depend_on_the_way(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "roll", 2, 12, L, K, NULL);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 23, load));
+        OK(s, spar_member_set_load(b, 23, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, k ? 10 : 1));
         scene_tip(b, q[k]);
         NEAR(q[k][0], -L, 1e-11 * L);
@@ -60,7 +60,7 @@ static void test_composite_box(void **state) {
     scene_box(K, M);
     spar_member *b = scene_beam(s, "box", 1, 15, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 14, load));
+    OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     for (int i = 0; i < 3; i++) {
@@ -96,7 +96,7 @@ static void test_bend_45(void **state) {
     OK(s, spar_beam_set_axis(b, N, eta, xyz, NULL));
     OK(s, spar_beam_set_sections(b, 1, eta, K, NULL));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 14, load));
+    OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     for (int i = 0; i < 3; i++) {
@@ -122,7 +122,7 @@ static void test_elastica(void **state) {
         spar_member *b = scene_beam(s, "elastica", 1, 18, 1, K, NULL);
         double load[6] = {0, 0, table[k][0], 0, 0, 0}, q[7];
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 17, load));
+        OK(s, spar_member_set_load(b, 17, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 4));
         scene_tip(b, q);
         NEAR(q[2], table[k][1], 1e-8);
@@ -146,13 +146,13 @@ static void test_refusals(void **state) {
     assert_int_equal(spar_member_solve_static(loose, 1), SPAR_ERR_STATE);
     assert_int_equal(spar_member_solve_static(held, 0), SPAR_ERR_ARGUMENT);
     scene_tip(held, before);
-    OK(s, spar_member_add_load(held, 5, huge));
+    OK(s, spar_member_set_load(held, 5, SPAR_LOAD_DEAD, huge));
     assert_int_equal(spar_member_solve_static(held, 1), SPAR_ERR_NUMERIC);
     assert_non_null(strstr(spar_session_message(s), "held"));
     scene_tip(held, after);
     assert_memory_equal(before, after, sizeof before);
     double small[6] = {0, 0, 1, 0, 0, 0};
-    OK(s, spar_member_add_load(held, 5, small));
+    OK(s, spar_member_set_load(held, 5, SPAR_LOAD_DEAD, small));
     OK(s, spar_member_solve_static(held, 1));
     spar_session_destroy(&s);
 }
@@ -177,7 +177,7 @@ static void test_placement_turns_the_answer(void **state) {
         spari_rotate(p, load, turned);
         spari_rotate(p, load + 3, turned + 3);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 15, k ? turned : load));
+        OK(s, spar_member_set_load(b, 15, SPAR_LOAD_DEAD, k ? turned : load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, k ? q1 : q0);
         spar_session_destroy(&s);

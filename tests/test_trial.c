@@ -105,9 +105,9 @@ static void test_goes_back_to_the_bit(void **state) {
                          follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
             build(&c, 1);
             OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
-            OK(c.s, spar_beam_set_line_load(c.b, 2, line_eta, line, SPAR_LOAD_FOLLOWER));
-            OK(c.s, spar_member_add_follower(c.b, 11, follower));
-            OK(c.s, spar_member_add_load(c.b, 4, dead));
+            OK(c.s, spar_beam_set_line_load(c.b, SPAR_LOAD_FOLLOWER, 2, line_eta, line));
+            OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_FOLLOWER, follower));
+            OK(c.s, spar_member_set_load(c.b, 4, SPAR_LOAD_DEAD, dead));
             step(&c, 0.01, begun ? 5 : 0);
             if (tried) {
                 long size[2];
@@ -165,7 +165,7 @@ static void test_gravity_row(void **state) {
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     const double dead[6] = {0, 0, -19.62, 0, 0, 0};
     build(&c, 0);
-    OK(c.s, spar_member_add_load(c.b, 11, dead));
+    OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_member_solve_static(c.b, 4));
     OK(c.s, spar_session_report_effects(c.s, 1e-3, 8, keep, press, &c, table));
     const double *gravity = table[SPAR_ROW_GRAVITY];
@@ -201,7 +201,7 @@ static void test_left_out_of_statics(void **state) {
     c.b = scene_beam(c.s, "wing", 1, 6, 2, K, M);
     OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION));
     OK(c.s, spar_member_commit(c.b));
-    OK(c.s, spar_member_add_load(c.b, 5, dead));
+    OK(c.s, spar_member_set_load(c.b, 5, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, table));
     /* reaction: force 10 + 2 g, moment over length 10 + g; without weight 10, 10 */
     double weight = hypot(2 * 9.81, 9.81), all = hypot(10 + 2 * 9.81, 10 + 9.81);
@@ -453,7 +453,7 @@ static int ask(spar_session *s, double t, double dt, int iteration, void *contex
     int iterations;
     OK(s, spar_session_get_coupling(s, &iterations, residual, size, NULL));
     assert_true(iterations <= 1 && residual[1] == 7 && size[1] == 7);
-    OK(s, spar_member_add_follower(c->b, 0, load));
+    OK(s, spar_member_set_load(c->b, 0, SPAR_LOAD_FOLLOWER, load));
     return press(s, t, dt, iteration, context);
 }
 

@@ -332,8 +332,8 @@ SPAR_API int spar_member_set_effects(spar_member *member, int effects);
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
 /* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
    step, before or after commit. Local. */
-SPAR_API int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3],
-                                      const double omega[3]);
+SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
+                                              const double omega[3]);
 /* rank: in, who solves the member. Default: spread over the ranks in order of creation. Local. */
 SPAR_API int spar_member_set_owner(spar_member *member, int rank);
 /* Checks the description, that it is the same on every rank (SPAR_ERR_COMM if not), and takes all memory; nothing of
@@ -357,21 +357,25 @@ SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const 
    q[7], v[6], a[6]: in; v, a NULL: 0. Between steps only; not driven anew, the root stays where it is. Local, the
    same on every rank. */
 SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]);
-/* A dead load (global axes, does not turn) on a node, which replaces the node's earlier one and is kept. node: in, 0
-   to n-1; load[6]: in, N, N m. Local, the same on every rank. */
-SPAR_API int spar_member_add_load(spar_member *member, int64_t node, const double load[6]);
-/* The same for a load that turns with its node. load[6]: in, N, N m, in the node's section axes (x tangent, y, z; a
-   rigid body's own axes). It adds to the dead load; zeros take it away. Its tangent is exact (unsymmetric). With
-   LARGE_ROTATION off it stays as it is in the reference configuration. Local, the same on every rank. */
-SPAR_API int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]);
+/* A load on a node, which replaces the node's earlier one of that kind and is kept; zeros take it away. A node bears
+   the sum of its two kinds. With LARGE_ROTATION off a follower stays as it is in the reference configuration; otherwise
+   its tangent is exact (unsymmetric). After commit.
+     node: in, 0 to n-1
+     kind: in, SPAR_LOAD_DEAD: in global axes, does not turn; _FOLLOWER: in the node's section axes (x tangent, y, z; a
+           rigid body's own axes), turns with it
+     load[6]: in, N, N m
+   Local, the same on every rank. */
+SPAR_API int spar_member_set_load(spar_member *member, int64_t node, int kind, const double load[6]);
 /* Loads along a beam, per unit length of the reference line, which replace the earlier ones of that kind and are kept.
-   n: in, stations, 0: none any more; eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump;
-   load[n][6]: in, N/m, N m/m, linear in eta between stations, zero before the first and behind the last; n = 1: the
-   same all along. kind: SPAR_LOAD_DEAD (global axes) or SPAR_LOAD_FOLLOWER (section axes, turning with the section).
+     kind: in, SPAR_LOAD_DEAD (global axes) or _FOLLOWER (section axes, turning with the section)
+     n: in, stations, 0: none any more
+     eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump
+     load[n][6]: in, N/m, N m/m, linear in eta between stations, zero before the first and behind the last; n = 1: the
+           same all along
    They work at quadrature points of their own, so that they may change where sections do not, through the virtual work
    of the beam's displacement and rotation field. After commit. Local, the same on every rank. SPAR_ERR_ARGUMENT: no
    beam, or eta or load not allowed. */
-SPAR_API int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind);
+SPAR_API int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load);
 /* load[n][6]: out, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that do the
    same work: those the structure is solved with; after spar_step_check those just
    pushed. */
@@ -405,14 +409,14 @@ SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4])
 SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
 /* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
    >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities
-   become 0. A driven root that turns (spar_member_set_velocity, or driven so far): equilibrium in the frame that turns
-   with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
-   accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
-   result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
-   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a
-   log is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was
-   reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar
-   does not solve for it. */
+   become 0. A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame
+   that turns with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities
+   and accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers)
+   the result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and
+   it is refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can
+   follow, a log is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the
+   loads was reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member;
+   SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
@@ -420,13 +424,13 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
    those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
    load stiffness; of a rigid one those of the rigid body. n: in, at most the number of free unknowns; frequency_hz[n]:
    out, ascending, negative where the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out,
-   displacement and rotation, normalised to unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN, set_velocity,
-   commit, solve_static, get_modes. Local. */
-SPAR_API int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
+   displacement and rotation, normalised to unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN,
+   set_initial_velocity, commit, solve_static, solve_modes. Local. */
+SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
    shear y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as
-   spar_member_get_modes gives them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not
+   spar_member_solve_modes gives them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not
    wanted. Between commit and the first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind;
    SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a free or pinned beam as a rigid body). */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);

@@ -463,6 +463,12 @@ static int need_applied(spar_member *member, const char *call) {
     return SPAR_OK;
 }
 
+static int need_kind(const spar_member *m, const char *call, int kind) {
+    SPARI_REQUIRE(m->session, kind == SPAR_LOAD_DEAD || kind == SPAR_LOAD_FOLLOWER, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no kind of load %d; see SPAR_LOAD_*", call, m->name, kind);
+    return SPAR_OK;
+}
+
 /* Nothing applied any more: nothing computed any more. */
 static void drop_empty(spar_member *m) {
     spari_applied *a = m->applied;
@@ -476,29 +482,34 @@ static void drop_empty(spar_member *m) {
     }
 }
 
-int spar_member_add_follower(spar_member *member, int64_t node, const double load[6]) {
-    SPARI_QUIET;
-    SPARI_TRY(need_applied(member, __func__));
-    spar_session *s = member->session;
+static int set_follower(spar_member *member, const char *call, int64_t node, const double load[6]) {
+    SPARI_TRY(need_applied(member, call));
     spari_applied *a = member->applied;
     int status = SPAR_OK;
-    int64_t bad = load ? spari_first_nonfinite(load, 6) : -1;
-    if (node < 0 || node >= member->nodes) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__,
-                            member->name, (long long)member->nodes - 1, (long long)node);
-    } else if (!load) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
-    } else if (bad >= 0) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': entry %lld of load is not a finite number", __func__,
-                            member->name, (long long)bad);
-    } else if (!a->follower && !(a->follower = spari_zalloc(6 * member->nodes, sizeof *a->follower))) {
-        status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", __func__, member->name);
+    if (!a->follower && !(a->follower = spari_zalloc(6 * member->nodes, sizeof *a->follower))) {
+        status =
+            spari_fail(member->session, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, member->name);
     } else {
         spari_rotate(member->qr + 4 * node, load, a->follower + 6 * node);
         spari_rotate(member->qr + 4 * node, load + 3, a->follower + 6 * node + 3);
     }
     drop_empty(member);
     return status;
+}
+
+int spar_member_set_load(spar_member *member, int64_t node, int kind, const double load[6]) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_committed(member, __func__));
+    SPARI_REQUIRE(member->session, node >= 0 && node < member->nodes, SPAR_ERR_ARGUMENT,
+                  "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__, member->name,
+                  (long long)member->nodes - 1, (long long)node);
+    SPARI_TRY(need_kind(member, __func__, kind));
+    SPARI_TRY(spari_need_finite(member->session, __func__, member->name, "load", 6, load));
+    if (kind == SPAR_LOAD_FOLLOWER) {
+        return set_follower(member, __func__, node, load);
+    }
+    memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
+    return SPAR_OK;
 }
 
 /* Pieces of element e between load stations, and their Gauss points; NULL s: only counts. A point's eta and weight go
@@ -530,7 +541,7 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
     return count;
 }
 
-static int line_build(const spar_member *m, int64_t n, const double *eta, const double *load, int kind,
+static int line_build(const spar_member *m, int kind, int64_t n, const double *eta, const double *load,
                       line_load *line) {
     int E = m->elements, P = m->per_element, points = 0;
     for (int e = 0; e < E; e++) {
@@ -573,12 +584,11 @@ static int line_build(const spar_member *m, int64_t n, const double *eta, const 
     return SPAR_OK;
 }
 
-static int check_line_load(const spar_member *m, int64_t n, const double *eta, const double *load, int kind) {
+static int check_line_load(const spar_member *m, int kind, int64_t n, const double *eta, const double *load) {
     const char *call = "spar_beam_set_line_load";
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
-    SPARI_REQUIRE(s, kind == SPAR_LOAD_DEAD || kind == SPAR_LOAD_FOLLOWER, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no kind of load %d; see SPAR_LOAD_*", call, m->name, kind);
+    SPARI_TRY(need_kind(m, call, kind));
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations; give 0 to 2^40", call,
                   m->name, (long long)n);
     SPARI_REQUIRE(s, n == 0 || (eta && load), SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, m->name,
@@ -599,12 +609,12 @@ static int check_line_load(const spar_member *m, int64_t n, const double *eta, c
     return SPAR_OK;
 }
 
-int spar_beam_set_line_load(spar_member *beam, int64_t n, const double *eta, const double *load, int kind) {
+int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load) {
     SPARI_QUIET;
     SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
-    int status = check_line_load(beam, n, eta, load, kind);
-    status = status == SPAR_OK && n > 0 ? line_build(beam, n, eta, load, kind, &line) : status;
+    int status = check_line_load(beam, kind, n, eta, load);
+    status = status == SPAR_OK && n > 0 ? line_build(beam, kind, n, eta, load, &line) : status;
     if (status == SPAR_OK) {
         line_free(&beam->applied->line[kind]);
         beam->applied->line[kind] = line;

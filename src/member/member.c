@@ -57,17 +57,6 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
     return SPAR_OK;
 }
 
-int spar_member_add_load(spar_member *member, int64_t node, const double load[6]) {
-    SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, __func__));
-    SPARI_REQUIRE(member->session, node >= 0 && node < member->nodes, SPAR_ERR_ARGUMENT,
-                  "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__, member->name,
-                  (long long)member->nodes - 1, (long long)node);
-    SPARI_TRY(spari_need_finite(member->session, __func__, member->name, "load", 6, load));
-    memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
-    return SPAR_OK;
-}
-
 int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));

@@ -48,7 +48,7 @@ struct spar_member {
     double drive[2][19];     /* root q, v, a at t^n and t^{n+1} */
 
     /* nodal loads [n][6], global axes */
-    double *dead;                /* spar_member_add_load */
+    double *dead;                /* spar_member_set_load, SPAR_LOAD_DEAD */
     spari_applied *applied;      /* follower and line loads; NULL: none */
     spari_applied *applied_next; /* of a file being loaded */
     int64_t pack_at;             /* where its loads begin in the vector that the ranks sum */

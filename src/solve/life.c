@@ -37,7 +37,7 @@ static int rigid_field(spar_member *m) {
     int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
     SPARI_REQUIRE(
         m->session, finite, SPAR_ERR_ARGUMENT,
-        "member '%s': its initial velocities are beyond the range of numbers; look at spar_member_set_velocity "
+        "member '%s': its initial velocities are beyond the range of numbers; look at spar_member_set_initial_velocity "
         "and its units",
         m->name);
     return SPAR_OK;
@@ -113,7 +113,8 @@ void spari_member_reject(spar_member *m) {
     }
 }
 
-int spar_member_set_velocity(spar_member *member, const double x0[3], const double v0[3], const double omega[3]) {
+int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
+                                     const double omega[3]) {
     SPARI_QUIET;
     static const double zero[3] = {0, 0, 0};
     SPARI_TRY(spari_need_member(member, __func__));

@@ -145,7 +145,7 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, m->name);
     double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 12 * u;
     double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
-    int own[2] = {0, 0}, status = spar_member_get_modes(m, most, all, shapes);
+    int own[2] = {0, 0}, status = spar_member_solve_modes(m, most, all, shapes);
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
             status = spari_fail(s, SPAR_ERR_NUMERIC,

@@ -177,7 +177,7 @@ static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
 }
 
 static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
-    const char *call = "spar_member_get_modes";
+    const char *call = "spar_member_solve_modes";
     SPARI_REQUIRE(m->session, modal_alloc(m, p), SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
     SPARI_REQUIRE(m->session, form_problem(m, p) == SPAR_OK, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
     SPARI_REQUIRE(m->session, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
@@ -205,7 +205,7 @@ static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequen
     return SPAR_OK;
 }
 
-int spar_member_get_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
+int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;

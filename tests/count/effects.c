@@ -182,7 +182,7 @@ static void make_beam(scene *s) {
     }
     s->described = heap;
     MUST(spar_member_commit(*b));
-    MUST(spar_member_add_load(*b, NODES - 1, tip));
+    MUST(spar_member_set_load(*b, NODES - 1, SPAR_LOAD_DEAD, tip));
 }
 
 /* Blades without mass, along y and turned about x, the shaft. */

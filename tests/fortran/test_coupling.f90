@@ -240,7 +240,7 @@ contains
     call session%set_integrator(1.0_c_double, 1)
     call session%set_coupling(SPAR_COUPLING_FIXED_POINT, 0.0_c_double, 1e-13_c_double, 100)
     call body%create_rigid(session, 'body', origin, unit, diagonal([1, 1, 1, 1, 1, 1] * 1.0_c_double))
-    call body%set_velocity(v0=[1, 0, 0] * 1.0_c_double)
+    call body%set_initial_velocity(v0=[1, 0, 0] * 1.0_c_double)
     call body%commit()
     call fluid%create(body, 'fluid')
     call fluid%set_motion_nodes(reshape(origin, [3, 1]))
@@ -367,7 +367,7 @@ contains
     call beam%set_effects(SPAR_EFFECT_INERTIA)
     call beam%commit()
     p = [0.0_c_double, 0.01_c_double, 0.02_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double]
-    call beam%add_load(4, p)
+    call beam%set_load(4, SPAR_LOAD_DEAD, p)
     call beam%solve_static(1)
     call beam%get_motion(q)
     call beam%get_reaction(reaction)
@@ -381,7 +381,7 @@ contains
     q(5:6,1:2) = q(5:6,1:2) - reshape([-2 * p(3), 2 * p(2), -p(3), p(2)], [2, 2])
     call check(maxval(abs(q([2, 3, 5, 6],1))) < 1e-12_c_double .and. maxval(abs(q(5:6,2))) < 1e-12_c_double, &
         'shear and bending along the beam')
-    call beam%get_modes(f, shapes)
+    call beam%solve_modes(f, shapes)
     call check(all(f(2:3) >= f(1:2)) .and. f(1) > 0 .and. all(abs(shapes(:,1,:)) <= 0), 'modes of a clamped beam')
     call check(maxval(abs(shapes(:,4,1))) > 0, 'the tip moves in the first mode')
   end subroutine cantilever

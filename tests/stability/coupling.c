@@ -48,7 +48,7 @@ static void create(oscillator *o, int scheme, double added, double force) {
     OK(s, spar_beam_set_quadrature(o->rod, SPAR_QUADRATURE_LOBATTO, 2));
     OK(s, spar_member_set_root(o->rod, SPAR_ROOT_FIXED));
     OK(s, spar_member_commit(o->rod));
-    OK(s, spar_member_add_load(o->rod, 1, tip));
+    OK(s, spar_member_set_load(o->rod, 1, SPAR_LOAD_DEAD, tip));
     OK(s, spar_fluid_create(o->rod, "medium", &o->fluid));
     OK(s, spar_fluid_set_force_nodes(o->fluid, 1, place));
     OK(s, spar_fluid_map(o->fluid));

@@ -21,13 +21,13 @@ static run let_go(double rho, int fidelity, int root, int elements) {
     OK(r.s, spar_member_set_fidelity(r.b, fidelity, 8));
     OK(r.s, spar_member_set_root(r.b, root));
     OK(r.s, spar_member_commit(r.b));
-    OK(r.s, spar_member_add_load(r.b, 6 * elements - 1, load));
+    OK(r.s, spar_member_set_load(r.b, 6 * elements - 1, SPAR_LOAD_DEAD, load));
     if (root == SPAR_ROOT_FIXED || root == SPAR_ROOT_DRIVEN) {
         OK(r.s, spar_member_solve_static(r.b, 1));
     } else {
         scene_run(r.s, 0.05, 4); /* nothing holds it: pushed for a while */
     }
-    OK(r.s, spar_member_add_load(r.b, 6 * elements - 1, none));
+    OK(r.s, spar_member_set_load(r.b, 6 * elements - 1, SPAR_LOAD_DEAD, none));
     scene_run(r.s, dt0, 50);
     return r;
 }
@@ -93,7 +93,7 @@ static void test_spin_goes_on(void **state) {
     r.b = scene_beam(r.s, "beam", 1, 6, 10, K, M);
     OK(r.s, spar_member_set_root(r.b, SPAR_ROOT_FREE));
     OK(r.s, spar_member_commit(r.b));
-    OK(r.s, spar_member_set_velocity(r.b, middle, NULL, omega));
+    OK(r.s, spar_member_set_initial_velocity(r.b, middle, NULL, omega));
     double before = energy_of(&r);
     scene_run(r.s, 1e-3, 50);
     scene_run(r.s, 2e-2, 50);
@@ -118,7 +118,7 @@ static void test_turning_root(void **state) {
         OK(s, spar_member_set_fidelity(b, fidelity, 8));
         OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_set_velocity(b, NULL, NULL, v));
+        OK(s, spar_member_set_initial_velocity(b, NULL, NULL, v));
         OK(s, spar_member_solve_static(b, 1));
         for (int i = 0; i < 60; i++) {
             double dt = i < 20 ? 1e-3 : 0.05;

@@ -216,7 +216,8 @@ static void load(const beam *b, int64_t n) {
         for (int i = 0; i < 6; i++) {
             f[i] = size * uniform(-1, 1) * (i < 3 ? 1 / b->length : 1) * 0.5;
         }
-        OK(b->session, spar_member_add_load(b->member, k == 0 ? n - 1 : (int64_t)whole(0, (int)n - 1), f));
+        OK(b->session,
+           spar_member_set_load(b->member, k == 0 ? n - 1 : (int64_t)whole(0, (int)n - 1), SPAR_LOAD_DEAD, f));
     }
 }
 

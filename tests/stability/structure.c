@@ -43,7 +43,7 @@ static void test_thousand_flips(void **state) {
     scene_mass(mass, 1e-9, c, J);
     OK(s, spar_rigid_create(s, "speck", c, NULL, mass, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     OK(s, spar_session_set_integrator(s, 1, 1));
     momentum(r, J, L0, rate);
     OK(s, spar_member_get_energy(r, e0));
@@ -90,14 +90,14 @@ static void test_stiff_axial(void **state) {
     for (int k = 1; k <= 1000; k++) {
         double f = fmin(1, k / 600.0);
         load[2] = 2 * f * f * (3 - 2 * f);
-        OK(s, spar_member_add_load(b, 15, load));
+        OK(s, spar_member_set_load(b, 15, SPAR_LOAD_DEAD, load));
         scene_run(s, dt, 1);
     }
     scene_tip(b, q);
     spar_session *t = scene_session();
     spar_member *still = scene_beam(t, "b", 2, 8, L, C, D);
     OK(t, spar_member_commit(still));
-    OK(t, spar_member_add_load(still, 15, load));
+    OK(t, spar_member_set_load(still, 15, SPAR_LOAD_DEAD, load));
     OK(t, spar_member_solve_static(still, 1));
     scene_tip(still, want);
     NEAR(q[2], want[2], 1e-3 * L);
@@ -117,7 +117,7 @@ static void test_hundred_thousand_revolutions(void **state) {
     scene_mass(mass, 1, c, J);
     OK(s, spar_rigid_create(s, "wheel", c, NULL, mass, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     scene_run(s, 0.0625, 1600000);
     OK(s, spar_member_get_motion(r, q, v, NULL));
     NEAR(fabs(q[3]), 1, 1e-9);
@@ -135,14 +135,14 @@ static void test_jumps_of_dt(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, 8, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 7, load));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, still);
     spar_session_destroy(&s);
     s = scene_session();
     b = scene_beam(s, "b", 1, 8, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 7, load));
+    OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
     OK(s, spar_session_set_integrator(s, 0, 1));
     const double dt[4] = {1e-5, 1e-2, 1e-5, 1e-2};
     for (int round = 0; round < 4; round++) {
@@ -169,7 +169,7 @@ static void test_thousand_substeps(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "b", 1, 6, 10, K, M);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 5, load));
+        OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
         OK(s, spar_session_set_integrator(s, 0.9, k ? 1000 : 1));
         scene_run(s, k ? 0.2 : 2e-4, k ? 1 : 1000);
         scene_tip(b, q[k]);
@@ -191,7 +191,7 @@ static void test_load_that_reverses(void **state) {
     OK(s, spar_session_set_integrator(s, 0.5, 1));
     for (int k = 0; k < 2000; k++) {
         load[2] = -load[2];
-        OK(s, spar_member_add_load(b, 7, load));
+        OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
         scene_run(s, 5e-3, 1);
         scene_tip(b, q);
         highest = fmax(highest, fabs(q[2]));
@@ -219,7 +219,7 @@ static void test_massless_tip(void **state) {
         OK(s, spar_beam_set_axis(b, 2, line, xyz, NULL));
         OK(s, spar_beam_set_sections(b, 4, eta, Ks, Ms));
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 19, load));
+        OK(s, spar_member_set_load(b, 19, SPAR_LOAD_DEAD, load));
         if (dynamic) {
             OK(s, spar_session_set_integrator(s, 0.5, 1));
             for (int k = 0; k < 3000; k++) {
@@ -247,18 +247,18 @@ static void test_loads_too_large(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "mast", 1, 6, 10, K, M);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 5, load));
+        OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
         scene_run(s, 1e-3, 50);
         if (k) {
             scene_tip(b, before);
-            OK(s, spar_member_add_load(b, 5, huge));
+            OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, huge));
             OK(s, spar_step_begin(s, 1e-3));
             assert_int_equal(spar_step_solve(s), SPAR_ERR_NUMERIC);
             assert_non_null(strstr(spar_session_message(s), "mast"));
             OK(s, spar_step_reject(s));
             scene_tip(b, after);
             assert_memory_equal(before, after, sizeof before);
-            OK(s, spar_member_add_load(b, 5, load));
+            OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
         }
         scene_run(s, 1e-3, 50);
         scene_tip(b, q[k]);
@@ -280,7 +280,7 @@ static void test_more_than_a_turn_a_step(void **state) {
     scene_mass(mass, 1, c, J);
     OK(s, spar_rigid_create(s, "top", c, NULL, mass, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     int refused = 0;
     for (int k = 0; k < 50 && !refused; k++) {
         OK(s, spar_step_begin(s, 0.1));

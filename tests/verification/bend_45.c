@@ -20,7 +20,7 @@ static void bend(int load_steps, int elements, int nodes, double q[7], double to
     OK(s, spar_beam_set_axis(b, N, eta, xyz, NULL));
     OK(s, spar_beam_set_sections(b, 1, eta, K, NULL));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, elements * nodes - 1, load));
+    OK(s, spar_member_set_load(b, elements * nodes - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, load_steps));
     OK(s, spar_member_get_reference(b, x, frame));
     scene_tip(b, q);

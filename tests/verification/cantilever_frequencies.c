@@ -9,7 +9,7 @@ static void modes(const double K[36], const double M[36], double L, int n, doubl
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "cantilever", 1, 20, L, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_get_modes(b, n, f, NULL));
+    OK(s, spar_member_solve_modes(b, n, f, NULL));
     spar_session_destroy(&s);
 }
 

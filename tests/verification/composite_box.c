@@ -14,7 +14,7 @@ static void test_box(void **state) {
     scene_box(K, M);
     spar_member *b = scene_beam(s, "box", 1, 15, 10, K, M);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 14, load));
+    OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     OK(s, spar_member_get_reaction(b, r));
@@ -46,7 +46,7 @@ static void test_energy(void **state) {
     OK(s, spar_member_commit(b));
     for (int i = 1; i <= N; i++) {
         double load[6] = {0, 0, 150.0 * i / N, 0, 0, 0};
-        OK(s, spar_member_add_load(b, 11, load));
+        OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q);
         w[i] = q[2];

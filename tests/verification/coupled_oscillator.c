@@ -43,7 +43,7 @@ static double run(double dt, int scheme, int order, int substeps, double *defect
     OK(s, spar_beam_set_quadrature(h.rod, SPAR_QUADRATURE_LOBATTO, 2));
     OK(s, spar_member_set_root(h.rod, SPAR_ROOT_FIXED));
     OK(s, spar_member_commit(h.rod));
-    OK(s, spar_member_add_load(h.rod, 1, tip));
+    OK(s, spar_member_set_load(h.rod, 1, SPAR_LOAD_DEAD, tip));
     OK(s, spar_fluid_create(h.rod, "medium", &h.fluid));
     OK(s, spar_fluid_set_force_nodes(h.fluid, 1, place));
     OK(s, spar_fluid_map(h.fluid));

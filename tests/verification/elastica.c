@@ -11,7 +11,7 @@ static void solve(double lambda, int elements, double q[7]) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "elastica", elements, 18, 1, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 18 * elements - 1, load));
+    OK(s, spar_member_set_load(b, 18 * elements - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 10));
     scene_tip(b, q);
     spar_session_destroy(&s);
@@ -48,7 +48,7 @@ static void test_geradin(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "cantilever", 1, 12, 5, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 11, load));
+    OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     verify("Geradin, P = 600e3: uz", q[2], -2.159, 5e-3, "Simpson & Palacios 2013, 2 decimals");
@@ -72,7 +72,7 @@ static void test_nachbagauer(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "cantilever", 1, 12, 2, K, NULL);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 11, load));
+        OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q);
         verify(k ? "Nachbagauer, 5e8 h^3: ux" : "Nachbagauer, 5e5 h^3: -ux", k ? q[0] : -q[0],

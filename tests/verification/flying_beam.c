@@ -55,10 +55,13 @@ static void fly(double EI, double dt, flight *f) {
     f->turn = 0;
     int n = 0, next = 0, per_second = (int)(1 / dt + 0.5);
     /* where the load jumps it has the mean of both sides: then its impulse is exact */
-    OK(s, spar_member_add_load(b, 0, thrown));
+    OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, thrown));
     while (next < TIMES) {
         n++;
-        OK(s, spar_member_add_load(b, 0, 2 * n < 5 * per_second ? thrown : 2 * n == 5 * per_second ? half : none));
+        OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD,
+                                   2 * n < 5 * per_second    ? thrown
+                                   : 2 * n == 5 * per_second ? half
+                                                             : none));
         scene_run(s, 1.0 / per_second, 1);
         OK(s, spar_member_get_motion(b, q, NULL, NULL));
         f->turn += 2 * remainder(atan2(q[6], q[3]) - f->turn / 2, pi);
@@ -141,7 +144,10 @@ static void test_robot_arm(void **state) {
     OK(s, spar_member_commit(b));
     int per_second = verification_long() ? 10000 : 500, next = 0;
     for (int n = 1; next < 5; n++) {
-        OK(s, spar_member_add_load(b, 0, 2 * n < 5 * per_second ? torque : 2 * n == 5 * per_second ? half : none));
+        OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD,
+                                   2 * n < 5 * per_second    ? torque
+                                   : 2 * n == 5 * per_second ? half
+                                                             : none));
         scene_run(s, 1.0 / per_second, 1);
         if (n == (int)(table[next][0] * per_second + 0.5)) {
             char what[64];

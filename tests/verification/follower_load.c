@@ -43,7 +43,7 @@ static void test_follower(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "cantilever", 2, NODES, L, K, NULL);
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_follower(b, 2 * NODES - 1, load));
+        OK(s, spar_member_set_load(b, 2 * NODES - 1, SPAR_LOAD_FOLLOWER, load));
         OK(s, spar_member_solve_static(b, 10));
         scene_tip(b, q);
         elastica(lambda, exact);
@@ -71,7 +71,7 @@ static void test_partial_load(void **state) {
     spar_session *s = scene_session();
     spar_member *m = scene_beam(s, "cantilever", 1, 12, L, K, NULL);
     OK(s, spar_member_commit(m));
-    OK(s, spar_beam_set_line_load(m, 2, line, load, SPAR_LOAD_DEAD));
+    OK(s, spar_beam_set_line_load(m, SPAR_LOAD_DEAD, 2, line, load));
     OK(s, spar_member_solve_static(m, 1));
     scene_tip(m, q);
     OK(s, spar_member_get_reaction(m, r));

@@ -46,7 +46,7 @@ static drift fly(double dt, double rho) {
     spar_member *b = scene_beam(s, "free", 1, NODES, 10, K, M);
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_velocity(b, x0, v0, w));
+    OK(s, spar_member_set_initial_velocity(b, x0, v0, w));
     OK(s, spar_session_set_integrator(s, rho, 1));
     OK(s, spar_session_set_newton(s, 1e-13, 1e-13, 30));
     OK(s, spar_member_get_energy(b, e0));

@@ -14,7 +14,7 @@ static void turn(const double J[3], const double w[3], double dt, double rho, do
     scene_mass(M, 2, c, J);
     OK(s, spar_rigid_create(s, "body", c, NULL, M, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     OK(s, spar_session_set_integrator(s, rho, 1));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-14, 30));
     scene_run(s, dt, (int64_t)(end / dt + 0.5));
@@ -100,7 +100,7 @@ static double flip_time(double dt) {
     scene_mass(M, 1, c, J);
     OK(s, spar_rigid_create(s, "body", c, NULL, M, &r));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, c, c, w));
+    OK(s, spar_member_set_initial_velocity(r, c, c, w));
     OK(s, spar_session_set_integrator(s, 1, 1));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-14, 30));
     memcpy(last, w, sizeof last);

@@ -19,7 +19,7 @@ static void spin(double dt, double rho, double end, top *out) {
     OK(s, spar_rigid_create(s, "top", zero, NULL, M, &r));
     OK(s, spar_member_set_root(r, SPAR_ROOT_PINNED));
     OK(s, spar_member_commit(r));
-    OK(s, spar_member_set_velocity(r, zero, zero, w));
+    OK(s, spar_member_set_initial_velocity(r, zero, zero, w));
     OK(s, spar_session_set_integrator(s, rho, 1));
     OK(s, spar_session_set_newton(s, 1e-13, 1e-13, 30));
     scene_run(s, dt, (int64_t)(end / dt + 0.5));

@@ -42,7 +42,7 @@ static void test_spring_mass(void **state) {
     spar_member *b = spring(s, 10);
     OK(s, spar_session_set_integrator(s, 0, 1));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-14, 20));
-    OK(s, spar_member_add_load(b, 1, load));
+    OK(s, spar_member_set_load(b, 1, SPAR_LOAD_DEAD, load));
     for (int k = 1; k <= 2; k++) {
         char what[64];
         scene_run(s, T / 1000, 500);
@@ -72,7 +72,7 @@ static void test_order(void **state) {
             spar_member *b = spring(s, 10);
             OK(s, spar_session_set_integrator(s, rho, 1));
             OK(s, spar_session_set_newton(s, 1e-14, 1e-14, 20));
-            OK(s, spar_member_set_velocity(b, zero, v0, zero));
+            OK(s, spar_member_set_initial_velocity(b, zero, v0, zero));
             scene_run(s, 1e-3 / (1 + k), 1000 * (1 + k));
             scene_tip(b, q);
             e[k] = fabs(q[0] - sin(sqrt(10)) / sqrt(10));
@@ -97,7 +97,7 @@ static void test_spectral_radius(void **state) {
         spar_member *b = spring(s, 1e8);
         OK(s, spar_session_set_integrator(s, rho, 1));
         OK(s, spar_session_set_newton(s, 1e-16, 1e-14, 20));
-        OK(s, spar_member_set_velocity(b, zero, v0, zero));
+        OK(s, spar_member_set_initial_velocity(b, zero, v0, zero));
         for (int k = 0; k < 8; k++) {
             double q[7];
             scene_run(s, 1, 1);

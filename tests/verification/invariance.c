@@ -37,7 +37,7 @@ static bent bend(const double *p, int load_steps, int elements, int nodes) {
     OK(s, spar_member_commit(b));
     spari_rotate(p, load, turned);
     spari_rotate(p, load + 3, turned + 3);
-    OK(s, spar_member_add_load(b, elements * nodes - 1, turned));
+    OK(s, spar_member_set_load(b, elements * nodes - 1, SPAR_LOAD_DEAD, turned));
     OK(s, spar_member_solve_static(b, load_steps));
     scene_tip(b, out.q);
     OK(s, spar_member_get_reaction(b, out.reaction));
@@ -82,7 +82,7 @@ static void test_other_end(void **state) {
             OK(s, spar_member_set_placement(b, end, half_turn));
         }
         OK(s, spar_member_commit(b));
-        OK(s, spar_member_add_load(b, 13, k == 0 ? load : back));
+        OK(s, spar_member_set_load(b, 13, SPAR_LOAD_DEAD, k == 0 ? load : back));
         OK(s, spar_member_solve_static(b, 1));
         scene_tip(b, q[k]);
         OK(s, spar_member_get_reaction(b, reaction));
@@ -116,7 +116,7 @@ static void test_torque_and_moment(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "cantilever", 1, 10, 2, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 9, load));
+    OK(s, spar_member_set_load(b, 9, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     verify_3("torque and moment: u", q, exudyn, 5e-8, "Exudyn, 5 digits");

@@ -15,7 +15,7 @@ static void princeton(double P, double degrees, double out[4]) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "princeton", 1, 14, 0.508, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, 13, load));
+    OK(s, spar_member_set_load(b, 13, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     spari_quat_matrix(q + 3, R);

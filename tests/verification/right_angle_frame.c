@@ -51,7 +51,7 @@ static void run(double dt, double rho, history *h) {
     while (next < TIMES) {
         n++;
         double t = (double)n / per_second, load[6] = {0, 0, t < 1 ? 50 * t : fmax(100 - 50 * t, 0), 0, 0, 0}, e[4];
-        OK(s, spar_member_add_load(b, ELBOW, load));
+        OK(s, spar_member_set_load(b, ELBOW, SPAR_LOAD_DEAD, load));
         scene_run(s, 1.0 / per_second, 1);
         if (n % per_second == 0 && n / per_second == (int)when[next]) {
             OK(s, spar_member_get_motion(b, q, NULL, NULL));

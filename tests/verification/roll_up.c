@@ -13,7 +13,7 @@ static void roll(double lambda, int nodes, double q[7]) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "roll", 1, nodes, L, K, NULL);
     OK(s, spar_member_commit(b));
-    OK(s, spar_member_add_load(b, nodes - 1, load));
+    OK(s, spar_member_set_load(b, nodes - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
     scene_tip(b, q);
     spar_session_destroy(&s);

@@ -17,7 +17,7 @@ static spar_member *rotor(spar_session *s, double eta) {
     scene_diagonal(M, 1, 1, 1, 2e-8, 1e-8, 1e-8);
     spar_member *b = scene_beam(s, "blade", 1, NODES, 1, K, M);
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
-    OK(s, spar_member_set_velocity(b, zero, zero, omega));
+    OK(s, spar_member_set_initial_velocity(b, zero, zero, omega));
     OK(s, spar_member_commit(b));
     return b;
 }
@@ -41,7 +41,7 @@ static void test_uniform(void **state) {
         spar_session *s = scene_session();
         spar_member *b = rotor(s, eta);
         OK(s, spar_member_solve_static(b, 1));
-        OK(s, spar_member_get_modes(b, MODES, f, shapes));
+        OK(s, spar_member_solve_modes(b, MODES, f, shapes));
         for (int i = 0; i < MODES; i++) {
             const double *tip = shapes + 6 * (NODES * (i + 1) - 1);
             double got = 2 * pi * f[i];
@@ -70,9 +70,9 @@ static void test_in_time(void **state) {
     spar_session *s = scene_session();
     OK(s, spar_session_set_integrator(s, 0.9, 1));
     spar_member *b = rotor(s, 5);
-    OK(s, spar_member_add_load(b, NODES - 1, load));
+    OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_member_add_load(b, NODES - 1, none));
+    OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, none));
     for (int n = 1; passages < 21; n++) {
         double a = 5 * n * dt, root[7] = {0, 0, 0, cos(a / 2), 0, 0, sin(a / 2)}, v[6] = {0, 0, 0, 0, 0, 5};
         OK(s, spar_member_drive_root(b, root, v, none));
@@ -128,10 +128,10 @@ static void test_swept_tip(void **state) {
             OK(s, spar_beam_set_nodes(b, COUNT, x, q));
             OK(s, spar_beam_set_sections(b, 1, &eta, K, M));
             OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
-            OK(s, spar_member_set_velocity(b, zero, zero, omega));
+            OK(s, spar_member_set_initial_velocity(b, zero, zero, omega));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_solve_static(b, 1));
-            OK(s, spar_member_get_modes(b, 8, f, shapes));
+            OK(s, spar_member_solve_modes(b, 8, f, shapes));
             int flap = 0;
             for (int i = 0; i < 8 && flap < 3; i++) {
                 const double *tip = shapes + 6 * (COUNT * (i + 1) - 1);

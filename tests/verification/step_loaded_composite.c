@@ -23,7 +23,7 @@ static void run(double dt, double end, double every, double rho, int sine, swing
         for (int k = 0; k < per_sample; k++) {
             n++;
             load[2] = sine ? 100 * sin(10 * n * dt) : 150;
-            OK(s, spar_member_add_load(b, 31, load));
+            OK(s, spar_member_set_load(b, 31, SPAR_LOAD_DEAD, load));
             scene_run(s, dt, 1);
         }
         scene_tip(b, q);

@@ -41,7 +41,7 @@ static double growth(double V, int scheme) {
     OK(s, spar_session_set_coupling(s, scheme, 0, 1e-9, 50));
     scene_mass(M, 1, c, J);
     OK(s, spar_rigid_create(s, "section", place, unit, M, &wing.section));
-    OK(s, spar_member_set_velocity(wing.section, place, rest, omega));
+    OK(s, spar_member_set_initial_velocity(wing.section, place, rest, omega));
     OK(s, spar_member_commit(wing.section));
     OK(s, spar_fluid_create(wing.section, "air", &wing.air));
     OK(s, spar_fluid_set_force_nodes(wing.air, 1, place));

@@ -121,10 +121,10 @@ static void create_large(scene *c) {
     MUST(s, spar_point_create(s, "point", x, NULL, &m));
     (void)add(c, m);
     commit(c);
-    MUST(s, spar_beam_set_line_load(c->member[0], 2, eta, lines, SPAR_LOAD_FOLLOWER));
-    MUST(s, spar_beam_set_line_load(c->member[1], 2, eta, lines, SPAR_LOAD_DEAD));
-    MUST(s, spar_member_add_follower(c->member[1], 4, load));
-    MUST(s, spar_member_add_load(c->member[3], 2, load));
+    MUST(s, spar_beam_set_line_load(c->member[0], SPAR_LOAD_FOLLOWER, 2, eta, lines));
+    MUST(s, spar_beam_set_line_load(c->member[1], SPAR_LOAD_DEAD, 2, eta, lines));
+    MUST(s, spar_member_set_load(c->member[1], 4, SPAR_LOAD_FOLLOWER, load));
+    MUST(s, spar_member_set_load(c->member[3], 2, SPAR_LOAD_DEAD, load));
     add_fluid(c, c->member[1], tip);
     add_fluid(c, c->member[6], x);
 }

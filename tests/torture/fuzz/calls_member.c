@@ -186,11 +186,11 @@ void do_spar_member_set_fidelity(call *c) {
     RUN(c, spar_member_set_fidelity(m->m, kind, modes));
 }
 
-void do_spar_member_set_velocity(call *c) {
+void do_spar_member_set_initial_velocity(call *c) {
     live_member *m = arg_member(c, -1);
     double *x0 = arg_reals_or_null(c, 3, -1, 1), *v0 = arg_reals_or_null(c, 3, -0.1, 0.1),
            *omega = arg_reals_or_null(c, 3, -1, 1);
-    RUN(c, spar_member_set_velocity(m->m, x0, v0, omega));
+    RUN(c, spar_member_set_initial_velocity(m->m, x0, v0, omega));
 }
 
 void do_spar_member_set_owner(call *c) {
@@ -262,18 +262,12 @@ static int64_t arg_node(call *c, const live_member *m) {
     return node;
 }
 
-void do_spar_member_add_load(call *c) {
+void do_spar_member_set_load(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t node = arg_node(c, m);
+    int kind = arg_int(c, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER);
     double *load = arg_reals(c, 6, -1, 1);
-    RUN(c, spar_member_add_load(m->m, node, load));
-}
-
-void do_spar_member_add_follower(call *c) {
-    live_member *m = arg_member(c, -1);
-    int64_t node = arg_node(c, m);
-    double *load = arg_reals(c, 6, -1, 1);
-    RUN(c, spar_member_add_follower(m->m, node, load));
+    RUN(c, spar_member_set_load(m->m, node, kind, load));
 }
 
 void do_spar_beam_set_line_load(call *c) {
@@ -281,7 +275,7 @@ void do_spar_beam_set_line_load(call *c) {
     int64_t n = chance(c, 10) ? 0 : arg_count(c, 1, 3), room = length(n);
     double *eta = arg_rising(c, room, 0, 1), *load = arg_reals(c, 6 * room, -1, 1);
     int kind = arg_int(c, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER);
-    RUN(c, spar_beam_set_line_load(b->m, n, eta, load, kind));
+    RUN(c, spar_beam_set_line_load(b->m, kind, n, eta, load));
 }
 
 void do_spar_beam_set_modal_damping(call *c) {
@@ -334,11 +328,11 @@ void do_spar_member_solve_static(call *c) {
     RUN(c, spar_member_solve_static(m->m, steps));
 }
 
-void do_spar_member_get_modes(call *c) {
+void do_spar_member_solve_modes(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t nodes = nodes_of(m), n = arg_count(c, 0, 8), room = length(n);
     double *frequency = OUT(c, room), *shapes = OUT_OR_NULL(c, room * nodes * 6);
-    RUN(c, spar_member_get_modes(m->m, n, frequency, shapes));
+    RUN(c, spar_member_solve_modes(m->m, n, frequency, shapes));
 }
 
 void do_spar_member_get_advice(call *c) {

@@ -66,7 +66,7 @@ enum {
     CALL(spar_member_set_external, 30, FUZZ_CHANGES)                                                                   \
     CALL(spar_member_set_effects, 40, FUZZ_CHANGES)                                                                    \
     CALL(spar_member_set_fidelity, 40, FUZZ_CHANGES)                                                                   \
-    CALL(spar_member_set_velocity, 60, FUZZ_CHANGES)                                                                   \
+    CALL(spar_member_set_initial_velocity, 60, FUZZ_CHANGES)                                                           \
     CALL(spar_member_set_owner, 20, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_commit, 60, FUZZ_CHANGES)                                                                         \
     CALL(spar_member_get_count, 30, FUZZ_PURE)                                                                         \
@@ -74,14 +74,13 @@ enum {
     CALL(spar_member_get_motion, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_set_motion, 100, FUZZ_CHANGES)                                                                    \
     CALL(spar_member_drive_root, 140, FUZZ_CHANGES)                                                                    \
-    CALL(spar_member_add_load, 140, FUZZ_CHANGES)                                                                      \
-    CALL(spar_member_add_follower, 100, FUZZ_CHANGES)                                                                  \
+    CALL(spar_member_set_load, 240, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_get_loads, 60, FUZZ_PURE)                                                                         \
     CALL(spar_member_get_reaction, 60, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_energy, 60, FUZZ_PURE)                                                                        \
     CALL(spar_member_get_work, 60, FUZZ_PURE)                                                                          \
     CALL(spar_member_solve_static, 30, FUZZ_CHANGES)                                                                   \
-    CALL(spar_member_get_modes, 60, FUZZ_PURE)                                                                         \
+    CALL(spar_member_solve_modes, 60, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_advice, 20, FUZZ_PURE)                                                                        \
     CALL(spar_member_write_vtk, 10, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_create, 50, FUZZ_CHANGES)                                                                          \

@@ -70,10 +70,10 @@ static void member(writer *w) {
     part(w, 25, CALL_spar_member_set_effects);
     part(w, 30, CALL_spar_member_set_placement);
     part(w, 5, CALL_spar_member_set_external);
-    part(w, 25, CALL_spar_member_set_velocity);
+    part(w, 25, CALL_spar_member_set_initial_velocity);
     part(w, 98, CALL_spar_member_commit);
     part(w, 30, CALL_spar_member_drive_root);
-    part(w, 30, CALL_spar_member_add_load);
+    part(w, 30, CALL_spar_member_set_load);
     part(w, 20, CALL_spar_beam_set_line_load);
     part(w, 10, CALL_spar_member_get_work);
     for (int k = roll(w, 3); k > 0; k--) {

@@ -354,12 +354,12 @@ static void unload(world *w, int session) {
     for (int i = 0; i < MEMBERS; i++) {
         const live_member *m = w->member + i;
         for (int64_t k = 0; m->m && m->session == session && k < nodes_of(m); k++) {
-            (void)spar_member_add_load(m->m, k, zero);
-            (void)spar_member_add_follower(m->m, k, zero);
+            (void)spar_member_set_load(m->m, k, SPAR_LOAD_DEAD, zero);
+            (void)spar_member_set_load(m->m, k, SPAR_LOAD_FOLLOWER, zero);
         }
         if (m->m && m->session == session && m->kind == KIND_BEAM) {
-            (void)spar_beam_set_line_load(m->m, 0, NULL, NULL, SPAR_LOAD_DEAD);
-            (void)spar_beam_set_line_load(m->m, 0, NULL, NULL, SPAR_LOAD_FOLLOWER);
+            (void)spar_beam_set_line_load(m->m, SPAR_LOAD_DEAD, 0, NULL, NULL);
+            (void)spar_beam_set_line_load(m->m, SPAR_LOAD_FOLLOWER, 0, NULL, NULL);
         }
     }
 }

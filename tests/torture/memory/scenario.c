@@ -296,7 +296,7 @@ static void act_describe(void) {
                 *point = NULL;
     CALL(spar_beam_set_quadrature, b, SPAR_QUADRATURE_SECTIONS, 4);
     CALL(spar_member_set_placement, b, place, unit_q);
-    CALL(spar_member_set_velocity, b, place, v0, omega);
+    CALL(spar_member_set_initial_velocity, b, place, v0, omega);
     CALL(spar_member_set_root, b, SPAR_ROOT_FREE);
     CALL(spar_member_set_effects, b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION);
     CALL(spar_member_commit, b);
@@ -347,10 +347,10 @@ static void act_step(void) {
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
-    CALL(spar_member_add_load, b, 5, load);
-    CALL(spar_member_add_follower, b, 4, load);
-    CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_DEAD);
-    CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_FOLLOWER);
+    CALL(spar_member_set_load, b, 5, SPAR_LOAD_DEAD, load);
+    CALL(spar_member_set_load, b, 4, SPAR_LOAD_FOLLOWER, load);
+    CALL(spar_beam_set_line_load, b, SPAR_LOAD_DEAD, 2, eta, along[0]);
+    CALL(spar_beam_set_line_load, b, SPAR_LOAD_FOLLOWER, 2, eta, along[0]);
     CALL(spar_member_get_work, b, work);
     for (int i = 1; i <= 5; i++) {
         double turn = 0.02 * i, q[7] = {0, 0, 0, cos(0.5 * turn), sin(0.5 * turn), 0, 0}, v[6] = {0, 0, 0, 1},
@@ -410,16 +410,16 @@ static void act_rungs(void) {
         if (k != 3) {
             CALL(spar_member_get_work, m, work);
         }
-        CALL(spar_member_add_load, m, 1, load);
+        CALL(spar_member_set_load, m, 1, SPAR_LOAD_DEAD, load);
         if (k == 0) {
-            CALL(spar_member_add_follower, m, 1, load);
+            CALL(spar_member_set_load, m, 1, SPAR_LOAD_FOLLOWER, load);
         }
     }
     go(&h, 4);
-    CALL(spar_member_get_modes, h.member[2], 3, frequency, shapes);
+    CALL(spar_member_solve_modes, h.member[2], 3, frequency, shapes);
     NOTE(frequency);
     if (run.ranks == 1) {
-        CALL(spar_member_get_modes, h.member[0], 2, frequency, shapes);
+        CALL(spar_member_solve_modes, h.member[0], 2, frequency, shapes);
     }
     end_session(&s);
 }
@@ -496,14 +496,14 @@ static void act_static(void) {
         CALL(spar_member_commit, b);
         CALL(spar_beam_set_modal_damping, b, mode, ratio, mu);
         NOTE(mu);
-        CALL(spar_member_add_load, b, 3, load);
+        CALL(spar_member_set_load, b, 3, SPAR_LOAD_DEAD, load);
         if (k == 1) {
             double turned[7] = {0, 0, 0, 1}, rate[6] = {0, 0, 0, 0.5};
             CALL(spar_member_drive_root, b, turned, rate, still);
         }
         CALL(spar_member_solve_static, b, 2);
         note_member(b);
-        CALL(spar_member_get_modes, b, 4, frequency, shapes);
+        CALL(spar_member_solve_modes, b, 4, frequency, shapes);
         NOTE(frequency);
     }
     end_session(&s);
@@ -524,8 +524,8 @@ static void describe_saved(host *h) {
         CALL(spar_member_commit, b);
         h->fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h->n[k], h->x[k]);
         CALL(spar_fluid_map, h->fluid[k]);
-        CALL(spar_member_add_follower, b, 2, load);
-        CALL(spar_beam_set_line_load, b, 2, eta, along[0], SPAR_LOAD_FOLLOWER);
+        CALL(spar_member_set_load, b, 2, SPAR_LOAD_FOLLOWER, load);
+        CALL(spar_beam_set_line_load, b, SPAR_LOAD_FOLLOWER, 2, eta, along[0]);
     }
 }
 
@@ -575,7 +575,7 @@ static void describe_trial(host *h) {
         CALL(spar_member_commit, b);
         h->fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h->n[k], h->x[k]);
         CALL(spar_fluid_map, h->fluid[k]);
-        CALL(spar_member_add_follower, b, 2, load);
+        CALL(spar_member_set_load, b, 2, SPAR_LOAD_FOLLOWER, load);
     }
 }
 

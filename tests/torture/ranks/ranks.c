@@ -1007,7 +1007,7 @@ static void describe_otherwise(scene *c, int k) {
         MUST(s, spar_member_set_placement(b, at, NULL));
         break;
     case 5:
-        MUST(s, spar_member_set_velocity(b, NULL, v, NULL));
+        MUST(s, spar_member_set_initial_velocity(b, NULL, v, NULL));
         break;
     case 6:
         MUST(s, spar_beam_set_axis(b, 2, eta, xyz, NULL));
