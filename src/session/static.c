@@ -9,6 +9,14 @@
 
 #include <string.h>
 
+/* The motion after of a member that spar solves for, on the rank that does. */
+static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
+    if (m->rung) {
+        return spari_rung_static(m, fluid);
+    }
+    return m->solver ? spari_solver_static(m, fluid, load_steps, onward) : SPAR_OK;
+}
+
 int spar_member_solve_static(spar_member *member, int load_steps) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
@@ -42,16 +50,12 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
         SPARI_TRY(spari_session_exchange_loads(s));
         spari_session_take_loads(s, member, member->load_pushed);
     }
-    if (member->rung) {
-        status = spari_rung_static(member);
-    } else if (member->solver) {
-        status = spari_solver_static(member, load_steps);
-    }
+    status = solve_member_static(member, member->load_pushed, load_steps, 0);
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) {
         spari_member_reject(member);
         memcpy(member->load_pushed, member->load_before, (size_t)(6 * member->nodes) * sizeof(double));
-        return status;
+        return spari_named(s, __func__, status);
     }
     member->dissipated_step = 0;
     spari_member_solved(member, member->load_pushed);

@@ -61,7 +61,7 @@ void spari_frame_free(spari_frame *frame);
 void spari_frame_restart(spari_frame *frame, const spar_member *member);
 int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
 void spari_frame_accept(spari_frame *frame);
-int spari_frame_static(spari_frame *frame, spar_member *member);
+int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
 /* K + N of the turn that the root of member->after has, and M, over the `size` unknowns that are free, dense, symmetric
    parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
 int64_t spari_frame_unknowns(const spari_frame *frame);

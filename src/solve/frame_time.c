@@ -459,18 +459,16 @@ void spari_frame_restart(spari_frame *f, const spar_member *m) {
     f->h_begin = 0;
 }
 
-int spari_frame_static(spari_frame *f, spar_member *m) {
+int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     double last = 0, omega[3];
     int failed = 1;
     spari_turn turn;
-    SPARI_REQUIRE(
-        m->session, f->held == 6, SPAR_ERR_STATE,
-        "spar_member_solve_static: '%s': nothing holds a linear member that its root leaves free to turn; fix "
-        "or drive its root",
-        m->name);
+    SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
+                  "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
+                  m->name);
     int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root + 7, f->begin.root + 13, &turn);
     spari_solver_gather(m, m->dead, f->load);
-    spari_solver_gather(m, m->load_pushed, f->load1);
+    spari_solver_gather(m, fluid, f->load1);
     for (int i = 0; i < 6 * f->nodes; i++) {
         f->load[i] += f->load1[i];
     }
@@ -501,11 +499,9 @@ int spari_frame_static(spari_frame *f, spar_member *m) {
     }
     if (singular || failed) {
         return spari_fail(m->session, SPAR_ERR_NUMERIC,
-                          "spar_member_solve_static: '%s': the linear member has no equilibrium under these loads; the "
-                          "state is as it was",
+                          "member '%s': the linear member has no equilibrium under these loads; the state is as it was",
                           m->name);
     }
-    publish(f, m, &f->to, &m->now);
     return SPAR_OK;
 }
 

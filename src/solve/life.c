@@ -52,7 +52,7 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
         memcpy(m->drive[k], m->now.q, 7 * sizeof(double));
         memcpy(m->drive[k] + 7, m->now.v, 6 * sizeof(double));
         memcpy(m->drive[k] + 13, m->now.a, 6 * sizeof(double));

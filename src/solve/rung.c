@@ -331,12 +331,16 @@ void spari_rung_accept(spar_member *m) {
     }
 }
 
-int spari_rung_static(spar_member *m) {
+int spari_rung_static(spar_member *m, const double *fluid) {
     if (m->rung->frame) {
-        return m->owner == spari_comm_rank(m->session->comm) ? spari_frame_static(m->rung->frame, m) : SPAR_OK;
+        return m->owner == spari_comm_rank(m->session->comm) ? spari_frame_static(m->rung->frame, m, fluid) : SPAR_OK;
     }
-    double rest[6] = {0};
-    move_nodes(m, m->now.q, rest, rest, &m->after);
+    double v[6] = {0}, a[6] = {0};
+    if (m->root == SPAR_ROOT_DRIVEN && (spari_norm(m->now.v + 3) > 0 || spari_norm(m->now.a) > 0)) {
+        memcpy(v, m->now.v, sizeof v); /* turning steadily, as the members that are solved for */
+        memcpy(a, m->now.a, 3 * sizeof *a);
+    }
+    move_nodes(m, m->now.q, v, a, &m->after);
     return SPAR_OK;
 }
 

@@ -29,7 +29,8 @@ void spari_rung_free(spari_rung *rung);
 void spari_rung_restart(spar_member *member);
 int spari_rung_advance(spar_member *member, double dt);
 void spari_rung_accept(spar_member *member);
-int spari_rung_static(spar_member *member);
+/* Under `fluid` loads [nodes][6] beside the kept ones; writes member->after. */
+int spari_rung_static(spar_member *member, const double *fluid);
 /* What the owner of a member keeps of it beside the member itself, of any fidelity, as doubles: see
  * spari_solver_state_size. Size 0: this rank keeps nothing. */
 int64_t spari_rung_state_size(const spar_member *member);

@@ -46,8 +46,9 @@ void spari_solver_restart(spari_solver *solver, const spar_member *member);
 int spari_solver_advance(spar_member *member, double dt);
 /* The step is accepted: t^{n+1} becomes t^n. */
 void spari_solver_accept(spari_solver *solver);
-/* Equilibrium under dead, fluid and gravity loads; writes member->now, after, reaction, or leaves all as it was. */
-int spari_solver_static(spar_member *member, int load_steps);
+/* Equilibrium under dead, `fluid` [nodes][6] and gravity loads; writes member->after and leaves t^n alone. onward: from
+   the shape that the last call found, if that leads there; else from t^n. */
+int spari_solver_static(spar_member *member, const double *fluid, int load_steps, int onward);
 
 /* All that the next steps depend on, to the last bit, as doubles, for save and load; the kept tangent is part of it.
    is_state: whether `count` doubles can be the state of this solver. */

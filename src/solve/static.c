@@ -165,15 +165,15 @@ static int starts_on_path(spar_member *m, loading *l, const double *q) {
     return 1;
 }
 
-/* Load steps from 0 to all of the loads, s->to.q from s->begin.q; the last point in s->best. Returns the part reached.
- */
-static double follow_path(spar_member *member, loading *l, int load_steps, outcome *why) {
+/* Load steps from 0 to all of the loads, s->to.q from `start`, which it may be; the last point in s->best. Returns the
+   part reached. */
+static double follow_path(spar_member *member, loading *l, const double *start, int load_steps, outcome *why) {
     spari_solver *s = member->solver;
     size_t bytes = (size_t)(7 * s->n) * sizeof(double);
     double done = 0, step = 1.0 / load_steps;
-    int halvings = 0, on_path = starts_on_path(member, l, s->begin.q);
-    memcpy(s->to.q, s->begin.q, bytes);
-    memcpy(s->best, s->begin.q, bytes);
+    int halvings = 0, on_path = starts_on_path(member, l, start);
+    memcpy(s->best, start, bytes);
+    memcpy(s->to.q, s->best, bytes);
     while (done < 1) {
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
         outcome o = equilibrium(member, l, f, on_path, s->to.q);
@@ -223,8 +223,8 @@ static int refuse(const spar_member *member, double done, outcome why) {
                        bend);
     }
     return spari_fail(member->session, SPAR_ERR_NUMERIC,
-                      "spar_member_solve_static: '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state "
-                      "is as it was. Ask for less than that, or go on in time steps",
+                      "member '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state is as it was. Ask "
+                      "for less than that, or go on in time steps",
                       member->name, why == LOST ? "stable " : "", done, text);
 }
 
@@ -237,17 +237,38 @@ static void warn_of_bend(const spar_member *m) {
     }
     (void)snprintf(
         text, sizeof text,
-        "spar_member_solve_static: '%s': neighbouring nodes are turned by %.2g rad against each other, more "
-        "than they can follow: the equilibrium found may be none of the beam; give it more nodes or elements",
+        "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more than they can "
+        "follow: it may be none of the beam; give it more nodes or elements",
         m->name, largest_bend(m->solver, m->solver->best));
     spari_log(s, SPAR_LOG_WARNING, text);
 }
 
 static int no_memory_to_balance(const spar_member *member) {
-    return spari_fail(member->session, SPAR_ERR_MEMORY, "spar_member_solve_static: no memory for '%s'", member->name);
+    return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", member->name);
 }
 
-int spari_solver_static(spar_member *member, int load_steps) {
+/* All loads that do not depend on the state, on the unknowns' nodes. */
+static void sum_loads_at_rest(const spar_member *member, const double *fluid) {
+    spari_solver *s = member->solver;
+    spari_solver_gather(member, member->dead, s->load);
+    spari_solver_gather(member, fluid, s->r);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->load[i] += s->r[i];
+    }
+}
+
+/* The shape found, at rest or turning steadily. */
+static void publish_equilibrium(spar_member *member, const loading *l) {
+    spari_solver *s = member->solver;
+    memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof *s->best);
+    memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof(double));
+    if (l->turning) {
+        spari_turn_rates(member, &l->turn, s->to.q, s->to.v, s->to.a);
+    }
+    spari_solver_publish(member, &s->to, &member->after);
+}
+
+int spari_solver_static(spar_member *member, const double *fluid, int load_steps, int onward) {
     spari_solver *s = member->solver;
     int n = s->n;
     loading l = {0};
@@ -260,17 +281,14 @@ int spari_solver_static(spar_member *member, int load_steps) {
             return no_memory_to_balance(member);
         }
     }
-    spari_solver_gather(member, member->dead, s->load);
-    spari_solver_gather(member, member->load_pushed, s->r);
-    for (int i = 0; i < 6 * n; i++) {
-        s->load[i] += s->r[i];
-    }
+    sum_loads_at_rest(member, fluid);
     l.guarded = has_path(member);
     if (l.guarded && spari_linear_watch(s->linear)) {
         free(l.mass);
         return no_memory_to_balance(member);
     }
-    double done = follow_path(member, &l, load_steps, &why);
+    double done = onward ? follow_path(member, &l, s->to.q, 1, &why) : 0;
+    done = done < 1 ? follow_path(member, &l, s->begin.q, load_steps, &why) : done;
     free(l.mass);
     spari_linear_unwatch(s->linear);
     s->factored = 0;
@@ -279,14 +297,6 @@ int spari_solver_static(spar_member *member, int load_steps) {
         return refuse(member, done, why);
     }
     warn_of_bend(member);
-    memcpy(s->begin.q, s->best, (size_t)(7 * n) * sizeof *s->best);
-    memset(s->begin.v, 0, (size_t)(18 * n) * sizeof(double)); /* at rest, or turning steadily */
-    if (l.turning) {
-        spari_turn_rates(member, &l.turn, s->begin.q, s->begin.v, s->begin.a);
-        memcpy(s->begin.b, s->begin.a, (size_t)(6 * n) * sizeof(double));
-    }
-    memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof(double));
-    spari_solver_publish(member, &s->begin, &member->now);
-    spari_solver_publish(member, &s->begin, &member->after);
+    publish_equilibrium(member, &l);
     return SPAR_OK;
 }
