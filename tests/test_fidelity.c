@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "solve/frame.h"
-#include "solve/rung.h"
+#include "solve/rigid_beam.h"
 #include "solve/solver.h"
 
 static double K[36], M[36];

@@ -14,7 +14,7 @@
 #include "../comm/enter.h"
 
 #include "../member/applied.h"
-#include "../solve/rung.h"
+#include "../solve/rigid_beam.h"
 #include "../solve/solver.h"
 
 #include <math.h>

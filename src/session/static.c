@@ -3,7 +3,7 @@
 #include "../member/body.h"
 #include "../member/edge.h"
 #include "../solve/life.h"
-#include "../solve/rung.h"
+#include "../solve/rigid_beam.h"
 #include "../solve/solver.h"
 #include "exchange.h"
 

@@ -10,7 +10,7 @@
 
 #include "../math/predictor.h"
 #include "../member/body.h"
-#include "../solve/rung.h"
+#include "../solve/rigid_beam.h"
 #include "../solve/solver.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
-#include "rung.h"
+#include "rigid_beam.h"
 #include "solver.h"
 #include "work.h"
 

@@ -11,7 +11,7 @@
 #include "../member/edge.h"
 #include "eigen.h"
 #include "frame.h"
-#include "rung.h"
+#include "rigid_beam.h"
 #include "solver.h"
 #include "turn.h"
 

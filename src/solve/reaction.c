@@ -5,7 +5,7 @@
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/edge.h"
-#include "rung.h"
+#include "rigid_beam.h"
 
 #include <stdlib.h>
 #include <string.h>

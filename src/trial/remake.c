@@ -7,7 +7,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../solve/life.h"
-#include "../solve/rung.h"
+#include "../solve/rigid_beam.h"
 
 #include <stdlib.h>
 #include <string.h>

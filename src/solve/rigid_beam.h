@@ -1,8 +1,8 @@
 /* Members below the exact ones. Prescribed: the nodes follow the root as one rigid body; nothing is solved for. Rigid:
    the same about a body of the member's whole mass, which the solver of rigid bodies advances. Linear and modal: see
    solve/frame.h. */
-#ifndef SPARI_RUNG_H
-#define SPARI_RUNG_H
+#ifndef SPARI_RIGID_BEAM_H
+#define SPARI_RIGID_BEAM_H
 
 #include "../member/structure.h"
 #include "arms.h"

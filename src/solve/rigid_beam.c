@@ -1,5 +1,5 @@
 /* Members below the exact ones: what carries them, from a line that follows its root to frames and rigid beams. */
-#include "rung.h"
+#include "rigid_beam.h"
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"
