@@ -45,7 +45,7 @@ static void measure(const deck *d, nrel5mw *turbine, int repeats, figures *f) {
         }
         MUST(s.session, spar_session_set_newton(s.session, d->atol, d->rtol, 20));
         step(&s); /* accelerations at t = 0 are found here */
-        const spari_solver *solver = s.member->solver;
+        const spari_solver *solver = s.member->solution;
         int64_t newton = solver->newton, factors = solver->factors;
         double start = now();
         for (int i = 1; i < d->steps; i++) {

@@ -232,7 +232,7 @@ static void over_elements(void) {
             box_scene(&s, elements, 6, 1e-3, 0);
             step(&s);
             size = bytes() - before;
-            const spari_solver *solver = s.member->solver;
+            const spari_solver *solver = s.member->solution;
             int64_t newton0 = solver->newton, factors0 = solver->factors;
             double start = now();
             for (int i = 0; i < steps; i++) {

@@ -182,7 +182,7 @@ static void test_turning_tangent(void **state) {
         spari_quat_exp(psi, q + (ptrdiff_t)7 * i + 3);
     }
     spari_turn_rates(b, &turn, q, v, a);
-    spari_turn_tangent(b, &turn, 0, q, v, a, 1, S, Me);
+    spari_turn_tangent(b->body, &turn, 0, q, v, a, 1, S, Me);
     for (int j = 6; j < N; j++) { /* the root carries the frame */
         for (int k = 0; k < 2; k++) {
             double p[7 * P], step = k ? h : -h, psi[3] = {0}, t[4];
@@ -195,7 +195,7 @@ static void test_turning_tangent(void **state) {
                 spari_quat_mul(t, p + (ptrdiff_t)7 * (j / 6) + 3, p + (ptrdiff_t)7 * (j / 6) + 3);
             }
             spari_turn_rates(b, &turn, p, v, a);
-            spari_turn_residual(b, p, v, a, 1, r[k]);
+            spari_turn_residual(b->body, p, v, a, 1, r[k]);
         }
         for (int i = 0; i < N; i++) {
             NEAR((r[1][i] - r[0][i]) / (2 * h), S[N * i + j], 1e-5);

@@ -23,7 +23,6 @@ typedef struct line_load {
 struct spari_applied {
     double *follower;  /* [nodes][6], global axes at the reference; NULL: none */
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
-    double *room;      /* [nodes][6] of a rigid member; NULL: of another */
 };
 
 static double *room_for(const spar_member *m) {
@@ -43,23 +42,8 @@ void spari_applied_free(spari_applied *a) {
         free(a->follower);
         line_free(&a->line[0]);
         line_free(&a->line[1]);
-        free(a->room);
         free(a);
     }
-}
-
-/* Without loads; NULL when there is no memory. */
-static spari_applied *applied_create(const spar_member *m) {
-    spari_applied *a = spari_zalloc(1, sizeof *a);
-    if (a && m->fidelity == SPAR_FIDELITY_RIGID && !(a->room = spari_zalloc(6 * m->nodes, sizeof *a->room))) {
-        free(a);
-        a = NULL;
-    }
-    return a;
-}
-
-double *spari_applied_room(const spari_applied *a) {
-    return a->room;
 }
 
 /* ---- forces ---- */
@@ -385,7 +369,7 @@ void spari_applied_check(spar_member *m, spari_image *image) {
     if (count == 0 || image->failed) {
         return;
     }
-    spari_applied *a = m->applied_next = applied_create(m);
+    spari_applied *a = m->applied_next = spari_zalloc(1, sizeof *a);
     if (!a) {
         image->failed = image->no_memory = 1;
         return;
@@ -435,7 +419,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
     if (!a) {
         return SPAR_OK;
     }
-    spari_applied *b = m->applied = applied_create(m);
+    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
     int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && a->follower) {
         b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
@@ -456,7 +440,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
 static int need_applied(spar_member *member, const char *call) {
     SPARI_TRY(spari_need_committed(member, call));
     if (!member->applied) {
-        member->applied = applied_create(member);
+        member->applied = spari_zalloc(1, sizeof *member->applied);
     }
     SPARI_REQUIRE(member->session, member->applied, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call,
                   member->name);

@@ -15,8 +15,6 @@ double spari_applied_residual(const spar_member *member, const double *q, double
 void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
 /* load [nodes][6] += the loads at the motion q [nodes][7] of the public numbering. */
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
-/* Scratch [nodes][6] of a rigid member's loads: nothing in a step takes memory. */
-double *spari_applied_room(const spari_applied *applied);
 /* Whether the loads have a potential: dead forces only. */
 int spari_applied_potential(const spar_member *member);
 /* Into a file, and back in two passes: the first gets what it needs into member->applied_next (image->failed when it

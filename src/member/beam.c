@@ -138,7 +138,7 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
 }
 
 /* x [elements * P][3] from the axis points; ends exact, joints on the spline (or on the axis point that is there). */
-static int fit_axis(spar_member *member, const double *gll, const double *bary, double *x) {
+static int fit_axis(const spar_member *member, const double *gll, const double *bary, double *x) {
     const spari_beam *beam = member->beam;
     int E = member->elements, P = member->per_element;
     size_t n = (size_t)beam->axis_count;
@@ -316,7 +316,7 @@ static void frame_at(const spar_member *member, const framing *f, const double *
 /* ---- nodes ---- */
 
 /* Own-frame nodes, before placement: x and, when wanted, q. */
-static int own_nodes(spar_member *member, const double *gll, const double *bary, double *x, double *q) {
+static int own_nodes(const spar_member *member, const double *gll, const double *bary, double *x, double *q) {
     const spari_beam *beam = member->beam;
     int P = member->per_element;
     if (beam->node_x) {
@@ -504,7 +504,7 @@ static void reference_frame(const spar_member *member, const framing *f, const d
 }
 
 static void fill_point(const spar_member *member, spari_body *b, int k, int e, double xi, double w, const double R[9],
-                       const double *gll, const double *bary) {
+                       const double *gll, const double *bary, const double *mu) {
     const spari_beam *beam = member->beam;
     int P = b->per_element;
     line_point p;
@@ -526,7 +526,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite whatever the coupling, mu_i C_ii on the diagonal */
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++) {
-                section[6 * i + j] *= sqrt(beam->mu[i] * beam->mu[j]);
+                section[6 * i + j] *= sqrt(mu[i] * mu[j]);
             }
         }
         turn_section(R, section, b->D + 36 * (int64_t)k);
@@ -538,7 +538,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     }
 }
 
-int spari_beam_build(spar_member *member, spari_body **body) {
+int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body) {
     const spari_beam *beam = member->beam;
     int E = member->elements, P = member->per_element, points = 0, most = 0;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
@@ -552,11 +552,8 @@ int spari_beam_build(spar_member *member, spari_body **body) {
         points += n;
         most = n > most ? n : most;
     }
-    int damped = beam->damped && (member->effects & SPAR_EFFECT_DAMPING),
-        massive = beam->mass && (member->effects & SPAR_EFFECT_INERTIA);
-    massive = massive || (beam->mass && (member->effects & SPAR_EFFECT_GRAVITY));
-    massive = massive || member->fidelity == SPAR_FIDELITY_MODAL; /* there are no modes without */
-    spari_body *b = spari_body_create(E, P, points, 1, damped, massive);
+    massive = massive || (beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
+    spari_body *b = spari_body_create(E, P, points, 1, mu != NULL, massive);
     double *xi = spari_zalloc(most, sizeof *xi), *w = spari_zalloc(most, sizeof *w),
            *x = spari_zalloc(3 * member->nodes, sizeof *x);
     double *q = spari_zalloc(4 * member->nodes, sizeof *q);
@@ -575,7 +572,7 @@ int spari_beam_build(spar_member *member, spari_body **body) {
         for (int i = 0; i < n; i++, k++) {
             double R[9];
             reference_frame(member, &f, gll, bary, x, e, xi[i], R);
-            fill_point(member, b, k, e, xi[i], w[i], R, gll, bary);
+            fill_point(member, b, k, e, xi[i], w[i], R, gll, bary, mu);
         }
         b->first[e + 1] = k;
     }

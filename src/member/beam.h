@@ -18,8 +18,9 @@ struct spari_beam {
 
 /* Fills member->xr, qr (placed) from the axis or the nodes given. */
 int spari_beam_place_nodes(spar_member *member);
-/* Builds the body; the description has been checked. */
-int spari_beam_build(spar_member *member, spari_body **body);
+/* Builds the body; the description has been checked. massive: with mass, whatever effects are in force; mu: of its
+   damping, NULL: none. */
+int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);
 void spari_beam_free(spari_beam *beam);
 /* The quadrature rule in force. */
 int spari_beam_rule(const spari_beam *beam);

@@ -30,7 +30,7 @@ typedef struct spari_body {
     double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; NULL: none */
     double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */
-    double *scratch;   /* work space of one element */
+    double *scratch;   /* work space of one element, and of 6 doubles a node at least */
 } spari_body;
 
 /* Sizes the arrays for `points` quadrature points over all elements; elastic, damped, massive say which properties

@@ -313,20 +313,6 @@ int spar_member_set_effects(spar_member *member, int effects) {
     return SPAR_OK;
 }
 
-int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
-    SPARI_TRY(spari_need_open(member, __func__));
-    spar_session *s = member->session;
-    SPARI_REQUIRE(s, kind >= SPAR_FIDELITY_PRESCRIBED && kind <= SPAR_FIDELITY_EXACT, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", __func__, member->name, kind);
-    SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
-                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", __func__, member->name);
-    SPARI_REQUIRE(s, kind != SPAR_FIDELITY_MODAL || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld modes; give at least 1", __func__, member->name, (long long)modes);
-    member->fidelity = kind;
-    member->modes = kind == SPAR_FIDELITY_MODAL ? modes : 0;
-    return SPAR_OK;
-}
-
 int spar_member_set_owner(spar_member *member, int rank) {
     SPARI_TRY(spari_need_open(member, __func__));
     int size = spari_comm_size(member->session->comm);

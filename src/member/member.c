@@ -21,10 +21,6 @@ double spari_member_length(const spar_member *m) {
     return length > 0 ? length : 1;
 }
 
-int spari_member_is_solved(const spar_member *member) {
-    return !member->external && member->kind != SPARI_POINT && !spari_member_is_prescribed(member);
-}
-
 int spar_member_get_count(const spar_member *member, int64_t *nodes) {
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_REQUIRE(member->session, nodes, SPAR_ERR_ARGUMENT, "spar_member_get_count: '%s': nodes is NULL",
@@ -94,5 +90,22 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         memcpy(nodes + width * i, unique + width * (i - i / P), (size_t)width * sizeof *nodes);
+    }
+}
+
+void spari_member_publish(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to) {
+    spari_member_from_unique(m, 7, q, to->q);
+    spari_member_from_unique(m, 6, v, to->v);
+    spari_member_from_unique(m, 6, a, to->a);
+}
+
+void spari_member_gather(const spar_member *m, const double *nodal, double *unique) {
+    int P = m->per_element;
+    memset(unique, 0, (size_t)m->body->unique * 6 * sizeof *unique);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / P;
+        for (int k = 0; k < 6; k++) {
+            unique[6 * u + k] += nodal[6 * i + k];
+        }
     }
 }

@@ -8,10 +8,10 @@
 void spari_member_pose(const spar_member *m, const spari_motion *nodes, double pose[13]) {
     memset(pose, 0, 13 * sizeof *pose);
     pose[3] = 1;
-    if (m->fidelity != SPAR_FIDELITY_EXACT && spari_member_root_is_given(m)) {
+    if (m->seen != SPARI_SEEN_FIXED && spari_member_root_is_given(m)) {
         memcpy(pose, nodes->q, 7 * sizeof *pose);
     }
-    if (m->fidelity != SPAR_FIDELITY_EXACT && m->root == SPAR_ROOT_DRIVEN) {
+    if (m->seen != SPARI_SEEN_FIXED && m->root == SPAR_ROOT_DRIVEN) {
         memcpy(pose + 7, nodes->v, 6 * sizeof *pose);
     }
 }

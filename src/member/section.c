@@ -79,7 +79,7 @@ static void strains(const spari_station *s, const section_field *f, double e[6],
 
 /* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
 static int is_linear(const spar_member *m) {
-    return spari_member_is_framed(m) || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    return m->seen == SPARI_SEEN_LINEAR || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
 }
 
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
@@ -92,7 +92,7 @@ static void linear_strains(const spar_member *m, const spari_station *s, double 
         int64_t node = (int64_t)s->element * P + l;
         double x[6], rate[6];
         spari_member_deformation(m, pose, &m->after, node, x, rate);
-        if (m->fidelity == SPAR_FIDELITY_EXACT) { /* the equations of LARGE_ROTATION off take velocities for rates */
+        if (m->seen == SPARI_SEEN_FIXED) { /* the equations of LARGE_ROTATION off take velocities for rates */
             memcpy(rate, m->after.v + 6 * node, sizeof rate);
         }
         for (int i = 0; i < 3; i++) {

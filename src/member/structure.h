@@ -13,26 +13,32 @@ typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
-typedef struct spari_solver spari_solver;   /* src/solve: the owner's integrator */
 typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
 typedef struct spari_work spari_work;       /* src/solve/work.h: the work done on a member */
 typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
-typedef struct spari_rung spari_rung;       /* src/solve/rung.h: a member of lower fidelity */
-typedef struct spari_arms spari_arms;       /* src/solve/rung.h: loads on the arms of a rigid body */
 typedef struct spari_remake spari_remake;   /* src/trial/remake.h: a member made anew for a trial */
 typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
+
+/* How the deformation of a member is seen. */
+typedef enum spari_view {
+    SPARI_SEEN_FIXED,   /* as it is, from axes that stand */
+    SPARI_SEEN_CARRIED, /* from a root that is given, which carries it */
+    SPARI_SEEN_LINEAR   /* the same, and small there: to first order */
+} spari_view;
 
 struct spar_member {
     spar_session *session;
     spar_member *next; /* in order of creation, the same on every rank */
     char *name;
     int kind, external, root, owner, committed;
-    int effects;       /* SPAR_EFFECT_*: asked for; after commit what is in force */
-    int effects_given; /* 0: what the description implies */
-    int fidelity;      /* SPAR_FIDELITY_* */
-    int64_t modes;     /* of a modal member */
-    int motion_given;  /* set_motion was called in the step under way */
-    int drive_given;   /* drive_root was called for the step under way or next */
+    int effects;                      /* SPAR_EFFECT_*: asked for; after commit what is in force */
+    int effects_given;                /* 0: what the description implies */
+    int fidelity;                     /* SPAR_FIDELITY_* */
+    int64_t modes;                    /* of a modal member */
+    const struct spari_fidelity *row; /* how it moves (solve/fidelity.h); after commit */
+    spari_view seen;                  /* likewise */
+    int motion_given;                 /* set_motion was called in the step under way */
+    int drive_given;                  /* drive_root was called for the step under way or next */
 
     int elements, per_element;
     int64_t nodes;
@@ -58,11 +64,9 @@ struct spar_member {
     double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
     double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
-    spari_rung *rung;                   /* of members below the exact ones; NULL: none */
-    spari_arms *arms;                   /* of the body that carries a rigid member; NULL: none */
+    void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
     spari_work *work;                   /* NULL: not asked for */
     spari_remake *advice;               /* of spar_session_advise; NULL: none */
-    spari_solver *solver;               /* on the owner, of members that are solved for */
 };
 
 /* The description as one number: all but the owner. */
@@ -73,6 +77,8 @@ uint64_t spari_member_make(const spar_member *member);
  */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);
 void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes);
+/* The unknowns' q, v, a into a motion of the nodes. */
+void spari_member_publish(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to);
 /* Where the reference has a node of the unknowns, and its arm from the root. */
 static inline const double *spari_member_place(const spar_member *member, int unique) {
     int P = member->per_element;
@@ -85,21 +91,17 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
         arm[k] = place[k] - member->xr[k];
     }
 }
+/* Loads of the nodes summed onto the unknowns' nodes. */
+void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
 /* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
 double spari_member_length(const spar_member *member);
-/* Whether spar advances the member (not a point, not external). */
-int spari_member_is_solved(const spar_member *member);
-/* Whether its nodes follow its root without a solution. */
-static inline int spari_member_is_prescribed(const spar_member *member) {
-    return member->fidelity == SPAR_FIDELITY_PRESCRIBED;
-}
-/* Whether it is linear or modal: seen from a frame, its root's or one that stands (solve/frame.h). */
-static inline int spari_member_is_framed(const spar_member *member) {
-    return member->fidelity == SPAR_FIDELITY_LINEAR || member->fidelity == SPAR_FIDELITY_MODAL;
-}
 /* Whether the motion of the root is given, so that it carries the member; else it is one of the unknowns. */
 static inline int spari_member_root_is_given(const spar_member *member) {
     return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;
+}
+/* How many of the root's six unknowns its root condition holds: the first. */
+static inline int spari_member_held(const spar_member *member) {
+    return member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
 }
 /* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */
 static inline double spari_member_xi(const spar_member *member, int element, double local) {

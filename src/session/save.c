@@ -14,8 +14,7 @@
 #include "../comm/enter.h"
 
 #include "../member/applied.h"
-#include "../solve/rigid_beam.h"
-#include "../solve/solver.h"
+#include "../solve/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -200,18 +199,18 @@ static int put_own(spari_image *image, const spar_session *s) {
     int64_t solvers = 0, fluids = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        solvers += spari_rung_state_size(m) > 0;
+        solvers += spari_fidelity_state_size(m) > 0;
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         fluids++;
     }
     spari_image_put_int(image, solvers);
     for (const spar_member *m = s->members; m; m = m->next, k++) {
-        int64_t n = spari_rung_state_size(m);
+        int64_t n = spari_fidelity_state_size(m);
         if (n > 0) {
             double *state = put_room(image, n);
             if (state) {
-                spari_rung_save(m, state);
+                m->row->save(m, state);
                 spari_image_put_int(image, k);
                 spari_image_put_int(image, n);
                 spari_image_put(image, state, n);
@@ -357,11 +356,11 @@ typedef struct record {
 
 typedef struct reading {
     spari_image image;
-    int64_t common;        /* where the clock begins */
-    int phase;             /* where the step stood */
-    int ranks;             /* of the saved run */
-    const double **solver; /* [members] state of each solver here; NULL: not here */
-    record *records;       /* fluids of all ranks */
+    int64_t common;          /* where the clock begins */
+    int phase;               /* where the step stood */
+    int ranks;               /* of the saved run */
+    const double **solution; /* [members] state of each that is solved for here; NULL: not here */
+    record *records;         /* fluids of all ranks */
     int64_t record_count;
     const double **states;    /* of the records that make up each fluid here, one after the other */
     int *state_count;         /* [fluids here] */
@@ -372,7 +371,7 @@ typedef struct reading {
 
 static void end_loading(reading *l) {
     spari_image_free(&l->image);
-    free(l->solver);
+    free(l->solution);
     free(l->records);
     free(l->states);
     free(l->state_count);
@@ -478,11 +477,11 @@ static int check_solvers(spar_session *s, reading *l) {
         if (!m || k < 0 || !state) {
             return broken(s);
         }
-        if (spari_rung_state_size(m) > 0) {
-            if (!spari_rung_is_state(m, state, n)) {
+        if (spari_fidelity_state_size(m) > 0) {
+            if (!m->row->is_state(m, state, n)) {
                 return broken(s);
             }
-            l->solver[k] = state;
+            l->solution[k] = state;
         }
     }
     return SPAR_OK;
@@ -508,8 +507,8 @@ static int compare_fluids(spar_session *s, reading *l, int rank) {
 }
 
 static int check_own(spar_session *s, reading *l) {
-    l->solver = spari_zalloc(s->member_count, sizeof *l->solver);
-    if (!l->solver) {
+    l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
+    if (!l->solution) {
         return no_memory_for_state(s, "spar_session_load");
     }
     for (int rank = 0; rank < l->ranks; rank++) {
@@ -525,7 +524,7 @@ static int check_own(spar_session *s, reading *l) {
     }
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
-        if (spari_rung_state_size(m) > 0 && !l->solver[k]) {
+        if (spari_fidelity_state_size(m) > 0 && !l->solution[k]) {
             return broken(s);
         }
     }
@@ -657,8 +656,8 @@ static void put_in_force(spar_session *s, reading *l) {
     pass_clock(&t, s);
     for (spar_member *m = s->members; m; m = m->next, k++) {
         pass_member(&t, m);
-        if (spari_rung_state_size(m) > 0) {
-            spari_rung_load(m, l->solver[k]);
+        if (spari_fidelity_state_size(m) > 0) {
+            m->row->load(m, l->solution[k]);
         }
     }
     k = 0;

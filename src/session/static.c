@@ -2,19 +2,15 @@
 #include "../base/quiet.h"
 #include "../member/body.h"
 #include "../member/edge.h"
+#include "../solve/fidelity.h"
 #include "../solve/life.h"
-#include "../solve/rigid_beam.h"
-#include "../solve/solver.h"
 #include "exchange.h"
 
 #include <string.h>
 
 /* The motion after of a member that spar solves for, on the rank that does. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
-    if (m->rung) {
-        return spari_rung_static(m, fluid);
-    }
-    return m->solver ? spari_solver_static(m, fluid, load_steps, onward) : SPAR_OK;
+    return spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
@@ -31,7 +27,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     } else if (load_steps < 1) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", __func__, member->name,
                             load_steps);
-    } else if (!member->body && !member->rung) {
+    } else if (!member->row->rest) {
         status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
                             __func__, member->name);
     } else if (member->root == SPAR_ROOT_FREE ||

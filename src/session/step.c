@@ -1,6 +1,7 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
+#include "../solve/fidelity.h"
 #include "../solve/life.h"
 #include "coupling.h"
 #include "exchange.h"
@@ -9,9 +10,6 @@
 #include "../comm/enter.h"
 
 #include "../math/predictor.h"
-#include "../member/body.h"
-#include "../solve/rigid_beam.h"
-#include "../solve/solver.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,18 +113,7 @@ int spar_step_begin(spar_session *session, double dt) {
 /* ---- solve ---- */
 
 static int solve_member(spar_member *m, double dt) {
-    if (m->solver) {
-        return spari_solver_advance(m, dt);
-    }
-    if (m->rung) {
-        return spari_rung_advance(m, dt);
-    }
-    if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
-        memcpy(m->after.q, m->drive[1], 7 * sizeof(double));
-        memcpy(m->after.v, m->drive[1] + 7, 6 * sizeof(double));
-        memcpy(m->after.a, m->drive[1] + 13, 6 * sizeof(double));
-    }
-    return SPAR_OK;
+    return spari_fidelity_is_here(m) ? m->row->advance(m, dt) : SPAR_OK;
 }
 
 /* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
@@ -147,10 +134,6 @@ static int check_finite(const spar_member *m) {
     return SPAR_OK;
 }
 
-static int is_moved(const spar_member *m) {
-    return m->body || m->rung;
-}
-
 int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
@@ -160,12 +143,12 @@ int spar_step_solve(spar_session *session) {
     SPARI_TRY(spari_enter(s, __func__, status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = solve_member(m, s->dt);
-        status = status == SPAR_OK && is_moved(m) ? check_finite(m) : status;
+        status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;
     }
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
         for (spar_member *m = s->members; m; m = m->next) {
-            if (is_moved(m)) {
+            if (m->row->moves) {
                 spari_member_reject(m);
             }
         }

@@ -3,7 +3,6 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "arms.h"
 #include "leap.h"
 #include "root.h"
 #include "scheme.h"
@@ -44,11 +43,11 @@ typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
 
 /* Starting values of Newton. Smooth motion: the acceleration stays. Where stiff parts ring, their acceleration says
    nothing of the next: the velocity stays. Where the step is longer than the motion lasts: the place stays. */
-static void predict(const spar_member *member, const spari_scheme *c, guess stays, spari_ends *e, double *x) {
+static void predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, guess stays, spari_ends *e,
+                    double *x) {
     const spari_state *from = &e->from, *to = &e->to;
-    int n = member->solver->n;
     double h = c->h;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < s->n; i++) {
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             double b = from->b[k], a = from->a[k];
             if (stays == ACCELERATION) {
@@ -63,14 +62,13 @@ static void predict(const spar_member *member, const spari_scheme *c, guess stay
         }
         place_node(c, from, to, x, i);
     }
-    spari_root_show(member, e);
+    spari_root_show(s, member, e);
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
-static void carry(const spar_member *member, const spari_scheme *c, const double *root, const double turn[4],
-                  const spari_ends *e, double *x) {
+static void carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+                  const double turn[4], const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
-    const spari_solver *s = member->solver;
     int driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
     spari_quat_log(turn, psi);
@@ -92,8 +90,7 @@ static void carry(const spar_member *member, const spari_scheme *c, const double
 /* A driven root goes where it is told. */
 static void impose_root(const spar_member *member, const double *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
-    int first, end;
-    spari_solver_fixed(member, &first, &end);
+    int end = spari_member_held(member);
     if (end == 0 || e->root) { /* seen from itself a root does not move */
         return;
     }
@@ -121,22 +118,21 @@ static void impose_root(const spar_member *member, const double *root, const spa
 
 /* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
  * relative to. */
-static double balance(spar_member *member, const spari_scheme *c, const spari_state *s, double *r) {
-    spari_solver *solver = member->solver;
-    int n = solver->n, first, end;
-    double scale = spari_body_residual(member->body, s->q, c->still && !member->body->D ? NULL : s->v,
-                                       c->still ? NULL : s->a, 1, r, &solver->power);
-    for (int i = 0; i < 6 * n; i++) {
-        r[i] -= solver->load[i];
+static double balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
+                      double *r) {
+    const spari_body *body = s->body;
+    double scale =
+        spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
+    for (int i = 0; i < 6 * s->n; i++) {
+        r[i] -= s->load[i];
     }
-    if (member->applied) {
-        scale = fmax(scale, spari_applied_residual(member, s->q, 1, r));
+    if (spari_solver_has_applied(s, member)) {
+        scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
     }
-    if (member->arms) {
-        spari_arms_residual(member->arms, s->q + 3, r + 3);
+    if (s->arms) {
+        spari_arms_residual(s->arms, at->q + 3, r + 3);
     }
-    spari_solver_fixed(member, &first, &end);
-    memset(r + first, 0, (size_t)(end - first) * sizeof *r);
+    memset(r, 0, (size_t)spari_member_held(member) * sizeof *r);
     return scale;
 }
 
@@ -144,9 +140,8 @@ static double balance(spar_member *member, const spari_scheme *c, const spari_st
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
    in fixed axes. */
-static int solve_turned(const spar_member *member, const double *q, const double *r, double *dx) {
-    spari_solver *s = member->solver;
-    if (member->body->linear[0]) {
+static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
+    if (s->body->linear[0]) {
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
         return spari_linear_solve(s->linear, dx);
     }
@@ -212,11 +207,10 @@ static void update_tangent_operators(const spari_solver *s, const spari_scheme *
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply_correction(const spar_member *member, const spari_scheme *c, spari_ends *e, double longest,
-                               double *x, double *dx) {
+static double apply_correction(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                               double longest, double *x, double *dx) {
     const spari_state *to = &e->to;
-    const spari_solver *s = member->solver;
-    double largest = 0, length = member->body->length;
+    double largest = 0, length = s->body->length;
     for (int i = 0; i < s->n; i++) {
         const double *t = s->tinv + 9 * i;
         double *d = dx + 6 * i, turn[3];
@@ -241,14 +235,14 @@ static double apply_correction(const spar_member *member, const spari_scheme *c,
         }
         place_node(c, &e->from, to, x, i);
     }
-    spari_root_show(member, e);
+    spari_root_show(s, member, e);
     return largest;
 }
 
-static double size_of(const spar_member *member, const double *x) {
+static double size_of(const spari_solver *s, const double *x) {
     double largest = 0;
-    for (int i = 0; i < member->solver->n; i++) {
-        largest = fmax(largest, fmax(spari_norm(x + 6 * i) / member->body->length, spari_norm(x + 6 * i + 3)));
+    for (int i = 0; i < s->n; i++) {
+        largest = fmax(largest, fmax(spari_norm(x + 6 * i) / s->body->length, spari_norm(x + 6 * i + 3)));
     }
     return largest;
 }
@@ -267,9 +261,9 @@ enum { PATIENCE = 5 };
 /* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
 typedef enum effort { KEPT, FRESH, FULL } effort;
 
-static int form_tangent(spar_member *member, const spari_scheme *c, const spari_state *to) {
-    const double *v = c->still && !member->body->D ? NULL : to->v;
-    return spari_solver_factor(member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, member->solver->tinv);
+static int form_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
+    const double *v = c->still && !s->body->D ? NULL : to->v;
+    return spari_solver_factor(s, member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv);
 }
 
 /* A tangent of a slightly other dt contracts as fast (hosts' steps differ in their last bits, or by per mille). */
@@ -280,33 +274,32 @@ static int close_to(double x, double kept) {
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
    what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
    that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spar_member *member, const spari_scheme *c, const double *root, effort how, spari_ends *e,
-                           double *x, int *iterations) {
+static const char *attempt(spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+                           effort how, spari_ends *e, double *x, int *iterations) {
     const spar_session *session = member->session;
-    spari_solver *s = member->solver;
     double last = 0, longest = how == FULL ? 0.5 : INFINITY;
     s->factored = s->factored && how == KEPT && close_to(c->cm, s->kept_cm) && close_to(c->cv, s->kept_cv);
     int fresh = !s->factored;
     for (int it = 1; it <= session->newton_max; it++, ++*iterations) {
         impose_root(member, root, e, x);
-        double scale = balance(member, c, &e->seen, s->r);
+        double scale = balance(s, member, c, &e->seen, s->r);
         if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
             return "met numbers that are not finite";
         }
         update_tangent_operators(s, c, e, x);
-        if (!s->factored && form_tangent(member, c, &e->seen)) {
+        if (!s->factored && form_tangent(s, member, c, &e->seen)) {
             return "found a singular tangent";
         }
-        if (solve_turned(member, e->seen.q, s->r, s->dx)) {
+        if (solve_turned(s, e->seen.q, s->r, s->dx)) {
             return "found a singular tangent";
         }
         double noise = infinity_norm(s->r, 6 * s->n);
-        double correction = apply_correction(member, c, e, longest, x, s->dx);
+        double correction = apply_correction(s, member, c, e, longest, x, s->dx);
         s->newton++;
-        double tolerance = session->newton_atol + session->newton_rtol * (size_of(member, x) + e->carried);
+        double tolerance = session->newton_atol + session->newton_rtol * (size_of(s, x) + e->carried);
         double theta = last > 0 ? correction / last : 0;
         double left = last > 0 && theta < 1 && how != FULL ? theta / (1 - theta) * correction : correction;
-        int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * member->body->stiffest);
+        int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest);
         if (left <= tolerance || noise <= 16 * DBL_EPSILON * scale || stuck) {
             impose_root(member, root, e, x);
             s->factored = s->factored && (fresh || it <= PATIENCE);
@@ -325,21 +318,21 @@ static const char *attempt(spar_member *member, const spari_scheme *c, const dou
 }
 
 /* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spar_member *member, const spari_scheme *c, const double *root, const double turn[4], spari_ends *e,
-                  double *x) {
+static int newton(spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+                  const double turn[4], spari_ends *e, double *x) {
     const char *wrong = NULL;
     int iterations = 0;
     static const struct {
         effort how;
         guess stays;
     } attempts[] = {{KEPT, ACCELERATION}, {FRESH, ACCELERATION}, {FULL, VELOCITY}, {FULL, PLACE}};
-    for (size_t k = member->solver->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
+    for (size_t k = s->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (c->still) {
-            carry(member, c, root, turn, e, x);
+            carry(s, member, c, root, turn, e, x);
         } else {
-            predict(member, c, attempts[k].stays, e, x);
+            predict(s, member, c, attempts[k].stays, e, x);
         }
-        wrong = attempt(member, c, root, attempts[k].how, e, x, &iterations);
+        wrong = attempt(s, member, c, root, attempts[k].how, e, x, &iterations);
         if (!wrong) {
             return SPAR_OK;
         }
@@ -357,29 +350,27 @@ static int newton(spar_member *member, const spari_scheme *c, const double *root
    keeps 1 - (z / (1 + z))^4 of its acceleration. */
 enum { START_REFINEMENTS = 3 };
 
-static int start(spar_member *member, const spari_scheme *c) {
-    spari_solver *s = member->solver;
+static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
     spari_state *b = &s->begin;
-    int n = s->n, first, end;
-    spari_solver_fixed(member, &first, &end);
+    int n = s->n, end = spari_member_held(member);
     if (member->root != SPAR_ROOT_DRIVEN) {
         memset(b->a, 0, (size_t)end * sizeof *b->a);
         memset(b->v, 0, (size_t)end * sizeof *b->v);
     }
-    int singular = spari_solver_factor(member, b->q, NULL, NULL, 0, c->cm, 0, NULL);
+    int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
-        spari_body_residual(member->body, b->q, b->v, b->a, 1, s->r, NULL);
-        if (member->applied) {
+        spari_body_residual(s->body, b->q, b->v, b->a, 1, s->r, NULL);
+        if (spari_solver_has_applied(s, member)) {
             spari_applied_residual(member, b->q, 1, s->r);
         }
-        if (member->arms) {
-            spari_arms_at(member->arms, 0);
-            spari_arms_residual(member->arms, b->q + 3, s->r + 3);
+        if (s->arms) {
+            spari_arms_at(s->arms, 0);
+            spari_arms_residual(s->arms, b->q + 3, s->r + 3);
         }
         for (int i = 0; i < 6 * n; i++) {
             s->dx[i] = s->load0[i] - s->r[i];
         }
-        memset(s->dx + first, 0, (size_t)(end - first) * sizeof *s->dx);
+        memset(s->dx, 0, (size_t)end * sizeof *s->dx);
         singular = spari_linear_solve(s->linear, s->dx);
         for (int i = end; i < 6 * n; i++) {
             b->a[i] += c->cm * s->dx[i];
@@ -395,7 +386,7 @@ static int start(spar_member *member, const spari_scheme *c) {
     if (s->own[0].q) {
         double root[19];
         spari_root_of(b, root);
-        spari_root_look_from(member, root, b, &s->own[0]);
+        spari_root_look_from(s, member, root, b, &s->own[0]);
         a = s->own[0].a;
     }
     memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
@@ -411,8 +402,8 @@ static void swap(spari_state *a, spari_state *b) {
 
 /* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
    stands in the root's axes. */
-static int begin_leap(spar_member *member, const spari_scheme *c, spari_ends *e, const spari_state *from) {
-    spari_solver *s = member->solver;
+static int begin_leap(spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                      const spari_state *from) {
     double *b = e->from.b, root[19];
     int n6 = 6 * s->n, turned = e->root != NULL;
     if (s->h_leapt == c->h) { /* the coupling's next iteration begins where the last one did */
@@ -423,7 +414,7 @@ static int begin_leap(spar_member *member, const spari_scheme *c, spari_ends *e,
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate(root + 3, b + i, b + i);
     }
-    int singular = spari_leap(member, from, c->cm, c->cv, b);
+    int singular = spari_leap(s, member, from, c->cm, c->cv, b);
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate_back(root + 3, b + i, b + i);
     }
@@ -435,15 +426,12 @@ static int begin_leap(spar_member *member, const spari_scheme *c, spari_ends *e,
     return SPAR_OK;
 }
 
-int spari_solver_advance(spar_member *member, double dt) {
-    const spar_session *session = member->session;
-    spari_solver *s = member->solver;
-    int A = session->substeps;
+int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
+    int A = member->session->substeps;
     double root[19], before[19];
-    spari_scheme_loads(member, s->load0, s->load1, s->load);
     spari_scheme c = spari_scheme_of(member, dt / A);
     if (!s->started && !c.still) {
-        SPARI_TRY(start(member, &c));
+        SPARI_TRY(start(s, member, &c));
     }
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     double ratio = spari_scheme_stretch(s->h_begin, c.h);
@@ -456,19 +444,19 @@ int spari_solver_advance(spar_member *member, double dt) {
         double f = (double)k / A, conj[4], turn[4] = {1, 0, 0, 0};
         swap(&s->from, &s->to);
         spari_scheme_load_at(f, 6 * s->n, s->load0, s->load1, s->load);
-        if (member->arms) {
-            spari_arms_at(member->arms, f);
+        if (s->arms) {
+            spari_arms_at(s->arms, f);
         }
         spari_root_at(member, f, dt, root);
         if (member->root == SPAR_ROOT_DRIVEN) {
             spari_quat_conj(before + 3, conj);
             spari_quat_mul(root + 3, conj, turn);
         }
-        spari_ends e = spari_root_ends(member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
+        spari_ends e = spari_root_ends(s, member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
         if (k == 1 && leaps) {
-            SPARI_TRY(begin_leap(member, &c, &e, &s->from));
+            SPARI_TRY(begin_leap(s, member, &c, &e, &s->from));
         }
-        int status = newton(member, &c, root, turn, &e, s->increment);
+        int status = newton(s, member, &c, root, turn, &e, s->increment);
         if (status != SPAR_OK) {
             s->factored = 0;
             return status;
@@ -477,6 +465,5 @@ int spari_solver_advance(spar_member *member, double dt) {
         member->dissipated_step += 0.5 * c.h * (power + s->power);
         power = s->power;
     }
-    spari_solver_publish(member, &s->to, &member->after);
     return SPAR_OK;
 }

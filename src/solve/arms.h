@@ -2,13 +2,11 @@
 #ifndef SPARI_ARMS_H
 #define SPARI_ARMS_H
 
-#include "../member/structure.h"
-
 /* First moments sum (rho f^T) of the nodal forces over the arms of the reference, and those of t^n and t^{n+1}: a rigid
    body turned by R takes the moment of R Z. */
-struct spari_arms {
+typedef struct spari_arms {
     double Z[9], begin[9], end[9];
-};
+} spari_arms;
 void spari_arms_at(spari_arms *arms, double s);
 /* r[3] -= the moment at orientation q */
 void spari_arms_residual(const spari_arms *arms, const double q[4], double r[3]);

@@ -74,3 +74,13 @@ int spari_eigen(gsl_matrix *A, gsl_matrix *B, gsl_vector *mu, gsl_matrix *x) {
     (void)gsl_eigen_symmv_sort(mu, x, GSL_EIGEN_SORT_VAL_DESC);
     return SPAR_OK;
 }
+
+void spari_eigen_add(int at, int n, const double *X, double scale, int64_t size, double *A) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            if (at + i >= 0 && at + j >= 0) {
+                A[size * (at + i) + at + j] += 0.5 * scale * (X[(int64_t)n * i + j] + X[(int64_t)n * j + i]);
+            }
+        }
+    }
+}

@@ -18,6 +18,7 @@
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
+#include "../member/body.h"
 #include "../member/structure.h"
 #include "linear.h"
 
@@ -53,18 +54,13 @@ typedef struct spari_frame {
     int64_t factors, solves;
 } spari_frame;
 
-/* From the member's body; modes = 0: linear in the nodes. On every rank. NULL and a message when it fails (no memory,
- * or no positive definite mass and stiffness for modes). */
-int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame);
-void spari_frame_free(spari_frame *frame);
 /* Takes the motion at t^n from member->now. */
 void spari_frame_restart(spari_frame *frame, const spar_member *member);
 int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
 void spari_frame_accept(spari_frame *frame);
 int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
-/* K + N of the turn that the root of member->after has, and M, over the `size` unknowns that are free, dense, symmetric
+/* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
    parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
-int64_t spari_frame_unknowns(const spari_frame *frame);
 void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
 void spari_frame_shape(const spari_frame *frame, const spar_member *member, const double *x, double *nodes);
 /* As spari_solver_state_size and its fellows, between steps. */
@@ -72,8 +68,31 @@ int64_t spari_frame_state_size(const spari_frame *frame);
 void spari_frame_save(const spari_frame *frame, double *state);
 int spari_frame_is_state(const spari_frame *frame, const double *state, int64_t count);
 void spari_frame_load(spari_frame *frame, const double *state);
-/* Energies of the latest iterate in member->after: strain x^T K x / 2; of a frame that stands also the kinetic one and
-   the potential of the linear equations, else those two are left as they are. 0, or SPAR_ERR_MEMORY. */
+/* Puts what the frame's own equations say in place of the body's energies in member->after: strain x^T K x / 2; of a
+   frame that stands also the kinetic one and the potential of the linear equations, else those two are left as they
+   are. 0, or SPAR_ERR_MEMORY. */
 int spari_frame_energy(spari_frame *frame, const spar_member *member, double energy[4]);
+
+/* ---- what matrices, modes and time share ---- */
+
+/* Which two components of the turn are multiplied in each of the SPARI_TURNS products; and where two products stand
+   among their SPARI_TURN_PAIRS. */
+extern const int spari_frame_pair[SPARI_TURNS][2];
+int spari_frame_pair_of(int k, int l);
+
+/* Forms the matrices of the nodes, for which there is memory. arm [nodes][3] from the root. A status without a message.
+ */
+int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
+/* y [n] += factor * X x for a matrix of the frame */
+void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
+/* Factors ck K + cv C + cm M with the held unknowns out; S: room for an element. C may be NULL. */
+void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, double cm, double *S,
+                        int *singular);
+
+/* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the lowest
+   modes; those that are free are orthonormal in the norm of the mass. arm [nodes][3] from the root. */
+int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols);
+/* The matrices and vectors of the nodes become those of the basis. 1: no memory. */
+int spari_frame_project(spari_frame *f, int cols);
 
 #endif

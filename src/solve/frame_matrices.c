@@ -1,11 +1,10 @@
-/* What a frame is made of: its matrices, from the exact member's tangents at the reference; created and freed. */
-#include "frame_parts.h"
+/* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
+#include "frame.h"
 
 #include "../base/blas.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "solver.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -82,7 +81,8 @@ static void rigid_motion(const spari_frame *f, const double *arm, const double o
 typedef struct setup {
     const spari_body *body;
     int m; /* 6 P */
-    double *q, *arm, *v, *a, *S[4], *field;
+    const double *arm;
+    double *q, *v, *a, *S[4], *field;
 } setup;
 
 /* What a turn with omega adds: matrices of the place (into N, element after element) and of the rate (into G). A frame
@@ -225,85 +225,12 @@ static int turn_terms(spari_frame *f, const setup *w) {
     return stretch_terms(f, w);
 }
 
-/* ---- life ---- */
-
-static int carve_states(spari_frame *f) {
-    spari_frame_state *states[3] = {&f->begin, &f->from, &f->to};
-    for (int k = 0; k < 3; k++) {
-        double *block = spari_zalloc(4 * (int64_t)f->n, sizeof *block);
-        if (!block) {
-            return 1;
-        }
-        states[k]->y = block, states[k]->v = block + f->n;
-        states[k]->a = block + 2 * f->n, states[k]->b = block + 3 * f->n;
-        states[k]->root[3] = 1;
-    }
-    return 0;
-}
-
-static int allocate_matrices(spari_frame *f, const spar_member *m) {
-    int turns = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
-    double **matrices[] = {&f->K, &f->M, &f->D};
-    const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL};
-    for (int k = 0; k < 3; k++) {
-        ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
-    }
-    for (int k = 0; k < SPARI_TURNS; k++) {
-        ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
-                               (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
-        ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
-    }
-    for (int k = 0; k < 3; k++) {
-        ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
-    }
-    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
-        ok = ok && (!turns || (f->twice[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
-    }
-    return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
-}
-
-static int allocate_work(spari_frame *f) {
-    int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
-    double **vectors[] = {&f->load, &f->load0, &f->load1, &f->r, &f->dx, &f->increment};
-    int ok = carve_states(f) == 0;
-    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
-        ok = ok && (*vectors[k] = spari_zalloc(wide, sizeof(double)));
-    }
-    ok = ok && (f->nodal = spari_zalloc(18 * (int64_t)f->nodes, sizeof(double)));
-    ok = ok && (f->turned = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
-    ok = ok && (f->element = spari_zalloc((int64_t)f->block * f->block, sizeof(double)));
-    if (f->N[0] || f->D) { /* else the sums are K and nothing */
-        ok = ok && (f->sumC = spari_zalloc(f->size, sizeof(double)));
-    }
-    if (f->N[0]) {
-        ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
-    }
-    return !ok;
-}
-
-/* The reference as a state, and arms from the root; then the matrices. */
-static int build_matrices(spari_frame *f, const spar_member *m, setup *w) {
-    int64_t mm = (int64_t)w->m * w->m, n = f->nodes;
-    double *block = spari_zalloc(7 * n + 3 * n + 13 * n + 4 * mm + 6 * n, sizeof *block);
-    if (!block) {
-        return SPAR_ERR_MEMORY;
-    }
-    w->q = block, w->arm = w->q + 7 * n, w->v = w->arm + 3 * n, w->a = w->v + 6 * n, w->field = w->a + 7 * n;
-    for (int k = 0; k < 4; k++) {
-        w->S[k] = w->field + 6 * n + mm * k;
-    }
-    spari_member_to_unique(m, 3, m->xr, w->arm);
-    for (int64_t i = n - 1; i >= 0; i--) {
-        for (int k = 0; k < 3; k++) {
-            w->arm[3 * i + k] -= w->arm[k];
-        }
-        w->q[7 * i + 3] = 1;
-    }
-    rest_matrices(f, w);
+/* M times the rigid accelerations of the frame. */
+static void rigid_forces(spari_frame *f, const setup *w) {
     for (int k = 0; k < 6 && f->M; k++) {
         double unit[3] = {0};
         unit[k % 3] = 1;
-        for (int64_t i = 0; i < n; i++) {
+        for (int64_t i = 0; i < f->nodes; i++) {
             memset(w->field + 6 * i, 0, 6 * sizeof *w->field);
             if (k < 3) {
                 memcpy(w->field + 6 * i, unit, sizeof unit);
@@ -314,70 +241,25 @@ static int build_matrices(spari_frame *f, const spar_member *m, setup *w) {
         }
         spari_frame_add_times(f, f->M, w->field, 1, f->rigid[k]);
     }
-    return f->N[0] ? turn_terms(f, w) : SPAR_OK;
 }
 
-int spari_frame_create(spar_member *member, int64_t modes, spari_frame **frame) {
-    spari_frame *f = spari_zalloc(1, sizeof *f);
-    setup w = {.body = member->body, .m = 6 * member->per_element};
-    int status = f ? SPAR_OK : SPAR_ERR_MEMORY;
-    if (f) {
-        int first;
-        spari_solver_fixed(member, &first, &f->held);
-        f->nodes = member->body->unique;
-        f->elements = member->elements, f->block = w.m, f->overlap = 6, f->n = 6 * f->nodes;
-        f->size = (int64_t)f->elements * f->block * f->block;
-        status = allocate_matrices(f, member) ? SPAR_ERR_MEMORY : SPAR_OK;
+int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm) {
+    setup w = {.body = body, .m = 6 * body->per_element, .arm = arm};
+    int64_t mm = (int64_t)w.m * w.m, n = f->nodes;
+    w.q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w.q);
+    if (!w.q) {
+        return SPAR_ERR_MEMORY;
     }
-    if (status == SPAR_OK) {
-        status = build_matrices(f, member, &w);
+    w.v = w.q + 7 * n, w.a = w.v + 6 * n, w.field = w.a + 7 * n;
+    for (int k = 0; k < 4; k++) {
+        w.S[k] = w.field + 6 * n + mm * k;
     }
-    if (status == SPAR_OK && modes > 0) {
-        int cols = (int)modes + f->held;
-        status = spari_frame_fill_basis(f, w.arm, cols);
-        if (status == SPAR_OK && spari_frame_project(f, cols)) {
-            status = SPAR_ERR_MEMORY;
-        }
+    for (int64_t i = 0; i < n; i++) {
+        w.q[7 * i + 3] = 1;
     }
+    rest_matrices(f, &w);
+    rigid_forces(f, &w);
+    int status = f->N[0] ? turn_terms(f, &w) : SPAR_OK;
     free(w.q);
-    if (status == SPAR_OK && allocate_work(f)) {
-        status = SPAR_ERR_MEMORY;
-    }
-    if (status != SPAR_OK) {
-        spari_frame_free(f);
-        return spari_fail(
-            member->session, status, "spar_member_commit: '%s': %s", member->name,
-            status == SPAR_ERR_MEMORY
-                ? "no memory for the linear member"
-                : "its stiffness is not positive definite, or it has fewer modes with mass than asked for; "
-                  "give every section mass and rotary inertia, or ask for fewer modes");
-    }
-    f->factors = 0; /* those of the set-up do not count */
-    *frame = f;
-    return SPAR_OK;
-}
-
-void spari_frame_free(spari_frame *f) {
-    if (!f) {
-        return;
-    }
-    double *all[] = {f->basis,   f->K,         f->M,     f->D,      f->sumK,   f->sumC,  f->sumf,
-                     f->begin.y, f->from.y,    f->to.y,  f->load,   f->load0,  f->load1, f->r,
-                     f->dx,      f->increment, f->nodal, f->turned, f->element};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        free(all[k]);
-    }
-    for (int k = 0; k < SPARI_TURNS; k++) {
-        free(f->N[k]);
-        free(f->f[k]);
-        free(f->rigid[k]);
-    }
-    for (int k = 0; k < 3; k++) {
-        free(f->G[k]);
-    }
-    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
-        free(f->twice[k]);
-    }
-    spari_linear_free(f->linear);
-    free(f);
+    return status;
 }

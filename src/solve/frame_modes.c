@@ -1,5 +1,5 @@
 /* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
-#include "frame_parts.h"
+#include "frame.h"
 
 #include "../base/blas.h"
 #include "../base/status.h"
@@ -16,17 +16,8 @@
 /* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
 static void assemble_dense(const spari_frame *f, const double *X, double scale, int from, double *A) {
     int m = f->block, step = f->block - f->overlap;
-    int64_t n = f->n - from;
     for (int e = 0; e < f->elements; e++) {
-        const double *x = X + (int64_t)m * m * e;
-        for (int i = 0; i < m; i++) {
-            for (int j = 0; j < m; j++) {
-                int row = e * step + i - from, col = e * step + j - from;
-                if (row >= 0 && col >= 0) {
-                    A[n * row + col] += 0.5 * scale * (x[(int64_t)m * i + j] + x[(int64_t)m * j + i]);
-                }
-            }
-        }
+        spari_eigen_add(e * step - from, m, X + (int64_t)m * m * e, scale, f->n - from, A);
     }
 }
 
@@ -189,10 +180,6 @@ int spari_frame_project(spari_frame *f, int cols) {
 }
 
 /* ---- about a state ---- */
-
-int64_t spari_frame_unknowns(const spari_frame *f) {
-    return f->n - f->held;
-}
 
 void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
     double pose[13], omega[3];

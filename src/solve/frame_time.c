@@ -1,5 +1,5 @@
 /* How a frame moves: between the nodes' motion and its own, in time, at rest; saved, and its energy. */
-#include "frame_parts.h"
+#include "frame.h"
 
 #include "../base/blas.h"
 #include "../base/scene.h"
@@ -117,9 +117,7 @@ static void publish(spari_frame *f, spar_member *m, const spari_frame_state *s, 
     int64_t n = f->nodes;
     double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
     to_nodes(f, m, s, q, v, a);
-    spari_member_from_unique(m, 7, q, to->q);
-    spari_member_from_unique(m, 6, v, to->v);
-    spari_member_from_unique(m, 6, a, to->a);
+    spari_member_publish(m, q, v, a, to);
 }
 
 /* ---- time ---- */
@@ -467,8 +465,8 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
                   "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
                   m->name);
     int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root + 7, f->begin.root + 13, &turn);
-    spari_solver_gather(m, m->dead, f->load);
-    spari_solver_gather(m, fluid, f->load1);
+    spari_member_gather(m, m->dead, f->load);
+    spari_member_gather(m, fluid, f->load1);
     for (int i = 0; i < 6 * f->nodes; i++) {
         f->load[i] += f->load1[i];
     }

@@ -37,8 +37,9 @@ static void solve3(const double A[9], double x[3]) {
     }
 }
 
-static void means(const spar_member *m, const double *q, const double *v, const double *b, rigid *g) {
-    int n = m->solver->n;
+static void means(const spari_solver *s, const spar_member *m, const double *q, const double *v, const double *b,
+                  rigid *g) {
+    int n = s->n;
     const double zero[3] = {0};
     memset(g, 0, sizeof *g);
     for (int i = 0; i < n; i++) {
@@ -54,10 +55,11 @@ static void means(const spar_member *m, const double *q, const double *v, const 
 
 /* The rigid motion whose accelerations are nearest to b by least squares over the nodes, turns times the length. The
    arms sum up to nothing, so that the mean acceleration stands by itself. */
-static void fit(const spar_member *m, const double *q, const double *v, const double *b, rigid *g) {
-    int n = m->solver->n;
-    double L2 = m->body->length * m->body->length, A[9] = {0}, right[3] = {0};
-    means(m, q, v, b, g);
+static void fit(const spari_solver *s, const spar_member *m, const double *q, const double *v, const double *b,
+                rigid *g) {
+    int n = s->n;
+    double L2 = s->body->length * s->body->length, A[9] = {0}, right[3] = {0};
+    means(s, m, q, v, b, g);
     for (int i = 0; i < n; i++) {
         double r[3], c[3], t[3];
         arm_now(m, q, i, g->middle, r);
@@ -79,8 +81,9 @@ static void fit(const spar_member *m, const double *q, const double *v, const do
 }
 
 /* b less the accelerations of a rigid motion */
-static void subtract(const spar_member *m, const double *q, const rigid *g, const double *b, double *y) {
-    for (int i = 0; i < m->solver->n; i++) {
+static void subtract(const spari_solver *s, const spar_member *m, const double *q, const rigid *g, const double *b,
+                     double *y) {
+    for (int i = 0; i < s->n; i++) {
         double r[3], c[3], t[3];
         arm_now(m, q, i, g->middle, r);
         centripetal(g, r, c);
@@ -94,38 +97,36 @@ static void subtract(const spar_member *m, const double *q, const rigid *g, cons
 
 /* r := M y: the forces that accelerations take beyond those at rest. Arrays of the solver that are not in use at the
    beginning of a step serve as room: `rest` for the forces at rest, `still` for velocities of zero. */
-static void times_mass(const spar_member *m, const double *q, const double *y, const double *still, const double *rest,
+static void times_mass(const spari_solver *s, const double *q, const double *y, const double *still, const double *rest,
                        double *r) {
-    spari_body_residual(m->body, q, still, y, 0, r, NULL);
-    for (int i = 0; i < 6 * m->solver->n; i++) {
+    spari_body_residual(s->body, q, still, y, 0, r, NULL);
+    for (int i = 0; i < 6 * s->n; i++) {
         r[i] -= rest[i];
     }
 }
 
-int spari_leap(spar_member *m, const spari_state *at, double cm, double cv, double *b) {
+int spari_leap(spari_solver *s, const spar_member *m, const spari_state *at, double cm, double cv, double *b) {
     const double *q = at->q;
-    spari_solver *s = m->solver;
-    int first, end, n6 = 6 * s->n, held = spari_member_root_is_given(m);
+    int end = spari_member_held(m), n6 = 6 * s->n, held = spari_member_root_is_given(m);
     double *y = s->increment; /* the next step begins with its own */
-    spari_solver_fixed(m, &first, &end);
     memcpy(y, b, (size_t)n6 * sizeof *y);
     if (!held) {
         rigid g;
-        fit(m, q, at->v, b, &g);
-        subtract(m, q, &g, b, y);
+        fit(s, m, q, at->v, b, &g);
+        subtract(s, m, q, &g, b, y);
     }
-    memset(y + first, 0, (size_t)(end - first) * sizeof *y);
+    memset(y, 0, (size_t)end * sizeof *y);
     for (int i = 0; i < n6; i++) { /* what is not rigid goes out, and comes back as far as it passes */
         b[i] -= y[i];
     }
     memcpy(s->dx, y, (size_t)n6 * sizeof *y);
     double *rest = s->tinv, *still = s->best;
     memset(still, 0, (size_t)n6 * sizeof *still);
-    spari_body_residual(m->body, q, still, still, 0, rest, NULL);
-    int singular = spari_solver_factor(m, at->q, at->v, at->a, 1, cm, cv, NULL);
+    spari_body_residual(s->body, q, still, still, 0, rest, NULL);
+    int singular = spari_solver_factor(s, m, at->q, at->v, at->a, 1, cm, cv, NULL);
     for (int pass = 0; pass < SPARI_LEAP_PASSES && !singular; pass++) {
-        times_mass(m, q, y, still, rest, s->r);
-        memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
+        times_mass(s, q, y, still, rest, s->r);
+        memset(s->r, 0, (size_t)end * sizeof *s->r);
         singular = spari_linear_solve(s->linear, s->r);
         for (int i = 0; i < n6; i++) {
             y[i] -= cm * s->r[i];

@@ -20,6 +20,6 @@ static inline int spari_is_leap(double before, double h) {
 /* Of accelerations b [unique][6] in the state `at`, in global axes; cm, cv of the new step. What a member that nothing
    holds has as a rigid body stays as it is. S, the tangent at the beginning of the step, is kept for it. 0, or 1 when
    it is singular. */
-int spari_leap(spar_member *member, const spari_state *at, double cm, double cv, double *b);
+int spari_leap(spari_solver *solver, const spar_member *member, const spari_state *at, double cm, double cv, double *b);
 
 #endif

@@ -8,8 +8,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
-#include "rigid_beam.h"
-#include "solver.h"
+#include "fidelity.h"
 #include "work.h"
 
 #include <stdlib.h>
@@ -49,6 +48,12 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
     memcpy(to->a, from->a, (size_t)m->nodes * 6 * sizeof *to->a);
 }
 
+static void restart_solution(spar_member *m) {
+    if (m->row->restart && spari_fidelity_is_here(m)) {
+        m->row->restart(m);
+    }
+}
+
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
@@ -57,11 +62,7 @@ void spari_member_restart(spar_member *m) {
         memcpy(m->drive[k] + 7, m->now.v, 6 * sizeof(double));
         memcpy(m->drive[k] + 13, m->now.a, 6 * sizeof(double));
     }
-    if (m->solver) {
-        spari_solver_restart(m->solver, m);
-    } else if (m->rung) {
-        spari_rung_restart(m);
-    }
+    restart_solution(m);
     if (m->work) {
         spari_work_restart(m);
     }
@@ -94,10 +95,8 @@ void spari_member_accept(spar_member *m) {
     m->drive_given = m->motion_given = 0;
     m->dissipated += m->dissipated_step;
     m->dissipated_step = 0;
-    if (m->solver) {
-        spari_solver_accept(m->solver);
-    } else if (m->rung) {
-        spari_rung_accept(m);
+    if (m->row->accept && spari_fidelity_is_here(m)) {
+        m->row->accept(m);
     }
 }
 
@@ -106,10 +105,8 @@ void spari_member_reject(spar_member *m) {
     copy_solved(m, 0, 1);
     m->motion_given = 0;
     m->dissipated_step = 0;
-    if (m->solver && m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
-        spari_solver_restart(m->solver, m);
-    } else if (m->rung && m->session->step == 0) {
-        spari_rung_restart(m);
+    if (m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
+        restart_solution(m);
     }
 }
 
@@ -149,26 +146,26 @@ int spar_member_set_initial_velocity(spar_member *member, const double x0[3], co
 static int check_complete(spar_member *m) {
     if (m->kind == SPARI_BEAM) {
         SPARI_REQUIRE(m->session, m->beam->eta || m->beam->node_x, SPAR_ERR_STATE,
-                      "spar_member_commit: '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
+                      "member '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
-                      "spar_member_commit: '%s' has no sections; call spar_beam_set_sections", m->name);
+                      "member '%s' has no sections; call spar_beam_set_sections", m->name);
     }
     SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
-                  "spar_member_commit: '%s': the clock has started; commit members before the first step", m->name);
-    SPARI_TRY(spari_rung_check(m));
-    return SPAR_OK;
+                  "member '%s': the clock has started; commit members before the first step", m->name);
+    return spari_fidelity_check(m);
 }
 
 /* What is in force: what was asked for (or everything), as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m) {
     int e = m->effects_given ? m->effects : ~0;
-    int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = spari_member_is_solved(m);
+    const spari_fidelity *row = spari_fidelity_of(m);
+    int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
     int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
     possible |= m->effects_given ? SPAR_EFFECT_FLUID_HISTORY : 0; /* unasked it comes with the fluids that need it */
-    return spari_rung_effects(m, e & possible);
+    return row->effects ? row->effects(m, e & possible) : e & possible;
 }
 
 /* The arrays over the nodes, how many numbers a node has in each, and the least order of the predictor that needs it.
@@ -207,7 +204,7 @@ static int make_node_arrays(spar_member *m) {
             continue;
         }
         double *x = spari_zalloc(node_arrays[k].width * m->nodes, sizeof *x);
-        SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
+        SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
         *node_array(m, k) = x;
     }
     return SPAR_OK;
@@ -223,11 +220,11 @@ void spari_member_release(spar_member *m) {
     spari_applied_free(m->applied);
     spari_applied_free(m->applied_next);
     m->applied = m->applied_next = NULL;
-    spari_rung_free(m->rung);
-    m->rung = NULL;
-    spari_solver_free(m->solver);
+    if (m->solution) {
+        m->row->free(m->solution);
+    }
+    m->solution = NULL;
     spari_body_free(m->body);
-    m->solver = NULL;
     m->body = NULL;
 }
 
@@ -237,13 +234,22 @@ void spari_member_disown(spar_member *m) {
     }
     m->work = NULL;
     m->applied = m->applied_next = NULL;
-    m->rung = NULL;
-    m->solver = NULL;
+    m->solution = NULL;
     m->body = NULL;
 }
 
+static int build_body(spar_member *m) {
+    int damped = m->beam && m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
+    SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, m->row->massive, damped ? m->beam->mu : NULL, &m->body)
+                                    : spari_rigid_build(m, &m->body));
+    m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
+    spari_member_gravity(m);
+    return SPAR_OK;
+}
+
 int spari_member_build(spar_member *m) {
-    spar_session *session = m->session;
+    m->row = spari_fidelity_of(m);
+    m->seen = m->row->seen;
     SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));
@@ -257,22 +263,13 @@ int spari_member_build(spar_member *m) {
     if (m->velocity_given) {
         SPARI_TRY(rigid_field(m));
     }
-    if (spari_member_is_solved(m)) {
-        SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, &m->body) : spari_rigid_build(m, &m->body));
-        m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
-        spari_member_gravity(m);
-        SPARI_TRY(spari_rung_create(m));
-        if (!m->rung && !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
-            SPARI_REQUIRE(session, spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY) == 0,
-                          SPAR_ERR_MEMORY, "spar_member_commit: no memory for '%s'", m->name);
-        }
-        if (!m->rung && m->owner == spari_comm_rank(session->comm)) {
-            m->solver = spari_solver_create(m);
-            SPARI_REQUIRE(session, m->solver, SPAR_ERR_MEMORY, "spar_member_commit: no memory for the solver of '%s'",
-                          m->name);
-        }
-    } else if (spari_member_is_prescribed(m)) {
-        SPARI_TRY(spari_rung_create(m));
+    if (m->row->solved) {
+        SPARI_TRY(build_body(m));
+    }
+    if (m->row->create) {
+        int status = m->row->create(m);
+        SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
+        SPARI_TRY(status);
     }
     spari_member_restart(m);
     return SPAR_OK;
@@ -302,7 +299,7 @@ int spar_member_commit(spar_member *member) {
     spar_session *s = member->session;
     int asked = member->effects, status;
     if (member->committed) {
-        status = spari_fail(s, SPAR_ERR_STATE, "spar_member_commit: '%s' is committed already", member->name);
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s' is committed already", __func__, member->name);
     } else {
         status = check_complete(member);
         if (status == SPAR_OK) {

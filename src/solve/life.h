@@ -5,7 +5,7 @@
 #include "../member/structure.h"
 
 void spari_member_free(spar_member *member);
-/* All that commit makes of the description (nodes, body, loads at zero, solver or rung), its effects being in force; a
+/* All that commit makes of the description (nodes, body, loads at zero, solution), its effects being in force; a
    status and a message where it fails, which leaves parts to be released. */
 int spari_member_build(spar_member *m);
 /* Frees it; the description stays. */

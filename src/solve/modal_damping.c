@@ -6,7 +6,7 @@
 #include "../math/rotation.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
-#include "solver.h"
+#include "fidelity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,21 +16,6 @@ enum { GROUPS = 3 };
 static const int GROUP[6] = {2, 1, 0, 2, 0, 1}; /* of axial, shear y, shear z, torsion, bending y, bending z */
 static const char *const GROUP_NAME[GROUPS] = {"bending about y", "bending about z", "torsion and stretch"};
 static const char CALL[] = "spar_beam_set_modal_damping";
-
-/* The beam's body anew, with this damping. */
-static int damped_body(spar_member *m, const double mu[6], spari_body **body) {
-    double old[6];
-    int damped = m->beam->damped, effects = m->effects;
-    memcpy(old, m->beam->mu, sizeof old);
-    memcpy(m->beam->mu, mu, sizeof old);
-    m->beam->damped = 1;
-    m->effects |= SPAR_EFFECT_DAMPING;
-    int status = spari_beam_build(m, body);
-    memcpy(m->beam->mu, old, sizeof old);
-    m->beam->damped = damped;
-    m->effects = effects;
-    return status;
-}
 
 /* x^T B x of both shapes [2][unique][6] at the state q */
 static void modal_damping(const spari_body *b, const double *q, const double *x, double *S, double *S0, double c[2]) {
@@ -61,7 +46,7 @@ static int find_shares(spar_member *m, const double omega[2], const double *q, c
             for (int i = 0; i < 6; i++) {
                 mu[i] = GROUP[i] == g || GROUP[i] == h ? 1 : 0;
             }
-            SPARI_TRY(damped_body(m, mu, &b));
+            SPARI_TRY(spari_beam_build(m, 0, mu, &b));
             modal_damping(b, q, x, work, work + size, c);
             spari_body_free(b);
             for (int k = 0; k < 2; k++) {
@@ -197,7 +182,7 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
                   "%s: '%s': damping is off; leave SPAR_EFFECT_DAMPING in its effects and give spar_beam_set_damping "
                   "any value before commit, or set no effects",
                   CALL, m->name);
-    SPARI_REQUIRE(s, !m->rung, SPAR_ERR_UNSUPPORTED,
+    SPARI_REQUIRE(s, m->row->renew, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s' is of a lower fidelity, made up at commit; find mu with an exact member and hand it to "
                   "spar_beam_set_damping",
                   CALL, m->name);
@@ -220,7 +205,7 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     spari_body *body = NULL;
     int status = check_pair(beam, mode, ratio);
     status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
-    status = status == SPAR_OK ? damped_body(beam, found, &body) : status;
+    status = status == SPAR_OK ? spari_beam_build(beam, 0, found, &body) : status;
     if (status == SPAR_OK) {
         body->gyroscopic = beam->body->gyroscopic;
         memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
@@ -243,8 +228,8 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     memcpy(beam->beam->mu, found, sizeof found);
     beam->beam->damped = 1;
     beam->effects |= SPAR_EFFECT_DAMPING;
-    if (beam->solver) {
-        beam->solver->factored = 0;
+    if (spari_fidelity_is_here(beam)) {
+        beam->row->renew(beam);
     }
     if (mu) {
         memcpy(mu, found, sizeof found);

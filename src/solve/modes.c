@@ -6,14 +6,10 @@
 #include "../base/blas.h"
 #include "../base/quiet.h"
 #include "../base/scene.h"
-#include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/body.h"
 #include "../member/edge.h"
 #include "eigen.h"
-#include "frame.h"
-#include "rigid_beam.h"
-#include "solver.h"
-#include "turn.h"
+#include "fidelity.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
@@ -25,10 +21,9 @@
 /* The problem over the free unknowns. */
 typedef struct modal {
     size_t size;
-    int end; /* unknowns before the first free one */
     gsl_matrix *K, *M, *A, *B, *x;
     gsl_vector *lambda, *work;
-    double *q, *v, *a, *S, *Me, *shape;
+    double *room; /* 6 of each unique node */
 } modal;
 
 static void modal_free(modal *p) {
@@ -39,11 +34,10 @@ static void modal_free(modal *p) {
     gsl_matrix_free(p->x);
     gsl_vector_free(p->lambda);
     gsl_vector_free(p->work);
-    free(p->q);
+    free(p->room);
 }
 
 static int modal_alloc(const spar_member *m, modal *p) {
-    int64_t u = m->body->unique, e = 36 * (int64_t)m->per_element * m->per_element;
     size_t n = p->size;
     p->K = gsl_matrix_calloc(n, n);
     p->M = gsl_matrix_calloc(n, n);
@@ -52,47 +46,8 @@ static int modal_alloc(const spar_member *m, modal *p) {
     p->x = gsl_matrix_alloc(n, n);
     p->lambda = gsl_vector_alloc(n);
     p->work = gsl_vector_alloc(n);
-    p->q = spari_zalloc(25 * u + 2 * e, sizeof *p->q);
-    if (!p->K || !p->M || !p->A || !p->B || !p->x || !p->lambda || !p->work || !p->q) {
-        return 0;
-    }
-    p->v = p->q + 7 * u, p->a = p->v + 6 * u, p->shape = p->a + 6 * u;
-    p->S = p->shape + 6 * u, p->Me = p->S + e;
-    return 1;
-}
-
-/* The symmetric part of an element matrix into A: at equilibrium the rest is of loads that have no potential. */
-static void add_element(int at, int n, const double *S, gsl_matrix *A) {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            if (at + i >= 0 && at + j >= 0) {
-                *gsl_matrix_ptr(A, (size_t)(at + i), (size_t)(at + j)) += 0.5 * (S[n * i + j] + S[n * j + i]);
-            }
-        }
-    }
-}
-
-/* From the tangents of m, which may be the body that carries a rigid member. */
-static void assemble_problem(const spar_member *m, modal *p) {
-    int P = m->per_element;
-    spari_turn turn;
-    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn);
-    spari_member_to_unique(m, 7, m->after.q, p->q);
-    if (turning) {
-        spari_turn_rates(m, &turn, p->q, p->v, p->a);
-    }
-    for (int e = 0; e < m->elements; e++) {
-        int at = 6 * e * (P - 1) - p->end;
-        spari_turn_tangent(m, turning ? &turn : NULL, e, p->q, p->v, p->a, 1, p->S, p->Me);
-        if (m->applied) {
-            spari_applied_tangent(m, e, p->q, 1, p->S);
-        }
-        if (m->arms) {
-            spari_arms_tangent(m->arms, p->q + 3, p->S);
-        }
-        add_element(at, 6 * P, p->S, p->K);
-        add_element(at, 6 * P, p->Me, p->M);
-    }
+    p->room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *p->room);
+    return p->K && p->M && p->A && p->B && p->x && p->lambda && p->work && p->room;
 }
 
 /* K + sigma M into B, with its Cholesky factor tried in A. */
@@ -135,41 +90,7 @@ static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
     gsl_blas_ddot(&x.vector, p->work, &norm);
     gsl_vector_memcpy(p->work, &x.vector);
     gsl_vector_scale(p->work, 1 / (norm > 0 ? sqrt(norm) : 1));
-    if (m->rung && m->rung->frame) {
-        spari_frame_shape(m->rung->frame, m, p->work->data, p->shape);
-    } else {
-        memset(p->shape, 0, (size_t)(6 * m->body->unique) * sizeof *p->shape);
-        memcpy(p->shape + p->end, p->work->data, p->size * sizeof *p->shape);
-    }
-    if (m->rung && m->rung->core) {
-        spari_rung_carry(m, p->shape, shape);
-    } else {
-        spari_member_from_unique(m, 6, p->shape, shape);
-    }
-}
-
-/* K and M of the member, of any fidelity. */
-static int form_problem(const spar_member *m, modal *p) {
-    if (m->rung && m->rung->frame) {
-        spari_frame_modal(m->rung->frame, m, p->K->data, p->M->data); /* fresh matrices have no gaps */
-    } else if (m->rung && m->rung->core) {
-        spar_member *core;
-        SPARI_TRY(spari_rung_core(m, &core));
-        assemble_problem(core, p);
-    } else {
-        assemble_problem(m, p);
-    }
-    return SPAR_OK;
-}
-
-/* Unknowns that the root leaves free, `end` of the node of the root are not. */
-static int64_t unknowns(const spar_member *m, int *end) {
-    int first;
-    spari_solver_fixed(m, &first, end);
-    if (m->rung && m->rung->frame) {
-        return spari_frame_unknowns(m->rung->frame);
-    }
-    return 6 * (m->rung && m->rung->core ? 1 : (int64_t)m->body->unique) - *end;
+    m->row->shape(m, p->work->data, p->room, shape);
 }
 
 static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
@@ -177,23 +98,22 @@ static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
 }
 
 static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
-    const char *call = "spar_member_solve_modes";
-    SPARI_REQUIRE(m->session, modal_alloc(m, p), SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
-    SPARI_REQUIRE(m->session, form_problem(m, p) == SPAR_OK, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, m->name);
+    int status = modal_alloc(m, p) ? m->row->problem(m, p->K->data, p->M->data) : SPAR_ERR_MEMORY; /* without gaps */
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the modes of '%s'", m->name);
     SPARI_REQUIRE(m->session, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
-                  "%s: '%s': its stiffness in the present state is beyond the range of numbers; look at its loads and "
-                  "sections, or at their units",
-                  call, m->name);
+                  "member '%s': its stiffness in the present state is beyond the range of numbers; look at its loads "
+                  "and sections, or at their units",
+                  m->name);
     double sigma = find_shift(p);
     SPARI_REQUIRE(m->session, sigma >= 0, SPAR_ERR_NUMERIC,
-                  "%s: '%s': no shift makes its stiffness positive definite in the present state: it can move where it "
-                  "has neither mass nor stiffness",
-                  call, m->name);
+                  "member '%s': no shift makes its stiffness positive definite in the present state: it can move where "
+                  "it has neither mass nor stiffness",
+                  m->name);
     gsl_matrix_memcpy(p->A, p->M);
-    int status = spari_eigen(p->A, p->B, p->lambda, p->x);
-    SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "%s: no memory for '%s'", call, m->name);
+    status = spari_eigen(p->A, p->B, p->lambda, p->x);
+    SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "no memory for the modes of '%s'", m->name);
     SPARI_REQUIRE(m->session, status == SPAR_OK, status,
-                  "%s: '%s': stiffness and mass lie too far apart for the range of numbers; look at its sections", call,
+                  "member '%s': stiffness and mass lie too far apart for the range of numbers; look at its sections",
                   m->name);
     for (int64_t k = 0; k < n; k++) {
         double mu = gsl_vector_get(p->lambda, (size_t)k), square = mu > 0 ? 1 / mu - sigma : INFINITY;
@@ -211,8 +131,7 @@ int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz
     spar_session *s = member->session;
     SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", __func__, member->name);
-    int end;
-    int64_t free_unknowns = unknowns(member, &end);
+    int64_t free_unknowns = member->row->unknowns(member);
     SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", __func__,
                   member->name, (long long)n, (long long)free_unknowns);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
@@ -220,8 +139,8 @@ int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz
     if (n == 0) {
         return SPAR_OK;
     }
-    modal p = {.size = (size_t)free_unknowns, .end = end};
+    modal p = {.size = (size_t)free_unknowns};
     int status = find_modes(member, n, &p, frequency_hz, shapes);
     modal_free(&p);
-    return status;
+    return spari_named(s, __func__, status);
 }

@@ -2,10 +2,11 @@
 #include "reaction.h"
 
 #include "../base/quiet.h"
+#include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/edge.h"
-#include "rigid_beam.h"
+#include "fidelity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,24 +14,31 @@
 int spar_member_get_reaction(const spar_member *member, double load[6]) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
-    SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_reaction: '%s': load is NULL",
-                  member->name);
-    return spari_member_reaction(member, load);
+    SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
+    return spari_named(member->session, __func__, spari_member_reaction(member, load));
 }
 
 int64_t spari_member_reaction_room(const spar_member *m) {
-    return m->rung ? spari_rung_reaction_room(m) : m->body ? 25 * (int64_t)m->body->unique : 0;
+    return m->row->reaction_room ? m->row->reaction_room(m) : 0;
 }
 
 void spari_member_reaction_in(const spar_member *m, double *room, double load[6]) {
-    if (m->rung) {
-        spari_rung_reaction(m, room, load);
-        return;
+    if (m->row->reaction) {
+        m->row->reaction(m, room, load);
+    } else {
+        memset(load, 0, 6 * sizeof *load);
     }
+}
+
+int64_t spari_reaction_at_root_room(const spar_member *m) {
+    return 25 * (int64_t)m->body->unique;
+}
+
+void spari_reaction_at_root(const spar_member *m, double *room, double load[6]) {
     memset(load, 0, 6 * sizeof *load);
     const spari_body *b = m->body;
-    int held = m->root == SPAR_ROOT_FREE ? 0 : m->root == SPAR_ROOT_PINNED ? 3 : 6;
-    if (!b || held == 0) {
+    int held = spari_member_held(m);
+    if (held == 0) {
         return;
     }
     int64_t n = b->unique;
@@ -48,6 +56,56 @@ void spari_member_reaction_in(const spar_member *m, double *room, double load[6]
     }
 }
 
+int64_t spari_reaction_of_whole_room(const spar_member *m) {
+    return (m->body ? 25 * (int64_t)m->body->unique : 0) + 12 * m->nodes;
+}
+
+void spari_reaction_of_whole(const spar_member *m, double *room, double load[6]) {
+    int64_t n = m->body ? m->body->unique : 0;
+    int still = !(m->effects & SPAR_EFFECT_INERTIA);
+    double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n, *sum = r + 6 * n, *extra = sum + 6 * m->nodes;
+    memset(load, 0, 6 * sizeof *load);
+    memset(room, 0, (size_t)spari_reaction_of_whole_room(m) * sizeof *room);
+    int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN;
+    if (m->body) {
+        for (int64_t i = 0; i < n; i++) {
+            q[7 * i + 3] = 1;
+        }
+        if (!standing) {
+            spari_member_to_unique(m, 7, m->after.q, q);
+            spari_member_to_unique(m, 6, m->after.v, v);
+        }
+        spari_member_to_unique(m, 6, m->after.a, a);
+        spari_body_residual(m->body, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
+        spari_member_from_unique(m, 6, r, sum);
+        for (int64_t i = m->per_element; i < m->nodes; i += m->per_element) {
+            memset(sum + 6 * i, 0, 6 * sizeof *sum); /* a joint counts once */
+        }
+    }
+    if (m->applied) {
+        spari_applied_nodal(m, m->after.q, extra);
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            sum[i] -= extra[i];
+        }
+    }
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double r_i[3], moment[3], f[6];
+        for (int k = 0; k < 6; k++) {
+            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k];
+        }
+        for (int k = 0; k < 3; k++) {
+            r_i[k] = m->xr[3 * i + k] - m->xr[k] + (standing ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
+        }
+        spari_cross(r_i, f, moment);
+        for (int k = 0; k < 3; k++) {
+            load[k] += f[k];
+            load[3 + k] += f[3 + k] + moment[k];
+        }
+    }
+    int held = spari_member_held(m);
+    memset(load + held, 0, (size_t)(6 - held) * sizeof *load);
+}
+
 int spari_member_reaction(const spar_member *m, double load[6]) {
     double *room = spari_zalloc(spari_member_reaction_room(m), sizeof *room);
     SPARI_REQUIRE(m->session, room, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
@@ -56,25 +114,27 @@ int spari_member_reaction(const spar_member *m, double load[6]) {
     return SPAR_OK;
 }
 
+int spari_energy_of_body(const spar_member *m, double energy[4]) {
+    double *q = spari_zalloc(13 * (int64_t)m->body->unique, sizeof *q), *v = q + 7 * (int64_t)m->body->unique;
+    if (!q) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_member_to_unique(m, 7, m->after.q, q);
+    spari_member_to_unique(m, 6, m->after.v, v);
+    spari_body_energy(m->body, q, v, energy);
+    energy[0] = m->effects & SPAR_EFFECT_INERTIA ? energy[0] : 0;
+    free(q);
+    return SPAR_OK;
+}
+
 int spar_member_get_energy(const spar_member *member, double energy[4]) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
-    SPARI_REQUIRE(member->session, energy, SPAR_ERR_ARGUMENT, "spar_member_get_energy: '%s': energy is NULL",
-                  member->name);
-    memset(energy, 0, 4 * sizeof *energy);
-    const spari_body *b = member->body;
-    if (!b) {
-        return SPAR_OK;
-    }
-    double *q = spari_zalloc(13 * (int64_t)b->unique, sizeof *q), *v = q + 7 * (int64_t)b->unique;
-    SPARI_REQUIRE(member->session, q, SPAR_ERR_MEMORY, "spar_member_get_energy: no memory for '%s'", member->name);
-    spari_member_to_unique(member, 7, member->after.q, q);
-    spari_member_to_unique(member, 6, member->after.v, v);
-    spari_body_energy(b, q, v, energy);
-    energy[0] = member->effects & SPAR_EFFECT_INERTIA ? energy[0] : 0;
-    energy[3] = member->dissipated;
-    free(q);
-    SPARI_REQUIRE(member->session, !member->rung || spari_rung_energy(member, energy) == SPAR_OK, SPAR_ERR_MEMORY,
-                  "spar_member_get_energy: no memory for '%s'", member->name);
+    SPARI_REQUIRE(member->session, energy, SPAR_ERR_ARGUMENT, "%s: '%s': energy is NULL", __func__, member->name);
+    double found[4] = {0};
+    int status = member->row->energy ? member->row->energy(member, found) : SPAR_OK;
+    SPARI_REQUIRE(member->session, status == SPAR_OK, status, "%s: no memory for '%s'", __func__, member->name);
+    found[3] = member->dissipated;
+    memcpy(energy, found, sizeof found);
     return SPAR_OK;
 }

@@ -5,12 +5,13 @@
 
 #include <string.h>
 
-void spari_root_look_from(const spar_member *m, const double *root, const spari_state *s, spari_state *own) {
+void spari_root_look_from(const spari_solver *solver, const spar_member *m, const double *root, const spari_state *s,
+                          spari_state *own) {
     double W[3], A[3], back[4];
     spari_quat_conj(root + 3, back);
     spari_rotate_back(root + 3, root + 10, W);
     spari_rotate_back(root + 3, root + 16, A);
-    for (int i = 0; i < m->solver->n; i++) {
+    for (int i = 0; i < solver->n; i++) {
         double arm[3], d[3], c1[3], c2[3], c3[3], *v = own->v + 6 * i, *a = own->a + 6 * i, *q = own->q + 7 * i;
         spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
@@ -40,10 +41,10 @@ void spari_root_look_from(const spar_member *m, const double *root, const spari_
             a[3 + k] -= c1[k];
         }
     }
-    memcpy(own->b, s->b, (size_t)(6 * m->solver->n) * sizeof *own->b);
+    memcpy(own->b, s->b, (size_t)(6 * solver->n) * sizeof *own->b);
 }
 
-void spari_root_show(const spar_member *m, spari_ends *e) {
+void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
     const double *root = e->root;
     double W[3], A[3];
     if (!root) {
@@ -51,7 +52,7 @@ void spari_root_show(const spar_member *m, spari_ends *e) {
     }
     spari_rotate_back(root + 3, root + 10, W);
     spari_rotate_back(root + 3, root + 16, A);
-    for (int i = 0; i < m->solver->n; i++) {
+    for (int i = 0; i < solver->n; i++) {
         const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
         double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
                                                   *B = e->seen.a + 6 * i;
@@ -85,18 +86,19 @@ void spari_root_show(const spar_member *m, spari_ends *e) {
         spari_quat_mul(root + 3, e->to.q + 7 * i + 3, q + 3);
         spari_quat_normalise(q + 3);
     }
-    memcpy(e->seen.b, e->to.b, (size_t)(6 * m->solver->n) * sizeof(double));
+    memcpy(e->seen.b, e->to.b, (size_t)(6 * solver->n) * sizeof(double));
 }
 
 /* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */
-static void lose_jump(const spar_member *m, double h, const double *from, const double *to, spari_state *own) {
+static void lose_jump(const spari_solver *solver, const spar_member *m, double h, const double *from, const double *to,
+                      spari_state *own) {
     double J[6], E[6], back[4], less[3];
     spari_root_jump(from, to, h, J, E);
     for (int k = 0; k < 3; k++) {
         less[k] = -E[3 + k];
     }
     spari_quat_exp(less, back);
-    for (int i = 1; i < m->solver->n; i++) {
+    for (int i = 1; i < solver->n; i++) {
         double *q = own->q + 7 * i, *v = own->v + 6 * i, d[3], c1[3], c2[3];
         spari_member_arm(m, i, d);
         for (int k = 0; k < 3; k++) {
@@ -119,9 +121,8 @@ void spari_root_of(const spari_state *s, double root[19]) {
     memcpy(root + 13, s->a, 6 * sizeof *root);
 }
 
-spari_ends spari_root_ends(const spar_member *m, const spari_scheme *c, const double *root, double ratio,
-                           spari_state *from, spari_state *to) {
-    spari_solver *s = m->solver;
+spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const spari_scheme *c, const double *root,
+                           double ratio, spari_state *from, spari_state *to) {
     spari_ends e = {*from, *to, *to, NULL, 0};
     if (s->own[0].q && !c->still) {
         double before[19], turn[4], psi[3], way[3];
@@ -133,9 +134,9 @@ spari_ends spari_root_ends(const spar_member *m, const spari_scheme *c, const do
             way[k] = root[k] - before[k];
         }
         e.from = s->own[0], e.to = s->own[1], e.root = root;
-        e.carried = spari_norm(way) / m->body->length + spari_norm(psi);
-        spari_root_look_from(m, before, from, &e.from);
-        lose_jump(m, c->h, before, root, &e.from);
+        e.carried = spari_norm(way) / s->body->length + spari_norm(psi);
+        spari_root_look_from(s, m, before, from, &e.from);
+        lose_jump(s, m, c->h, before, root, &e.from);
     }
     spari_scheme_stretch_by(ratio, 6 * s->n, e.from.a, e.from.b);
     return e;

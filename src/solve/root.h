@@ -16,12 +16,13 @@ typedef struct spari_ends {
 
 /* The ends [from, to] of a substep that a root goes through; `ratio` of the algorithmic accelerations: see
    spari_scheme_stretch. */
-spari_ends spari_root_ends(const spar_member *member, const spari_scheme *scheme, const double *root, double ratio,
-                           spari_state *from, spari_state *to);
+spari_ends spari_root_ends(const spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
+                           const double *root, double ratio, spari_state *from, spari_state *to);
 /* Motion of all nodes as seen from a root with q, v, a; b is so already. */
-void spari_root_look_from(const spar_member *member, const double *root, const spari_state *state, spari_state *own);
+void spari_root_look_from(const spari_solver *solver, const spar_member *member, const double *root,
+                          const spari_state *state, spari_state *own);
 /* And back, into what the body takes. */
-void spari_root_show(const spar_member *member, spari_ends *ends);
+void spari_root_show(const spari_solver *solver, const spar_member *member, spari_ends *ends);
 /* q, v, a of the root node */
 void spari_root_of(const spari_state *state, double root[19]);
 /* Motion q, v, a of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */

@@ -3,7 +3,6 @@
 
 #include "../base/scene.h"
 #include "../member/body.h"
-#include "solver.h"
 
 #include <math.h>
 
@@ -38,9 +37,9 @@ void spari_scheme_stretch_by(double ratio, int n, const double *a, double *b) {
 }
 
 void spari_scheme_loads(const spar_member *member, double *begin, double *end, double *room) {
-    spari_solver_gather(member, member->load_history[0], begin);
-    spari_solver_gather(member, member->load_used, end);
-    spari_solver_gather(member, member->dead, room);
+    spari_member_gather(member, member->load_history[0], begin);
+    spari_member_gather(member, member->load_used, end);
+    spari_member_gather(member, member->dead, room);
     for (int i = 0; i < 6 * member->body->unique; i++) {
         begin[i] += room[i];
         end[i] += room[i];

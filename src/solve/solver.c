@@ -4,7 +4,6 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "arms.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,13 +15,14 @@ static void carve(double *block, int n, spari_state *s) {
     s->b = s->a + 6 * (int64_t)n;
 }
 
-spari_solver *spari_solver_create(const spar_member *member) {
-    int64_t n = member->body->unique, m = 6 * (int64_t)member->per_element;
+spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms) {
+    int64_t n = body->unique, m = 6 * (int64_t)body->per_element;
     spari_solver *s = spari_zalloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
-    s->n = member->body->unique;
+    s->body = body, s->arms = arms;
+    s->n = body->unique;
     int ok = 1;
     for (int k = 0; k < 3; k++) {
         ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
@@ -34,7 +34,7 @@ spari_solver *spari_solver_create(const spar_member *member) {
     ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) && (s->element = spari_zalloc(m * m, sizeof(double)));
     ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
-    ok = ok && (s->linear = spari_linear_create(member->elements, (int)m, 6));
+    ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {
         spari_solver_free(s);
         return NULL;
@@ -78,10 +78,7 @@ void spari_solver_free(spari_solver *s) {
     free(s);
 }
 
-void spari_solver_restart(spari_solver *s, const spar_member *member) {
-    spari_member_to_unique(member, 7, member->now.q, s->begin.q);
-    spari_member_to_unique(member, 6, member->now.v, s->begin.v);
-    spari_member_to_unique(member, 6, member->now.a, s->begin.a);
+void spari_solver_restart(spari_solver *s) {
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     s->started = 0;
@@ -98,40 +95,22 @@ void spari_solver_accept(spari_solver *s) {
     s->power_begin = s->power;
 }
 
-void spari_solver_fixed(const spar_member *member, int *first, int *end) {
-    *first = 0;
-    *end = member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
-}
-
-void spari_solver_gather(const spar_member *m, const double *nodal, double *unique) {
-    int P = m->per_element;
-    memset(unique, 0, (size_t)m->body->unique * 6 * sizeof *unique);
-    for (int64_t i = 0; i < m->nodes; i++) {
-        int64_t u = m->elements == 1 ? i : i - i / P;
-        for (int k = 0; k < 6; k++) {
-            unique[6 * u + k] += nodal[6 * i + k];
-        }
-    }
-}
-
-int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
-                        double cm, double cv, const double *tinv) {
-    spari_solver *s = member->solver;
-    int first, end;
+int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
+                        double factor, double cm, double cv, const double *tinv) {
+    int end = spari_member_held(member), applied = spari_solver_has_applied(s, member);
     s->factored = 0;
     spari_linear_zero(s->linear);
-    for (int e = 0; e < member->elements; e++) {
-        spari_body_tangent(member->body, e, q, v, a, factor, cm, cv, tinv, s->element);
-        if (member->applied && factor != 0) {
+    for (int e = 0; e < s->body->elements; e++) {
+        spari_body_tangent(s->body, e, q, v, a, factor, cm, cv, tinv, s->element);
+        if (applied && factor != 0) {
             spari_applied_tangent(member, e, q, factor, s->element);
         }
-        if (member->arms && factor != 0) {
-            spari_arms_tangent(member->arms, q + 3, s->element);
+        if (s->arms && factor != 0) {
+            spari_arms_tangent(s->arms, q + 3, s->element);
         }
         spari_linear_add(s->linear, e, s->element);
     }
-    spari_solver_fixed(member, &first, &end);
-    for (int i = first; i < end; i++) {
+    for (int i = 0; i < end; i++) {
         spari_linear_fix(s->linear, i);
     }
     s->factors++;
@@ -144,12 +123,6 @@ int spari_solver_factor(spar_member *member, const double *q, const double *v, c
         memcpy(s->kept_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
     }
     return 0;
-}
-
-void spari_solver_publish(spar_member *member, const spari_state *state, spari_motion *to) {
-    spari_member_from_unique(member, 7, state->q, to->q);
-    spari_member_from_unique(member, 6, state->v, to->v);
-    spari_member_from_unique(member, 6, state->a, to->a);
 }
 
 /* Of a node: 25 doubles at either end of the step, 4 of the kept turn, 6 of the leap. */

@@ -1,10 +1,12 @@
-/* The owner's solver of one member: generalised-alpha in time on R^3 x SO(3), static equilibrium, modes. It works on
-   the unknowns' nodes (joints once) and asks the member's body for forces and tangents. */
+/* The owner's solver of one body: generalised-alpha in time on R^3 x SO(3), static equilibrium. It works on the
+   unknowns' nodes (joints once) and asks the body for forces and tangents: the body of an exact member, or the one node
+   that carries a rigid beam. Of the member it takes how the root is held and driven, effects and settings. */
 #ifndef SPARI_SOLVER_H
 #define SPARI_SOLVER_H
 
 #include "../member/body.h"
 #include "../member/structure.h"
+#include "arms.h"
 #include "linear.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
@@ -13,14 +15,16 @@ typedef struct spari_state {
     double *q, *v, *a, *b;
 } spari_state;
 
-struct spari_solver {
-    int n;                        /* unique nodes */
-    spari_state begin;            /* at t^n */
-    spari_state from, to;         /* a substep's ends; after a solve `to` is t^{n+1} */
-    double *block[3];             /* the memory of the three */
-    spari_state own[2];           /* driven root: a substep's ends seen from it; else NULL */
-    double *increment;            /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
-    double *tinv;                 /* [n][9] inverse tangent operator of the rotation vector */
+typedef struct spari_solver {
+    const spari_body *body;
+    spari_arms *arms;     /* of a body that carries a rigid beam: its loads along the line come so too; or NULL */
+    int n;                /* unique nodes */
+    spari_state begin;    /* at t^n */
+    spari_state from, to; /* a substep's ends; after a solve `to` is t^{n+1} */
+    double *block[3];     /* the memory of the three */
+    spari_state own[2];   /* driven root: a substep's ends seen from it; else NULL */
+    double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
+    double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
     double *load, *load0, *load1; /* [n][6] at a substep's end, at t^n and at t^{n+1} */
     double *r, *dx, *element;
     double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
@@ -36,19 +40,21 @@ struct spari_solver {
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
     int started;               /* accelerations at t^0 are known */
     int64_t newton, factors;   /* totals: iterations, factorisations */
-};
+} spari_solver;
 
-spari_solver *spari_solver_create(const spar_member *member);
+/* `arms`, which may be NULL, and `body` are kept. */
+spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms);
 void spari_solver_free(spari_solver *solver);
-/* Takes the motion at t^n from member->now. */
-void spari_solver_restart(spari_solver *solver, const spar_member *member);
-/* From t^n to t^n + dt in the session's substeps; leaves t^n alone, writes member->after, reaction. */
-int spari_solver_advance(spar_member *member, double dt);
+/* begin.q, v, a have been set anew. */
+void spari_solver_restart(spari_solver *solver);
+/* From t^n to t^n + dt in the session's substeps, under the loads load0 and load1; leaves t^n alone, writes `to` and
+   member->dissipated_step. */
+int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
 /* The step is accepted: t^{n+1} becomes t^n. */
 void spari_solver_accept(spari_solver *solver);
-/* Equilibrium under dead, `fluid` [nodes][6] and gravity loads; writes member->after and leaves t^n alone. onward: from
-   the shape that the last call found, if that leads there; else from t^n. */
-int spari_solver_static(spar_member *member, const double *fluid, int load_steps, int onward);
+/* Equilibrium under the load `load`, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
+   the last call found, if that leads there; else from t^n. */
+int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);
 
 /* All that the next steps depend on, to the last bit, as doubles, for save and load; the kept tangent is part of it.
    is_state: whether `count` doubles can be the state of this solver. */
@@ -57,15 +63,13 @@ void spari_solver_save(const spari_solver *solver, double *state);
 int spari_solver_is_state(const spari_solver *solver, const double *state, int64_t count);
 void spari_solver_load(spari_solver *solver, const double *state);
 
-/* Shared by the three files of the room */
-/* Fixed unknowns of the root: those of node 0 that the root condition takes out: [first, end) of its six. */
-void spari_solver_fixed(const spar_member *member, int *first, int *end);
-/* Loads of the member's nodes summed onto the unknowns' nodes. */
-void spari_solver_gather(const spar_member *member, const double *nodal, double *unique);
+/* Shared by the files of the solver */
+/* Loads that follow the body's own nodes or stand along its line are there. */
+static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
+    return member->applied && !solver->arms;
+}
 /* Forms and factors the tangent at state q, v, a. */
-int spari_solver_factor(spar_member *member, const double *q, const double *v, const double *a, double factor,
-                        double cm, double cv, const double *tinv);
-/* Copies a state into member->after (with joints twice). */
-void spari_solver_publish(spar_member *member, const spari_state *state, spari_motion *to);
+int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
+                        const double *a, double factor, double cm, double cv, const double *tinv);
 
 #endif

@@ -28,15 +28,15 @@ typedef struct loading {
 } loading;
 
 /* Forces less loads at load factor f; returns what rounding in them is relative to. */
-static double balance_at(spar_member *m, loading *l, double f, const double *q, double *r) {
-    spari_solver *s = m->solver;
+static double balance_at(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q,
+                         double *r) {
     double scale;
     if (l->turning) {
         l->part = spari_turn_part(&l->turn, f);
         spari_turn_rates(m, &l->part, q, l->v, l->a);
-        scale = spari_turn_residual(m, q, l->v, l->a, f, r);
+        scale = spari_turn_residual(s->body, q, l->v, l->a, f, r);
     } else {
-        scale = spari_body_residual(m->body, q, NULL, NULL, f, r, NULL);
+        scale = spari_body_residual(s->body, q, NULL, NULL, f, r, NULL);
     }
     for (int i = 0; i < 6 * s->n; i++) {
         r[i] -= f * s->load[i];
@@ -49,23 +49,20 @@ static double balance_at(spar_member *m, loading *l, double f, const double *q, 
 }
 
 /* The tangent at a state for which `balance_at` has been called, not yet factored. */
-static void form_static_tangent(spar_member *m, loading *l, double f, const double *q) {
-    spari_solver *s = m->solver;
-    int first, end;
+static void form_static_tangent(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
     spari_linear_zero(s->linear);
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < s->body->elements; e++) {
         if (l->turning) {
-            spari_turn_tangent(m, &l->part, e, q, l->v, l->a, f, s->element, l->mass);
+            spari_turn_tangent(s->body, &l->part, e, q, l->v, l->a, f, s->element, l->mass);
         } else {
-            spari_body_tangent(m->body, e, q, NULL, NULL, f, 0, 0, NULL, s->element);
+            spari_body_tangent(s->body, e, q, NULL, NULL, f, 0, 0, NULL, s->element);
         }
         if (m->applied) {
             spari_applied_tangent(m, e, q, f, s->element);
         }
         spari_linear_add(s->linear, e, s->element);
     }
-    spari_solver_fixed(m, &first, &end);
-    for (int i = first; i < end; i++) {
+    for (int i = 0; i < spari_member_held(m); i++) {
         spari_linear_fix(s->linear, i);
     }
 }
@@ -87,32 +84,29 @@ static void shift(int n, double cut, const double *dx, double *q) {
 typedef enum outcome { FOUND, FAILED, LOST } outcome;
 
 /* The state is in equilibrium, its rates those of the last `balance_at`: on the path, or beyond its end? */
-static outcome judge(spar_member *m, loading *l, double f, const double *q) {
-    spari_solver *s = m->solver;
+static outcome judge(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
     if (!l->guarded) {
         return FOUND;
     }
-    form_static_tangent(m, l, f, q);
+    form_static_tangent(s, m, l, f, q);
     return spari_linear_definite(s->linear) == 0 ? LOST : FOUND;
 }
 
 /* One Newton solution at load factor f, from and to state q; from_path: q is a point of the path. */
-static outcome equilibrium(spar_member *member, loading *l, double f, int from_path, double *q) {
-    spari_solver *s = member->solver;
-    int n = s->n, first, end;
-    double last = 0, length = member->body->length;
+static outcome equilibrium(spari_solver *s, const spar_member *member, loading *l, double f, int from_path, double *q) {
+    int n = s->n;
+    double last = 0, length = s->body->length;
     const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
-    spari_solver_fixed(member, &first, &end);
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
-        double scale = balance_at(member, l, f, q, s->r), noise = 0;
-        memset(s->r + first, 0, (size_t)(end - first) * sizeof *s->r);
+        double scale = balance_at(s, member, l, f, q, s->r), noise = 0;
+        memset(s->r, 0, (size_t)spari_member_held(member) * sizeof *s->r);
         for (int i = 0; i < 6 * n; i++) {
             noise = fmax(noise, fabs(s->r[i]));
         }
         if (!isfinite(noise)) {
             return FAILED;
         }
-        form_static_tangent(member, l, f, q);
+        form_static_tangent(s, member, l, f, q);
         s->factors++;
         memcpy(s->dx, s->r, (size_t)(6 * n) * sizeof *s->dx);
         if (spari_linear_factor(s->linear) || spari_linear_solve(s->linear, s->dx)) {
@@ -130,7 +124,7 @@ static outcome equilibrium(spar_member *member, loading *l, double f, int from_p
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
-            return judge(member, l, f, q);
+            return judge(s, member, l, f, q);
         }
         last = largest;
     }
@@ -138,8 +132,7 @@ static outcome equilibrium(spar_member *member, loading *l, double f, int from_p
 }
 
 /* Whether the path can be watched: loads with a potential on a member that its root holds, and that is not linear. */
-static int has_path(const spar_member *m) {
-    const spari_solver *s = m->solver;
+static int has_path(const spari_solver *s, const spar_member *m) {
     int moments = 0;
     for (int i = 0; i < s->n; i++) {
         moments |= spari_norm(s->load + 6 * i + 3) > 0;
@@ -149,16 +142,13 @@ static int has_path(const spar_member *m) {
 }
 
 /* Whether the state without loads is in equilibrium: the path begins there. */
-static int starts_on_path(spar_member *m, loading *l, const double *q) {
-    spari_solver *s = m->solver;
-    int first, end;
+static int starts_on_path(const spari_solver *s, const spar_member *m, loading *l, const double *q) {
     if (!l->guarded) {
         return 0;
     }
-    balance_at(m, l, 0, q, s->r);
-    spari_solver_fixed(m, &first, &end);
-    for (int i = end; i < 6 * s->n; i++) {
-        if (fabs(s->r[i]) > 1e-9 * m->body->stiffest) {
+    balance_at(s, m, l, 0, q, s->r);
+    for (int i = spari_member_held(m); i < 6 * s->n; i++) {
+        if (fabs(s->r[i]) > 1e-9 * s->body->stiffest) {
             return 0;
         }
     }
@@ -167,16 +157,16 @@ static int starts_on_path(spar_member *m, loading *l, const double *q) {
 
 /* Load steps from 0 to all of the loads, s->to.q from `start`, which it may be; the last point in s->best. Returns the
    part reached. */
-static double follow_path(spar_member *member, loading *l, const double *start, int load_steps, outcome *why) {
-    spari_solver *s = member->solver;
+static double follow_path(spari_solver *s, const spar_member *member, loading *l, const double *start, int load_steps,
+                          outcome *why) {
     size_t bytes = (size_t)(7 * s->n) * sizeof(double);
     double done = 0, step = 1.0 / load_steps;
-    int halvings = 0, on_path = starts_on_path(member, l, start);
+    int halvings = 0, on_path = starts_on_path(s, member, l, start);
     memcpy(s->best, start, bytes);
     memcpy(s->to.q, s->best, bytes);
     while (done < 1) {
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
-        outcome o = equilibrium(member, l, f, on_path, s->to.q);
+        outcome o = equilibrium(s, member, l, f, on_path, s->to.q);
         if (o == FOUND) {
             done = f;
             on_path = 1;
@@ -211,8 +201,8 @@ static double largest_bend(const spari_solver *s, const double *q) {
    nodes of an element fail at 1.7. */
 static const double most_bend = 2.2, suspect_bend = 1;
 
-static int refuse(const spar_member *member, double done, outcome why) {
-    double bend = largest_bend(member->solver, member->solver->best);
+static int refuse(const spari_solver *s, const spar_member *member, double done, outcome why) {
+    double bend = largest_bend(s, s->best);
     char text[200] = "a limit point, or a member that nothing holds";
     if (why == LOST) {
         (void)snprintf(text, sizeof text, "a limit or branching point: the stiffness is no longer positive there");
@@ -229,47 +219,34 @@ static int refuse(const spar_member *member, double done, outcome why) {
 }
 
 /* An equilibrium of the nodes that is none of the beam. */
-static void warn_of_bend(const spar_member *m) {
-    const spar_session *s = m->session;
+static void warn_of_bend(const spari_solver *s, const spar_member *m) {
     char text[SPARI_MESSAGE_SIZE];
-    if (!s->log || largest_bend(m->solver, m->solver->best) <= most_bend) {
+    double bend = m->session->log ? largest_bend(s, s->best) : 0;
+    if (bend <= most_bend) {
         return;
     }
     (void)snprintf(
         text, sizeof text,
         "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more than they can "
         "follow: it may be none of the beam; give it more nodes or elements",
-        m->name, largest_bend(m->solver, m->solver->best));
-    spari_log(s, SPAR_LOG_WARNING, text);
+        m->name, bend);
+    spari_log(m->session, SPAR_LOG_WARNING, text);
 }
 
 static int no_memory_to_balance(const spar_member *member) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", member->name);
 }
 
-/* All loads that do not depend on the state, on the unknowns' nodes. */
-static void sum_loads_at_rest(const spar_member *member, const double *fluid) {
-    spari_solver *s = member->solver;
-    spari_solver_gather(member, member->dead, s->load);
-    spari_solver_gather(member, fluid, s->r);
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->load[i] += s->r[i];
-    }
-}
-
 /* The shape found, at rest or turning steadily. */
-static void publish_equilibrium(spar_member *member, const loading *l) {
-    spari_solver *s = member->solver;
+static void give_equilibrium(spari_solver *s, const spar_member *member, const loading *l) {
     memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof *s->best);
     memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof(double));
     if (l->turning) {
         spari_turn_rates(member, &l->turn, s->to.q, s->to.v, s->to.a);
     }
-    spari_solver_publish(member, &s->to, &member->after);
 }
 
-int spari_solver_static(spar_member *member, const double *fluid, int load_steps, int onward) {
-    spari_solver *s = member->solver;
+int spari_solver_static(spari_solver *s, const spar_member *member, int load_steps, int onward) {
     int n = s->n;
     loading l = {0};
     outcome why = FAILED;
@@ -281,22 +258,21 @@ int spari_solver_static(spar_member *member, const double *fluid, int load_steps
             return no_memory_to_balance(member);
         }
     }
-    sum_loads_at_rest(member, fluid);
-    l.guarded = has_path(member);
+    l.guarded = has_path(s, member);
     if (l.guarded && spari_linear_watch(s->linear)) {
         free(l.mass);
         return no_memory_to_balance(member);
     }
-    double done = onward ? follow_path(member, &l, s->to.q, 1, &why) : 0;
-    done = done < 1 ? follow_path(member, &l, s->begin.q, load_steps, &why) : done;
+    double done = onward ? follow_path(s, member, &l, s->to.q, 1, &why) : 0;
+    done = done < 1 ? follow_path(s, member, &l, s->begin.q, load_steps, &why) : done;
     free(l.mass);
     spari_linear_unwatch(s->linear);
     s->factored = 0;
     if (done < 1) {
         memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);
-        return refuse(member, done, why);
+        return refuse(s, member, done, why);
     }
-    warn_of_bend(member);
-    publish_equilibrium(member, &l);
+    warn_of_bend(s, member);
+    give_equilibrium(s, member, &l);
     return SPAR_OK;
 }

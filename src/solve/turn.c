@@ -43,17 +43,17 @@ void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double
     }
 }
 
-double spari_turn_residual(const spar_member *m, const double *q, const double *v, const double *a, double factor,
+double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
                            double *r) {
-    spari_body body = *m->body;
+    spari_body body = *damped;
     body.D = NULL;
     return spari_body_residual(&body, q, v, a, factor, r, NULL);
 }
 
-void spari_turn_tangent(const spar_member *m, const spari_turn *turn, int e, const double *q, const double *v,
+void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e, const double *q, const double *v,
                         const double *a, double factor, double *S, double *M) {
-    int n = 6 * m->per_element;
-    spari_body body = *m->body;
+    int n = 6 * damped->per_element;
+    spari_body body = *damped;
     body.D = NULL;
     spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
     spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);

@@ -22,11 +22,11 @@ int spari_turn_of(const spar_member *member, const double v[6], const double a[6
 spari_turn spari_turn_part(const spari_turn *turn, double f);
 /* Rates v, a [unique][6] of the shape q [unique][7]. */
 void spari_turn_rates(const spar_member *member, const spari_turn *turn, const double *q, double *v, double *a);
-/* As spari_body_residual. */
-double spari_turn_residual(const spar_member *member, const double *q, const double *v, const double *a, double factor,
+/* As spari_body_residual, damping left out. */
+double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
                            double *r);
 /* S [6P][6P] = stiffness of element e in the frame that turns, M likewise = its mass; turn NULL: at rest. */
-void spari_turn_tangent(const spar_member *member, const spari_turn *turn, int e, const double *q, const double *v,
+void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e, const double *q, const double *v,
                         const double *a, double factor, double *S, double *M);
 
 #endif

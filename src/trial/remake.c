@@ -6,8 +6,8 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
+#include "../solve/fidelity.h"
 #include "../solve/life.h"
-#include "../solve/rigid_beam.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -89,7 +89,7 @@ int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *o
     m->fidelity = wish->fidelity;
     m->modes = wish->fidelity == SPAR_FIDELITY_MODAL ? wish->modes : 0;
     SPARI_TRY(describe_again(m, wish, old));
-    SPARI_TRY(spari_rung_check(m));
+    SPARI_TRY(spari_fidelity_check(m));
     m->effects = spari_member_effects(m) & ~wish->left_out;
     if (!(m->effects & SPAR_EFFECT_INERTIA)) {
         m->effects &= ~SPAR_EFFECT_GYROSCOPIC;

@@ -1,0 +1,146 @@
+/* The exact member: geometrically exact beams and rigid bodies, with or without LARGE_ROTATION. */
+#include "../member/applied.h"
+#include "../member/beam.h"
+#include "eigen.h"
+#include "fidelity.h"
+#include "reaction.h"
+#include "scheme.h"
+#include "solver.h"
+#include "turn.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- life and time ---- */
+
+static int exact_create(spar_member *m) {
+    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) && spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY)) {
+        return SPAR_ERR_MEMORY;
+    }
+    if (spari_fidelity_is_here(m)) {
+        m->solution = spari_solver_create(m, m->body, NULL);
+    }
+    return m->solution || !spari_fidelity_is_here(m) ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+static void exact_free(void *solution) {
+    spari_solver_free(solution);
+}
+
+static void exact_renew(spar_member *m) {
+    spari_solver *s = m->solution;
+    s->body = m->body;
+    s->factored = 0;
+}
+
+static void exact_restart(spar_member *m) {
+    spari_solver *s = m->solution;
+    spari_member_to_unique(m, 7, m->now.q, s->begin.q);
+    spari_member_to_unique(m, 6, m->now.v, s->begin.v);
+    spari_member_to_unique(m, 6, m->now.a, s->begin.a);
+    spari_solver_restart(s);
+}
+
+static int exact_advance(spar_member *m, double dt) {
+    spari_solver *s = m->solution;
+    spari_scheme_loads(m, s->load0, s->load1, s->load);
+    SPARI_TRY(spari_solver_advance(s, m, dt));
+    spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
+    return SPAR_OK;
+}
+
+static void exact_accept(spar_member *m) {
+    spari_solver_accept(m->solution);
+}
+
+static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+    spari_solver *s = m->solution;
+    spari_member_gather(m, m->dead, s->load);
+    spari_member_gather(m, fluid, s->r);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->load[i] += s->r[i];
+    }
+    SPARI_TRY(spari_solver_static(s, m, load_steps, onward));
+    spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
+    return SPAR_OK;
+}
+
+/* ---- modes ---- */
+
+static int64_t exact_unknowns(const spar_member *m) {
+    return 6 * (int64_t)m->body->unique - spari_member_held(m);
+}
+
+static int exact_problem(const spar_member *m, double *K, double *M) {
+    int64_t u = m->body->unique, n = 6 * (int64_t)m->per_element, free_unknowns = exact_unknowns(m);
+    double *q = spari_zalloc(19 * u + 2 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *S = a + 6 * u,
+           *mass = S + n * n;
+    if (!q) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_turn turn;
+    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn);
+    spari_member_to_unique(m, 7, m->after.q, q);
+    if (turning) {
+        spari_turn_rates(m, &turn, q, v, a);
+    }
+    for (int e = 0; e < m->elements; e++) {
+        int at = 6 * e * (m->per_element - 1) - spari_member_held(m);
+        spari_turn_tangent(m->body, turning ? &turn : NULL, e, q, v, a, 1, S, mass);
+        if (m->applied) {
+            spari_applied_tangent(m, e, q, 1, S);
+        }
+        spari_eigen_add(at, (int)n, S, 1, free_unknowns, K);
+        spari_eigen_add(at, (int)n, mass, 1, free_unknowns, M);
+    }
+    free(q);
+    return SPAR_OK;
+}
+
+static void exact_shape(const spar_member *m, const double *x, double *room, double *nodes) {
+    int64_t held = spari_member_held(m);
+    memset(room, 0, (size_t)held * sizeof *room);
+    memcpy(room + held, x, (size_t)exact_unknowns(m) * sizeof *room);
+    spari_member_from_unique(m, 6, room, nodes);
+}
+
+/* ---- save and load ---- */
+
+static int64_t exact_state_size(const spar_member *m) {
+    return spari_solver_state_size(m->solution);
+}
+
+static void exact_save(const spar_member *m, double *state) {
+    spari_solver_save(m->solution, state);
+}
+
+static int exact_is_state(const spar_member *m, const double *state, int64_t count) {
+    return spari_solver_is_state(m->solution, state, count);
+}
+
+static void exact_load(spar_member *m, const double *state) {
+    spari_solver_load(m->solution, state);
+}
+
+const spari_fidelity spari_fidelity_exact = {
+    .moves = 1,
+    .solved = 1,
+    .seen = SPARI_SEEN_FIXED,
+    .create = exact_create,
+    .free = exact_free,
+    .renew = exact_renew,
+    .restart = exact_restart,
+    .advance = exact_advance,
+    .accept = exact_accept,
+    .rest = exact_rest,
+    .reaction_room = spari_reaction_at_root_room,
+    .reaction = spari_reaction_at_root,
+    .energy = spari_energy_of_body,
+    .unknowns = exact_unknowns,
+    .problem = exact_problem,
+    .shape = exact_shape,
+    .state_size = exact_state_size,
+    .save = exact_save,
+    .is_state = exact_is_state,
+    .load = exact_load,
+};

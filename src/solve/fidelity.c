@@ -1,0 +1,33 @@
+/* Which row of the table a member has: see fidelity.h. */
+#include "fidelity.h"
+
+#include "../member/edge.h"
+
+#define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
+static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
+enum { ROWS = sizeof table / sizeof *table };
+
+const spari_fidelity *spari_fidelity_of(const spar_member *m) {
+    return m->external || m->kind == SPARI_POINT ? &spari_fidelity_given : table[m->fidelity];
+}
+
+int spari_fidelity_check(const spar_member *m) {
+    const spari_fidelity *row = table[m->fidelity];
+    SPARI_REQUIRE(m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external),
+                  SPAR_ERR_STATE, "member '%s': a fidelity below exact is for beams that spar solves for", m->name);
+    return row->check ? row->check(m) : SPAR_OK;
+}
+
+int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
+    SPARI_TRY(spari_need_open(member, __func__));
+    spar_session *s = member->session;
+    SPARI_REQUIRE(s, kind >= 0 && kind < ROWS && table[kind], SPAR_ERR_ARGUMENT,
+                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", __func__, member->name, kind);
+    SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: '%s' is not a beam; a point and a rigid body have one fidelity", __func__, member->name);
+    SPARI_REQUIRE(s, !table[kind]->takes_modes || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld modes; give at least 1", __func__, member->name, (long long)modes);
+    member->fidelity = kind;
+    member->modes = table[kind]->takes_modes ? modes : 0;
+    return SPAR_OK;
+}

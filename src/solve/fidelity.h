@@ -1,0 +1,85 @@
+/* How members move, as a table with one row for each fidelity. Every room asks the row, none asks which it is. A row is
+   a file of this room: to add one, write the file, name it in SPARI_FIDELITIES and give it its number in spar.h. */
+#ifndef SPARI_FIDELITY_H
+#define SPARI_FIDELITY_H
+
+#include "../comm/comm.h"
+#include "../member/structure.h"
+
+/* A row. Of the operations NULL means: nothing to do. They are called where spari_fidelity_is_here, but for those that
+   every rank calls. 0 or a status; messages name the member, the public call puts its name before. */
+typedef struct spari_fidelity {
+    int moves;       /* spar finds the motion; else the host gives it */
+    int solved;      /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
+    int massive;     /* the body has its mass whatever effects are in force */
+    int takes_modes; /* it is asked for with a number of modes */
+    spari_view seen;
+
+    /* every rank: what of the description it cannot serve; before anything is built */
+    int (*check)(const spar_member *m);
+    /* every rank: of the effects that may be in force those that are left to it; NULL: all */
+    int (*effects)(const spar_member *m, int effects);
+    /* every rank, nodes and body being there: m->solution, which a failure leaves to `free` */
+    int (*create)(spar_member *m);
+    void (*free)(void *solution);
+    /* the body has been put in the place of one that had no damping, or another; NULL: that cannot be */
+    void (*renew)(spar_member *m);
+
+    /* the motion now has been set anew */
+    void (*restart)(spar_member *m);
+    /* from t^n to t^n + dt in the session's substeps, under dead loads, load_history[0] and load_used; leaves t^n
+       alone, writes m->after and m->dissipated_step */
+    int (*advance)(spar_member *m, double dt);
+    /* t^{n+1} becomes t^n */
+    void (*accept)(spar_member *m);
+    /* equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; leaves t^n alone, writes m->after.
+       onward: from the shape that the last call found, if that leads there; else from t^n. NULL: there is none */
+    int (*rest)(spar_member *m, const double *fluid, int load_steps, int onward);
+
+    /* every rank: what the root gives in the motion after (NULL: nothing), with memory given beforehand: so many
+       doubles; with that of followers and line loads, which a host may give later */
+    int64_t (*reaction_room)(const spar_member *m);
+    void (*reaction)(const spar_member *m, double *room, double load[6]);
+    /* every rank: kinetic, strain, potential of the motion after */
+    int (*energy)(const spar_member *m, double energy[4]);
+
+    /* every rank: the unknowns that the root leaves free; K and M of the motion after, dense, their symmetric parts; a
+       vector of the unknowns as a field of the nodes [nodes][6], global axes (room: 6 of each unique node). Called only
+       where the body has mass. */
+    int64_t (*unknowns)(const spar_member *m);
+    int (*problem)(const spar_member *m, double *K, double *M);
+    void (*shape)(const spar_member *m, const double *x, double *room, double *nodes);
+
+    /* All that the next steps depend on beside the member itself, to the last bit, as doubles; whether `count` doubles
+       can be that. NULL: nothing is kept. */
+    int64_t (*state_size)(const spar_member *m);
+    void (*save)(const spar_member *m, double *state);
+    int (*is_state)(const spar_member *m, const double *state, int64_t count);
+    void (*load)(spar_member *m, const double *state);
+} spari_fidelity;
+
+/* The table: SPAR_FIDELITY_* and the row's name. */
+#define SPARI_FIDELITIES(ROW)                                                                                          \
+    ROW(PRESCRIBED, prescribed)                                                                                        \
+    ROW(RIGID, rigid)                                                                                                  \
+    ROW(LINEAR, linear)                                                                                                \
+    ROW(MODAL, modal)                                                                                                  \
+    ROW(EXACT, exact)
+#define SPARI_DECLARE_FIDELITY(number, name) extern const spari_fidelity spari_fidelity_##name;
+SPARI_FIDELITIES(SPARI_DECLARE_FIDELITY)
+extern const spari_fidelity spari_fidelity_given; /* points and external members */
+
+/* The row of a member, from what it is described as. */
+const spari_fidelity *spari_fidelity_of(const spar_member *member);
+/* What of the description its row cannot serve: a status and a message. */
+int spari_fidelity_check(const spar_member *member);
+/* Whether this rank finds the motion of a committed member. */
+static inline int spari_fidelity_is_here(const spar_member *member) {
+    return !member->row->solved || member->owner == spari_comm_rank(member->session->comm);
+}
+/* Doubles that this rank keeps of a committed member; 0: nothing. */
+static inline int64_t spari_fidelity_state_size(const spar_member *member) {
+    return member->row->state_size && spari_fidelity_is_here(member) ? member->row->state_size(member) : 0;
+}
+
+#endif
