@@ -119,7 +119,8 @@ static int ask(const scene *s, double tolerance, double part, double *advice, kn
         snprintf(horizon, sizeof horizon, "%.17g", s->T);
         (void)spar_session_set_option(run->session, "advise.horizon", horizon);
         (void)spar_session_set_log(run->session, show, NULL);
-        status = spar_session_advise(run->session, tolerance, dt, steps, run->before, run->solve, run->context, advice);
+        status = spar_session_advise(run->session, tolerance, dt, steps, run->before, run->solve, run->context,
+                                     SPAR_ADVICE_COUNT, advice);
     }
     if (status == SPAR_OK) {
         *k = advised(s, run, advice);

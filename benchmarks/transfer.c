@@ -190,11 +190,12 @@ static void compare(scene *s) {
 
 /* Force, moment and power have passed the map, or the speed is worth nothing. */
 static void check_audit(scene *s) {
-    double audit[8];
-    MUST(s->session, spar_fluid_get_audit(s->loads, audit));
-    if (!(audit[3] < 1e-13 && audit[4] < 1e-13 && audit[5] < 1e-13)) {
-        fprintf(stderr, "transfer: lost on the way: %g of the force, %g of the moment, %g of the power\n", audit[3],
-                audit[4], audit[5]);
+    double audit[SPAR_AUDIT_COUNT];
+    MUST(s->session, spar_fluid_get_audit(s->loads, SPAR_AUDIT_COUNT, audit));
+    if (!(audit[SPAR_AUDIT_FORCE_ERROR] < 1e-13 && audit[SPAR_AUDIT_MOMENT_ERROR] < 1e-13 &&
+          audit[SPAR_AUDIT_POWER_ERROR] < 1e-13)) {
+        fprintf(stderr, "transfer: lost on the way: %g of the force, %g of the moment, %g of the power\n",
+                audit[SPAR_AUDIT_FORCE_ERROR], audit[SPAR_AUDIT_MOMENT_ERROR], audit[SPAR_AUDIT_POWER_ERROR]);
         exit(1);
     }
 }

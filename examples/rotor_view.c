@@ -103,9 +103,11 @@ static void print_csv(const line *lines) {
 int rotor_view_effects(const rotor_trial *t, int csv, int show) {
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], aero[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     line lines[ROWS];
-    int status = spar_session_report_effects(t->session, t->dt, t->steps, t->before, t->solve, t->context, table);
+    int status = spar_session_report_effects(t->session, t->dt, t->steps, t->before, t->solve, t->context,
+                                             SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]);
     if (status == SPAR_OK) {
-        status = spar_aero_report_effects(t->aero, t->session, t->dt, t->steps, t->before, t->solve, t->context, aero);
+        status = spar_aero_report_effects(t->aero, t->session, t->dt, t->steps, t->before, t->solve, t->context,
+                                          SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, aero[0]);
     }
     if (status != SPAR_OK || !show) {
         return status;
@@ -184,8 +186,8 @@ int rotor_view_advice(const rotor_trial *t, rotor_options *o, int show) {
     double advice[SPAR_ADVICE_COUNT];
     int fidelity = 0, nodes = 0, points = 0;
     int64_t modes = 0;
-    int status =
-        spar_session_advise(t->session, o->tolerance, t->dt, t->steps, t->before, t->solve, t->context, advice);
+    int status = spar_session_advise(t->session, o->tolerance, t->dt, t->steps, t->before, t->solve, t->context,
+                                     SPAR_ADVICE_COUNT, advice);
     if (status == SPAR_OK) {
         status = spar_member_get_advice(t->blade, &fidelity, &modes, &nodes, &points);
     }

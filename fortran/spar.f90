@@ -24,7 +24,8 @@
 ! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Kinds are those of C, c_double and c_int; a count may also
 ! be a 64-bit integer. Nodes and sections are counted from 1 in arguments; the library's own messages count from 0.
 ! Figures that C names by constants from 0 (SPAR_REPORT_*, SPAR_TRY_*, SPAR_ADVICE_*, SPAR_COLUMN_* by SPAR_ROW_*) are found under
-! these names in arrays declared from 0: table(0:SPAR_COLUMN_COUNT-1, 0:SPAR_ROW_COUNT-1).
+! these names in arrays declared from 0: table(0:SPAR_COLUMN_COUNT-1, 0:SPAR_ROW_COUNT-1). Such an array may have any length:
+! its entries are set as far as it goes, those that the library does not know to 0.
 !
 ! Life. A session, a polar and an aero object are owned by their variables: destroyed by `destroy`, or at the latest when the
 ! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
@@ -61,6 +62,10 @@ module spar
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
+  public :: SPAR_ENERGY_KINETIC, SPAR_ENERGY_STRAIN, SPAR_ENERGY_GRAVITY, SPAR_ENERGY_DISSIPATED, SPAR_ENERGY_COUNT
+  public :: SPAR_WORK_LOADS, SPAR_WORK_FLUID, SPAR_WORK_ROOT, SPAR_WORK_COUNT
+  public :: SPAR_AUDIT_FORCE, SPAR_AUDIT_MOMENT, SPAR_AUDIT_POWER, SPAR_AUDIT_FORCE_ERROR, SPAR_AUDIT_MOMENT_ERROR
+  public :: SPAR_AUDIT_POWER_ERROR, SPAR_AUDIT_FARTHEST, SPAR_AUDIT_NODES, SPAR_AUDIT_COUNT
   public :: SPAR_TRY_MOTION, SPAR_TRY_REACTION, SPAR_TRY_LOAD, SPAR_TRY_SECONDS, SPAR_TRY_SOLUTIONS, SPAR_TRY_COUNT
   public :: SPAR_ROW_INERTIA, SPAR_ROW_GYROSCOPIC, SPAR_ROW_GRAVITY, SPAR_ROW_DAMPING, SPAR_ROW_LARGE_ROTATION
   public :: SPAR_ROW_FLUID_MOMENT, SPAR_ROW_FLUID_VELOCITY, SPAR_ROW_FLUID_POSES, SPAR_ROW_FLUID_HISTORY
@@ -93,7 +98,8 @@ module spar
     procedure :: set_option => session_set_option
     procedure :: set_log => session_set_log
     procedure :: get_time => session_get_time
-    procedure :: get_coupling => session_get_coupling
+    procedure :: get_iterations => session_get_iterations
+    procedure :: get_report => session_get_report
     procedure :: save => session_save
     procedure :: load => session_load
     procedure :: step_begin => session_step_begin
@@ -511,31 +517,34 @@ contains
     call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
   end subroutine session_get_time
 
-  ! residual and size, by iteration from 1, have room for all iterations of the step: as many as set_coupling allows is always
-  ! enough. Entry SPAR_REPORT_x of the report is report(SPAR_REPORT_x + 1).
-  subroutine session_get_coupling(self, iterations, residual, size, report, stat, errmsg)
+  ! residual and size, by iteration from 1, take as many as they have room for: as many as set_coupling allows is always enough.
+  subroutine session_get_iterations(self, iterations, residual, size, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int), intent(inout), optional :: iterations
     real(c_double), contiguous, intent(inout), optional :: residual(:), size(:)
-    real(c_double), intent(inout), optional :: report(SPAR_REPORT_COUNT)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int) :: n, status
+    integer(c_int) :: status
+    integer(c_int) :: n
 
-    status = spar_session_get_coupling(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%handle, stat, errmsg)
-      return
-    end if
-    if (present(residual)) call need_room(fault, 'residual', ubound(residual, 1, c_int64_t), n)
-    if (present(size)) call need_room(fault, 'size', ubound(size, 1, c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('session%get_coupling', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_session_get_coupling(self%handle, iterations, residual, size, report), self%handle, stat, errmsg)
-  end subroutine session_get_coupling
+    status = spar_session_get_iterations(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(residual)) &
+        status = spar_session_get_iterations(self%handle, n, ubound(residual, 1, c_int64_t), residual)
+    if (status == SPAR_OK .and. present(size)) &
+        status = spar_session_get_iterations(self%handle, n, ubound(size, 1, c_int64_t), size=size)
+    if (status == SPAR_OK .and. present(iterations)) iterations = n
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_iterations
+
+  ! Entry SPAR_REPORT_x of the report is report(SPAR_REPORT_x + 1).
+  subroutine session_get_report(self, report, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: report(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
+  end subroutine session_get_report
 
   subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -684,7 +693,7 @@ contains
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
-    real(c_double), intent(inout) :: report(SPAR_TRY_COUNT)
+    real(c_double), contiguous, intent(inout) :: report(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -698,15 +707,15 @@ contains
     compared = .false.
     if (present(compare)) compared = compare
     call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_try(self%handle, dt, steps, to_before, to_solver, c_loc(record), flag(compared), report), &
-        self%handle, stat, errmsg)
+    call finish(spar_session_try(self%handle, dt, steps, to_before, to_solver, c_loc(record), flag(compared), &
+        size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
   end subroutine session_try_64
 
   subroutine session_try_32(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     integer(c_int), intent(in) :: steps
-    real(c_double), intent(inout) :: report(SPAR_TRY_COUNT)
+    real(c_double), contiguous, intent(inout) :: report(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -721,7 +730,7 @@ contains
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
-    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_ROW_COUNT)
+    real(c_double), contiguous, intent(inout) :: table(:,:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -731,15 +740,15 @@ contains
     type(c_funptr) :: to_solver, to_before
 
     call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_report_effects(self%handle, dt, steps, to_before, to_solver, c_loc(record), table), &
-        self%handle, stat, errmsg)
+    call finish(spar_session_report_effects(self%handle, dt, steps, to_before, to_solver, c_loc(record), &
+        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), self%handle, stat, errmsg)
   end subroutine session_report_effects_64
 
   subroutine session_report_effects_32(self, dt, steps, table, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     integer(c_int), intent(in) :: steps
-    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_ROW_COUNT)
+    real(c_double), contiguous, intent(inout) :: table(:,:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -753,7 +762,7 @@ contains
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: tolerance, dt
     integer(c_int64_t), intent(in) :: steps
-    real(c_double), intent(inout) :: advice(SPAR_ADVICE_COUNT)
+    real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -763,15 +772,15 @@ contains
     type(c_funptr) :: to_solver, to_before
 
     call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_advise(self%handle, tolerance, dt, steps, to_before, to_solver, c_loc(record), advice), &
-        self%handle, stat, errmsg)
+    call finish(spar_session_advise(self%handle, tolerance, dt, steps, to_before, to_solver, c_loc(record), &
+        size(advice, kind=c_int64_t), advice), self%handle, stat, errmsg)
   end subroutine session_advise_64
 
   subroutine session_advise_32(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: tolerance, dt
     integer(c_int), intent(in) :: steps
-    real(c_double), intent(inout) :: advice(SPAR_ADVICE_COUNT)
+    real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -1235,20 +1244,20 @@ contains
 
   subroutine member_get_energy(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self
-    real(c_double), intent(inout) :: energy(4)
+    real(c_double), contiguous, intent(inout) :: energy(:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_get_energy(self%handle, energy), self%session, stat, errmsg)
+    call finish(spar_member_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
   end subroutine member_get_energy
 
   subroutine member_get_work(self, work, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    real(c_double), intent(inout) :: work(3)
+    real(c_double), contiguous, intent(inout) :: work(:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_get_work(self%handle, work), self%session, stat, errmsg)
+    call finish(spar_member_get_work(self%handle, size(work, kind=c_int64_t), work), self%session, stat, errmsg)
   end subroutine member_get_work
 
   subroutine member_solve_static(self, load_steps, stat, errmsg)
@@ -1855,11 +1864,11 @@ contains
 
   subroutine fluid_get_audit(self, audit, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    real(c_double), intent(inout) :: audit(8)
+    real(c_double), contiguous, intent(inout) :: audit(:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_get_audit(self%handle, audit), self%session, stat, errmsg)
+    call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
   end subroutine fluid_get_audit
 
   subroutine fluid_write_vtk(self, path, stat, errmsg)
@@ -2167,7 +2176,7 @@ contains
     class(spar_session), intent(inout), target :: session
     real(c_double), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
-    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_AERO_ROW_COUNT)
+    real(c_double), contiguous, intent(inout) :: table(:,:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -2177,8 +2186,8 @@ contains
     type(c_funptr) :: to_solver, to_before
 
     call fill_record(session, record, to_solver, to_before, solve, before, context)
-    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), table), &
-        session%handle, stat, errmsg)
+    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), &
+        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), session%handle, stat, errmsg)
   end subroutine aero_report_effects_64
 
   subroutine aero_report_effects_32(self, session, dt, steps, table, before, solve, context, stat, errmsg)
@@ -2186,7 +2195,7 @@ contains
     class(spar_session), intent(inout), target :: session
     real(c_double), intent(in) :: dt
     integer(c_int), intent(in) :: steps
-    real(c_double), intent(inout) :: table(SPAR_COLUMN_COUNT,SPAR_AERO_ROW_COUNT)
+    real(c_double), contiguous, intent(inout) :: table(:,:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
@@ -2335,16 +2344,6 @@ contains
     end do
     text = text // ')'
   end subroutine append_extents
-
-  subroutine need_room(fault, array, has, needs)
-    character(:), allocatable, intent(inout) :: fault
-    character(*), intent(in) :: array
-    integer(c_int64_t), intent(in) :: has
-    integer(c_int), intent(in) :: needs
-
-    if (allocated(fault) .or. has >= needs) return
-    fault = array // ' has room for ' // trim(text_of(has)) // ' of ' // trim(text_of(int(needs, c_int64_t)))
-  end subroutine need_room
 
   pure function text_of(number) result(text)
     integer(c_int64_t), intent(in) :: number

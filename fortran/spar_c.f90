@@ -46,6 +46,12 @@ module spar_c
   integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
+  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
+  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_COUNT = 3
+  integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, SPAR_AUDIT_FORCE_ERROR = 3, &
+      SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, SPAR_AUDIT_NODES = 7, &
+      SPAR_AUDIT_COUNT = 8
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
@@ -167,13 +173,22 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_time
 
-    function spar_session_get_coupling(session, iterations, residual, size, report) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
+    function spar_session_get_iterations(session, iterations, capacity, residual, size) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       integer(c_int), intent(inout), optional :: iterations
-      real(c_double), intent(inout), optional :: residual(*), size(*), report(*)
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: residual(*), size(*)
       integer(c_int) :: status
-    end function spar_session_get_coupling
+    end function spar_session_get_iterations
+
+    function spar_session_get_report(session, capacity, report) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: report(*)
+      integer(c_int) :: status
+    end function spar_session_get_report
 
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
@@ -381,17 +396,19 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_get_section
 
-    function spar_member_get_energy(member, energy) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
+    function spar_member_get_energy(member, capacity, energy) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: energy(4)
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: energy(*)
       integer(c_int) :: status
     end function spar_member_get_energy
 
-    function spar_member_get_work(member, work) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
+    function spar_member_get_work(member, capacity, work) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: work(3)
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: work(*)
       integer(c_int) :: status
     end function spar_member_get_work
 
@@ -614,10 +631,11 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_push_forces_f32
 
-    function spar_fluid_get_audit(fluid, audit) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
+    function spar_fluid_get_audit(fluid, capacity, audit) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
-      real(c_double), intent(inout), optional :: audit(8)
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: audit(*)
       integer(c_int) :: status
     end function spar_fluid_get_audit
 
@@ -663,7 +681,8 @@ module spar_c
       integer(c_int) :: status
     end function spar_step
 
-    function spar_session_try(session, dt, steps, before, solve, context, compare, report) bind(c) result(status)
+    function spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report) bind(c) &
+        result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: dt
@@ -671,6 +690,7 @@ module spar_c
       type(c_funptr), value :: before, solve
       type(c_ptr), value :: context
       integer(c_int), value :: compare
+      integer(c_int64_t), value :: capacity
       real(c_double), intent(inout), optional :: report(*)
       integer(c_int) :: status
     end function spar_session_try
@@ -681,24 +701,28 @@ module spar_c
       type(c_ptr) :: text
     end function spar_effect_name
 
-    function spar_session_report_effects(session, dt, steps, before, solve, context, table) bind(c) result(status)
+    function spar_session_report_effects(session, dt, steps, before, solve, context, rows, columns, table) bind(c) &
+        result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: dt
       integer(c_int64_t), value :: steps
       type(c_funptr), value :: before, solve
       type(c_ptr), value :: context
+      integer(c_int64_t), value :: rows, columns
       real(c_double), intent(inout), optional :: table(*)
       integer(c_int) :: status
     end function spar_session_report_effects
 
-    function spar_session_advise(session, tolerance, dt, steps, before, solve, context, advice) bind(c) result(status)
+    function spar_session_advise(session, tolerance, dt, steps, before, solve, context, capacity, advice) bind(c) &
+        result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: tolerance, dt
       integer(c_int64_t), value :: steps
       type(c_funptr), value :: before, solve
       type(c_ptr), value :: context
+      integer(c_int64_t), value :: capacity
       real(c_double), intent(inout), optional :: advice(*)
       integer(c_int) :: status
     end function spar_session_advise
@@ -858,13 +882,15 @@ module spar_c
       type(c_ptr) :: text
     end function spar_aero_effect_name
 
-    function spar_aero_report_effects(aero, session, dt, steps, before, solve, context, table) bind(c) result(status)
+    function spar_aero_report_effects(aero, session, dt, steps, before, solve, context, rows, columns, table) bind(c) &
+        result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: aero, session
       real(c_double), value :: dt
       integer(c_int64_t), value :: steps
       type(c_funptr), value :: before, solve
       type(c_ptr), value :: context
+      integer(c_int64_t), value :: rows, columns
       real(c_double), intent(inout), optional :: table(*)
       integer(c_int) :: status
     end function spar_aero_report_effects

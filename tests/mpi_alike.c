@@ -74,14 +74,20 @@ static void trials(void **state) {
     double r[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     create(&c);
     spar_session *s = c.session;
-    differs(&c, spar_session_try(s, dt, last ? 16 : 8, NULL, solve, &c, 0, r), "steps (here ");
-    differs(&c, spar_session_try(s, last ? 2 * dt : dt, 8, NULL, solve, &c, 0, r), "dt (here ");
-    differs(&c, spar_session_try(s, dt, 8, NULL, last ? NULL : solve, &c, 0, r), "solve (here ");
-    differs(&c, spar_session_try(s, dt, 8, last ? NULL : before, solve, &c, 0, r), "before (here ");
-    OK(s, spar_session_try(s, dt, 8, NULL, solve, &c, 0, r));
-    differs(&c, spar_session_try(s, dt, 8, NULL, solve, &c, last, r), "compare (here ");
-    differs(&c, spar_session_report_effects(s, dt, last ? 16 : 8, NULL, solve, &c, table), "steps (here ");
-    differs(&c, spar_session_report_effects(s, dt, 8, NULL, last ? NULL : solve, &c, table), "solve (here ");
+    differs(&c, spar_session_try(s, dt, last ? 16 : 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r), "steps (here ");
+    differs(&c, spar_session_try(s, last ? 2 * dt : dt, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r), "dt (here ");
+    differs(&c, spar_session_try(s, dt, 8, NULL, last ? NULL : solve, &c, 0, SPAR_TRY_COUNT, r), "solve (here ");
+    differs(&c, spar_session_try(s, dt, 8, last ? NULL : before, solve, &c, 0, SPAR_TRY_COUNT, r), "before (here ");
+    OK(s, spar_session_try(s, dt, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r));
+    differs(&c, spar_session_try(s, dt, 8, NULL, solve, &c, last, SPAR_TRY_COUNT, r), "compare (here ");
+    differs(
+        &c,
+        spar_session_report_effects(s, dt, last ? 16 : 8, NULL, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
+        "steps (here ");
+    differs(&c,
+            spar_session_report_effects(s, dt, 8, NULL, last ? NULL : solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                        table[0]),
+            "solve (here ");
     goes_on(&c);
 }
 
@@ -97,14 +103,17 @@ static void advice(void **state) {
         spar_session *s = c.session;
         if (k < 6) {
             OK(s, spar_session_set_option(s, option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, a), option[k][0]);
+            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a), option[k][0]);
         } else if (k == 6) {
-            differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, NULL, solve, &c, a), "tolerance (here ");
+            differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+                    "tolerance (here ");
         } else if (k == 7) {
-            differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, NULL, solve, &c, a), "steps (here ");
+            differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+                    "steps (here ");
         } else {
             OK(s, spar_session_set_coupling(s, last ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 50));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, a), "scheme of spar_session_set_coupling");
+            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+                    "scheme of spar_session_set_coupling");
         }
         spar_session_destroy(&c.session);
     }
@@ -117,8 +126,13 @@ static void aero(void **state) {
     double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     create(&c);
     OK(c.session, spar_aero_create(0, NULL, &none));
-    differs(&c, spar_aero_report_effects(none, c.session, dt, last ? 16 : 8, NULL, solve, &c, table), "steps (here ");
-    differs(&c, spar_aero_report_effects(none, c.session, dt, 8, last ? NULL : before, solve, &c, table),
+    differs(&c,
+            spar_aero_report_effects(none, c.session, dt, last ? 16 : 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                     SPAR_COLUMN_COUNT, table[0]),
+            "steps (here ");
+    differs(&c,
+            spar_aero_report_effects(none, c.session, dt, 8, last ? NULL : before, solve, &c, SPAR_AERO_ROW_COUNT,
+                                     SPAR_COLUMN_COUNT, table[0]),
             "before (here ");
     spar_aero_destroy(&none);
     goes_on(&c);
@@ -220,9 +234,10 @@ static void calls_from_callbacks(void **state) {
     create(&c);
     differs(&c, spar_step(c.session, dt, calls_the_others, &c, NULL), "another call");
     MPI_Barrier(MPI_COMM_WORLD); /* nobody is left behind in the step */
-    differs(&c, spar_session_try(c.session, dt, 8, NULL, calls_the_others, &c, 0, report), "");
+    differs(&c, spar_session_try(c.session, dt, 8, NULL, calls_the_others, &c, 0, SPAR_TRY_COUNT, report), "");
     MPI_Barrier(MPI_COMM_WORLD);
-    differs(&c, spar_session_try(c.session, dt, 8, calls_them_before, solve, &c, 0, report), "another call");
+    differs(&c, spar_session_try(c.session, dt, 8, calls_them_before, solve, &c, 0, SPAR_TRY_COUNT, report),
+            "another call");
     MPI_Barrier(MPI_COMM_WORLD);
     goes_on(&c);
 }

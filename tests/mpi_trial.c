@@ -139,9 +139,11 @@ static void same_table(void **state) {
     go(&all, 3);
     go(&alone, 3);
     state_of(&all, held);
-    OK(all.session, spar_session_report_effects(all.session, dt, STEPS, before, solve, &all, table));
+    OK(all.session, spar_session_report_effects(all.session, dt, STEPS, before, solve, &all, SPAR_ROW_COUNT,
+                                                SPAR_COLUMN_COUNT, table[0]));
     same_bits(held, &all);
-    OK(alone.session, spar_session_report_effects(alone.session, dt, STEPS, before, solve, &alone, serial));
+    OK(alone.session, spar_session_report_effects(alone.session, dt, STEPS, before, solve, &alone, SPAR_ROW_COUNT,
+                                                  SPAR_COLUMN_COUNT, serial[0]));
     same_on_all(table[0], SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
         assert_true(table[r][SPAR_COLUMN_IN_FORCE] == serial[r][SPAR_COLUMN_IN_FORCE]);
@@ -168,7 +170,7 @@ static void same_advice(void **state) {
     go(&c, 3);
     go(&untried, 3);
     state_of(&c, held);
-    OK(c.session, spar_session_advise(c.session, 0.3, dt, STEPS, before, solve, &c, advice));
+    OK(c.session, spar_session_advise(c.session, 0.3, dt, STEPS, before, solve, &c, SPAR_ADVICE_COUNT, advice));
     same_bits(held, &c);
     OK(c.session, spar_member_get_advice(c.beam, &fidelity, &modes, &nodes, &points));
     advice[SPAR_ADVICE_COUNT] = fidelity;
@@ -198,15 +200,17 @@ static void failing_callbacks(void **state) {
         for (int when = 1; when <= 9; when += 8) {
             c.calls = 0;
             c.bad_call = rank == bad ? when : 0;
-            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, report), SPAR_ERR_USER, bad, c.session, "77");
+            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_USER, bad,
+                 c.session, "77");
             same_bits(held, &c);
             c.bad_call = c.begins = 0;
             c.bad_beginning = rank == bad ? 1 + when / 2 : 0;
-            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, report), SPAR_ERR_USER, bad, c.session, "78");
+            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_USER, bad,
+                 c.session, "78");
             same_bits(held, &c);
             c.bad_beginning = 0;
         }
-        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, report));
+        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report));
         go(&c, 1);
         spar_session_destroy(&c.session);
     }
@@ -224,15 +228,17 @@ static void failing_in_a_table(void **state) {
         state_of(&c, held);
         c.calls = 0;
         c.bad_call = rank == bad ? 4 : 0;
-        told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, table), SPAR_ERR_USER, bad, c.session,
-             "77");
+        told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                         table[0]),
+             SPAR_ERR_USER, bad, c.session, "77");
         same_bits(held, &c);
         c.bad_call = 0;
-        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, report));
+        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report));
         c.calls = 0;
         c.bad_call = rank == bad ? (int)report[SPAR_TRY_SOLUTIONS] + 3 : 0;
         c.good_call = c.bad_call + 1;
-        OK(c.session, spar_session_report_effects(c.session, dt, 8, before, solve, &c, table));
+        OK(c.session, spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT,
+                                                  SPAR_COLUMN_COUNT, table[0]));
         assert_true(table[SPAR_ROW_INERTIA][SPAR_COLUMN_MOTION] == -1);
         assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_MOTION] > 0);
         same_on_all(table[0], SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
@@ -250,14 +256,14 @@ static void failing_in_advice(void **state) {
         create(&c, rank, size);
         state_of(&c, held);
         c.bad_call = rank == bad ? 1 : 0;
-        int status = spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, advice);
+        int status = spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice);
         assert_true(status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_PEER);
         assert_non_null(strstr(spar_session_message(c.session), "77"));
         same_bits(held, &c);
         c.calls = 0;
         c.bad_call = rank == bad ? 300 : 0;
         c.good_call = 310;
-        OK(c.session, spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, advice));
+        OK(c.session, spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice));
         same_on_all(advice, SPAR_ADVICE_COUNT);
         same_bits(held, &c);
         spar_session_destroy(&c.session);
@@ -272,12 +278,15 @@ static void bad_arguments(void **state) {
     int bad = size - 1, here = rank == bad;
     create(&c, rank, size);
     spar_session *s = c.session;
-    told(spar_session_try(s, here ? NAN : dt, 8, before, solve, &c, 0, report), SPAR_ERR_ARGUMENT, bad, s, "dt");
-    told(spar_session_try(s, dt, 8, before, solve, &c, 0, here ? NULL : report), SPAR_ERR_ARGUMENT, bad, s, "report");
-    told(spar_session_report_effects(s, dt, here ? 7 : 8, before, solve, &c, table), SPAR_ERR_ARGUMENT, bad, s,
-         "multiple of 8");
-    told(spar_session_advise(s, here ? 2 : 0.05, dt, 8, before, solve, &c, advice), SPAR_ERR_ARGUMENT, bad, s,
-         "tolerance");
+    told(spar_session_try(s, here ? NAN : dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT, bad,
+         s, "dt");
+    told(spar_session_try(s, dt, 8, before, solve, &c, 0, here ? -1 : SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT, bad,
+         s, "capacity");
+    told(spar_session_report_effects(s, dt, here ? 7 : 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                     table[0]),
+         SPAR_ERR_ARGUMENT, bad, s, "multiple of 8");
+    told(spar_session_advise(s, here ? 2 : 0.05, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice),
+         SPAR_ERR_ARGUMENT, bad, s, "tolerance");
     go(&c, 2);
     spar_session_destroy(&c.session);
 }

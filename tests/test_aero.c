@@ -197,7 +197,7 @@ static void test_reader(void **state) {
         begin(&s, 8.0, 9.16);
         build(&s, elements, elements > 0 ? 10 : 1);
         for (int b = 0; b < BLADES; b++) {
-            OK(spar_member_get_energy(s.blade[b], energy));
+            OK(spar_member_get_energy(s.blade[b], 4, energy));
             double ratio = energy[0] / (0.5 * inertia * s.speed * s.speed);
             assert_true(fabs(ratio - 1.0) < (elements > 0 ? 5e-3 : 2e-3));
         }
@@ -446,7 +446,7 @@ static void test_all_or_none(void **state) {
     OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(spar_aero_get_rotor(s.aero, thrust, NULL, NULL));
     for (int k = 0; k < 3; k++) {
-        OK(spar_fluid_get_audit(s.fluid[k], before[k]));
+        OK(spar_fluid_get_audit(s.fluid[k], 8, before[k]));
     }
     scene other; /* what is wrong with a blade of another session is told in that of blade 0 */
     spar_aero *mixed = NULL;
@@ -460,15 +460,15 @@ static void test_all_or_none(void **state) {
     REFUSED(SPAR_ERR_NUMERIC, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), "blade 2, section ");
     s.wind[2 * N + 5][1] = 0;
     for (int k = 0; k < 3; k++) {
-        OK(spar_fluid_get_audit(s.fluid[k], after[k]));
+        OK(spar_fluid_get_audit(s.fluid[k], 8, after[k]));
         assert_memory_equal(before[k], after[k], sizeof before[k]);
     }
     s.wind[0][0] -= 1;
     OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(spar_step(s.session, 0.05, NULL, NULL, NULL));
-    OK(spar_fluid_get_audit(s.fluid[0], before[0]));
+    OK(spar_fluid_get_audit(s.fluid[0], 8, before[0]));
     REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 2, s.wind[0], 1.0), "spar_aero_solve: fluid");
-    OK(spar_fluid_get_audit(s.fluid[0], after[0]));
+    OK(spar_fluid_get_audit(s.fluid[0], 8, after[0]));
     assert_memory_equal(before[0], after[0], sizeof before[0]);
     OK(spar_aero_get_rotor(s.aero, thrust + 1, NULL, NULL));
     assert_true(thrust[0] == thrust[1]);
@@ -537,12 +537,12 @@ static void test_wing(void **state) {
     /* What reaches the member: the moment of the forces about the root, about y, and 4 m of pitching moment about x;
        with the effect off the first alone. */
     double audit[8], bending = (2.0 + 4.0 * 1.5) * f;
-    OK(spar_fluid_get_audit(fluid, audit));
+    OK(spar_fluid_get_audit(fluid, 8, audit));
     assert_true(fabs(audit[1] - hypot(bending, 4.0 * m)) < 1e-11 * f);
     OK(spar_aero_set_effects(aero, SPAR_AERO_DRAG));
     OK(spar_aero_solve(aero, 1.2, wind[0], 1.0));
     OK(spar_aero_get_loads(aero, NULL, force[0], moment[0]));
-    OK(spar_fluid_get_audit(fluid, audit));
+    OK(spar_fluid_get_audit(fluid, 8, audit));
     assert_true(fabs(audit[1] - bending) < 1e-11 * f);
     for (int i = 0; i < 3; i++) {
         assert_true(fabs(force[i][2] + share[i] * f) < 1e-12 * f);

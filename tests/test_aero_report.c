@@ -64,7 +64,8 @@ static void test_drag(void **state) {
     build(&c, NULL);
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     OK(c.s, spar_aero_get_loads(c.aero, NULL, before[0], NULL));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, dt, 16, NULL, solve, &c, table));
+    OK(c.s, spar_aero_report_effects(c.aero, c.s, dt, 16, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                     table[0]));
     const double *drag = table[SPAR_AERO_ROW_DRAG];
     assert_true(drag[SPAR_COLUMN_IN_FORCE] == 1);
     NEAR(drag[SPAR_COLUMN_SIZE], cd / hypot(cl, cd), 1e-3);
@@ -92,7 +93,8 @@ static void test_moment(void **state) {
     const double cm[2] = {-0.1, -0.1};
     double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     build(&c, cm);
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, table));
+    OK(c.s,
+       spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     assert_true(table[SPAR_AERO_ROW_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
     /* load: force q c L hypot(cl, cd) and half of that as moment by the length; cm q c^2 L by the length */
     NEAR(table[SPAR_AERO_ROW_MOMENT][SPAR_COLUMN_SIZE], 0.1 * chord / 2 / (hypot(cl, cd) * hypot(1, 0.5)), 1e-4);
@@ -109,7 +111,8 @@ static void test_failing_solve(void **state) {
     for (int fails_at = 4; fails_at <= 12; fails_at += 8) {
         c.calls = 0;
         c.fails_at = fails_at;
-        int status = spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, table);
+        int status = spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                              SPAR_COLUMN_COUNT, table[0]);
         if (fails_at == 4) {
             assert_int_equal(status, SPAR_ERR_USER);
             assert_true(table[0][0] == 5);
@@ -172,7 +175,8 @@ static void test_rotor(void **state) {
     nrel5mw_root(&data, &rotor, 0, 0, root, q);
     int effects = 2 * SPAR_AERO_MOMENT - 1;
     OK(c.s, spar_aero_set_effects(c.aero, effects));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table));
+    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                     table[0]));
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     sum_loads(&c, root, data.length, all);
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
@@ -188,13 +192,15 @@ static void test_rotor(void **state) {
         NEAR(table[r][SPAR_COLUMN_SIZE], change / size, 0.02 * change / size);
     }
     OK(c.s, spar_aero_set_effects(c.aero, effects & ~SPAR_AERO_INDUCTION));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table));
+    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                     table[0]));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
         assert_true(table[r][SPAR_COLUMN_IN_FORCE] == (r >= SPAR_AERO_ROW_DRAG));
     }
     OK(c.s, spar_aero_set_effects(c.aero, effects));
     OK(c.s, spar_aero_set_rotor(c.aero, rotor.hub, rotor.axis, 0, 63));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table));
+    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                     table[0]));
     assert_true(table[SPAR_AERO_ROW_HUB_LOSS][SPAR_COLUMN_IN_FORCE] == 0);
     assert_true(table[SPAR_AERO_ROW_TIP_LOSS][SPAR_COLUMN_IN_FORCE] == 1);
     release(&c);
@@ -207,18 +213,33 @@ static void test_bad_input(void **state) {
     double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     build(&c, NULL);
     build(&other, NULL);
-    assert_int_equal(spar_aero_report_effects(NULL, c.s, dt, 8, NULL, solve, &c, table), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, NULL, dt, 8, NULL, solve, &c, table), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, other.s, dt, 8, NULL, solve, &c, table), SPAR_ERR_ARGUMENT);
+    assert_int_equal(
+        spar_aero_report_effects(NULL, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
+        SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_report_effects(c.aero, NULL, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                              SPAR_COLUMN_COUNT, table[0]),
+                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_report_effects(c.aero, other.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                              SPAR_COLUMN_COUNT, table[0]),
+                     SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(spar_session_message(other.s), "another session"));
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, NULL, &c, table), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, NAN, 8, NULL, solve, &c, table), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 12, NULL, solve, &c, table), SPAR_ERR_ARGUMENT);
+    assert_int_equal(
+        spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, NULL, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
+        SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, -1, 1, table[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_report_effects(c.aero, c.s, NAN, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                              SPAR_COLUMN_COUNT, table[0]),
+                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 12, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
+                                              SPAR_COLUMN_COUNT, table[0]),
+                     SPAR_ERR_ARGUMENT);
     OK(c.s, spar_step_begin(c.s, dt));
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, table), SPAR_ERR_STATE);
+    assert_int_equal(
+        spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
+        SPAR_ERR_STATE);
     OK(c.s, spar_step_reject(c.s));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, table));
+    OK(c.s,
+       spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     release(&c);
     release(&other);
 }

@@ -106,12 +106,14 @@ static void report(void **state) {
     pistons_create(&p, 1, &r);
     p.b[0] = 5;
     OK(p.session, spar_session_set_predictor(p.session, 0));
-    OK(p.session, spar_session_get_coupling(p.session, &iterations, residual, size, rep));
+    OK(p.session, spar_session_get_iterations(p.session, &iterations, 100, residual, size));
     assert_int_equal(iterations, 0);
     OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 100));
     OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
-    OK(p.session, spar_session_get_coupling(p.session, &iterations, residual, size, rep));
+    OK(p.session, spar_session_get_iterations(p.session, &iterations, 100, residual, size));
+    OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
     assert_int_equal(iterations, evaluations);
+    assert_true(residual[iterations] == 0 && size[iterations] == 0);
     for (int i = 0; i < iterations; i++) {
         NEAR(residual[i], 5 * pow(0.5, i), 1e-12);
     }
@@ -121,10 +123,12 @@ static void report(void **state) {
     NEAR(rep[SPAR_REPORT_CONTRACTION], 0.5, 1e-6);
     NEAR(rep[SPAR_REPORT_ADDED_MASS], 0.5, 1e-6);
     NEAR(rep[SPAR_REPORT_ERROR], 1, 1e-12); /* predicted: no load at all */
-    OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, NULL));
+    OK(p.session, spar_session_get_iterations(p.session, NULL, 0, NULL, NULL));
+    OK(p.session, spar_session_get_report(p.session, 1, NULL));
     /* the second step predicts what it finds: one iteration, and a longer step is advised */
     OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
-    OK(p.session, spar_session_get_coupling(p.session, &iterations, NULL, NULL, rep));
+    OK(p.session, spar_session_get_iterations(p.session, &iterations, 0, NULL, NULL));
+    OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
     assert_int_equal(iterations, 1);
     assert_true(rep[SPAR_REPORT_ERROR] < 1e-8);
     NEAR(rep[SPAR_REPORT_ADVISED_DT], 0.2, 1e-15);
@@ -149,7 +153,7 @@ static void unconverged(void **state) {
     OK(p.session, spar_session_set_option(p.session, "coupling.unconverged", "accept"));
     OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
     OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
-    OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, rep));
+    OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
     assert_true(rep[SPAR_REPORT_UNCONVERGED] == 2);
     /* without a limit in sight the loads overflow: a status, not an endless loop or a false success */
     OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 2000));
@@ -292,7 +296,7 @@ static void predictor_is_exact(void **state) {
         polynomial(p.session, 0, 0, 0, &p);
         for (int i = 0; i < 5; i++) {
             OK(p.session, spar_step(p.session, dts[i], polynomial, &p, NULL));
-            OK(p.session, spar_session_get_coupling(p.session, NULL, NULL, NULL, rep));
+            OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
             assert_true(i < order ? rep[SPAR_REPORT_ERROR] > 0.01 : rep[SPAR_REPORT_ERROR] < 1e-13);
         }
         pistons_destroy(&p);

@@ -147,7 +147,7 @@ static double step_loaded(double dt, double T, double q[7]) {
     OK(s, spar_session_set_integrator(s, 1, 1));
     scene_run(s, dt, (int64_t)(T / dt + 0.5));
     scene_tip(b, q);
-    OK(s, spar_member_get_energy(b, e));
+    OK(s, spar_member_get_energy(b, 4, e));
     spar_session_destroy(&s);
     return e[0] + e[1] - 150 * q[2];
 }
@@ -173,9 +173,9 @@ static void test_free_beam_keeps_momentum_and_energy(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_initial_velocity(b, x0, v0, w));
     OK(s, spar_session_set_integrator(s, 1, 1));
-    OK(s, spar_member_get_energy(b, e0));
+    OK(s, spar_member_get_energy(b, 4, e0));
     scene_run(s, 1e-3, 6000);
-    OK(s, spar_member_get_energy(b, e1));
+    OK(s, spar_member_get_energy(b, 4, e1));
     OK(s, spar_member_get_motion(b, q, v, NULL));
     NEAR(e1[0] + e1[1], e0[0] + e0[1], 2e-3 * e0[0]); /* second order, no drift */
     for (int i = 0; i < 8; i++) {
@@ -220,7 +220,7 @@ static void turning_scene(const double p[4], double q[7], double v[6], double r[
     memcpy(q, all_q + 49, 7 * sizeof *q);
     memcpy(v, all_v + 42, 6 * sizeof *v);
     OK(s, spar_member_get_reaction(b, r));
-    OK(s, spar_member_get_energy(b, e));
+    OK(s, spar_member_get_energy(b, 4, e));
     spar_session_destroy(&s);
 }
 
@@ -302,7 +302,7 @@ static double manoeuvre(int n, int uneven, int substeps, double q[7]) {
     }
     scene_tip(b, q);
     double e[4];
-    OK(s, spar_member_get_energy(b, e));
+    OK(s, spar_member_get_energy(b, 4, e));
     spar_session_destroy(&s);
     return e[1];
 }

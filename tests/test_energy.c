@@ -33,7 +33,7 @@ static void test_static(void **state) {
         work += k < N ? -w * along : along;
     }
     gsl_integration_glfixed_table_free(gauss);
-    OK(s, spar_member_get_energy(b, e));
+    OK(s, spar_member_get_energy(b, 4, e));
     assert_true(e[1] > 10);
     NEAR(work, e[1], 1e-10 * e[1]);
     spar_session_destroy(&s);
@@ -64,9 +64,9 @@ static double defect(int n, double T) {
     OK(s, spar_member_set_load(b, P / 2, SPAR_LOAD_FOLLOWER, follower));
     OK(s, spar_beam_set_line_load(b, SPAR_LOAD_FOLLOWER, 2, eta, line));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_member_get_work(b, work));
+    OK(s, spar_member_get_work(b, 3, work));
     assert_true(work[0] == 0 && work[1] == 0 && work[2] == 0);
-    OK(s, spar_member_get_energy(b, e[0]));
+    OK(s, spar_member_get_energy(b, 4, e[0]));
     double dt = T / n;
     for (int i = 1; i <= n; i++) {
         double t = dt * i, c = t * t * t, c1 = 3 * t * t, c2 = 6 * t, psi[3] = {0, 0.2 * c, 0.4 * c},
@@ -76,8 +76,8 @@ static double defect(int n, double T) {
         OK(s, spar_member_drive_root(b, q, v, a));
         scene_run(s, dt, 1);
     }
-    OK(s, spar_member_get_energy(b, e[1]));
-    OK(s, spar_member_get_work(b, work));
+    OK(s, spar_member_get_energy(b, 4, e[1]));
+    OK(s, spar_member_get_work(b, 3, work));
     double sum = -work[0] - work[1] - work[2];
     for (int i = 0; i < 4; i++) {
         sum += e[1][i] - e[0][i];
@@ -105,16 +105,16 @@ static void test_dead_force(void **state) {
     OK(s, spar_session_set_integrator(s, 1, 3));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, load));
-    OK(s, spar_member_get_work(b, work));
+    OK(s, spar_member_get_work(b, 3, work));
     for (int i = 0; i < 5; i++) {
         scene_run(s, 0.01, 10);
-        OK(s, spar_member_get_work(b, work));
+        OK(s, spar_member_get_work(b, 3, work));
         scene_tip(b, q);
         NEAR(work[0], 150 * q[2], 1e-10 * 300);
         assert_true(work[1] == 0 && work[2] == 0);
     }
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_member_get_work(b, work));
+    OK(s, spar_member_get_work(b, 3, work));
     assert_true(work[0] == 0);
     spar_session_destroy(&s);
 }
@@ -125,12 +125,12 @@ static void test_refusals(void **state) {
     scene_diagonal(K, 1, 1, 1, 1, 1, 1);
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, 3, 1, K, NULL);
-    assert_int_equal(spar_member_get_work(NULL, work), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_get_work(b, work), SPAR_ERR_STATE);
+    assert_int_equal(spar_member_get_work(NULL, 3, work), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_work(b, 3, work), SPAR_ERR_STATE);
     OK(s, spar_member_commit(b));
-    assert_int_equal(spar_member_get_work(b, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_work(b, -1, work), SPAR_ERR_ARGUMENT);
     OK(s, spar_step_begin(s, 0.1));
-    assert_int_equal(spar_member_get_work(b, work), SPAR_ERR_STATE);
+    assert_int_equal(spar_member_get_work(b, 3, work), SPAR_ERR_STATE);
     spar_session_destroy(&s);
 }
 

@@ -88,7 +88,7 @@ static void test_traps(void **state) {
     OK(s, spar_member_get_loads(b, K)); /* room enough */
     (void)spar_member_solve_modes(b, 2, frequency, NULL);
     (void)spar_member_get_reaction(b, found);
-    (void)spar_member_get_energy(b, found);
+    (void)spar_member_get_energy(b, 4, found);
     assert_int_equal(fegetexcept(), TRAPS);
     assert_int_equal(h.seen, 1);
     assert_int_equal(logged, 1);

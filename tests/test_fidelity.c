@@ -187,8 +187,8 @@ static void test_modal_falls(void **state) {
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 12));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_initial_velocity(b, x0, v, spin));
-    OK(s, spar_member_get_work(b, work));
-    OK(s, spar_member_get_energy(b, e[0]));
+    OK(s, spar_member_get_work(b, 3, work));
+    OK(s, spar_member_get_energy(b, 4, e[0]));
     assert_int_equal(spar_member_solve_static(b, 1), SPAR_ERR_STATE);
     scene_run(s, 1e-2, 50);
     OK(s, spar_member_get_motion(b, q[0], NULL, NULL));
@@ -200,7 +200,7 @@ static void test_modal_falls(void **state) {
         NEAR(q[i][2], v[2] * t + g[2] * t * t / 2 - spin[1] * t * (place[3 * i] - 5), 1e-11);
         NEAR(q[i][5], sin(0.5 * spin[1] * t), 1e-11);
     }
-    OK(s, spar_member_get_energy(b, e[1]));
+    OK(s, spar_member_get_energy(b, 4, e[1]));
     NEAR(e[1][1], 0, 1e-15);
     NEAR(e[1][0] + e[1][2], e[0][0], 1e-12 * e[0][0]);
     spar_session_destroy(&s);
@@ -254,12 +254,12 @@ static void test_rigid_is_the_stiff_limit(void **state) {
             OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
-            OK(s, spar_member_get_work(b, work[i]));
+            OK(s, spar_member_get_work(b, 3, work[i]));
             scene_run(s, 1e-3, 500);
             scene_tip(b, q[i]);
             OK(s, spar_member_get_reaction(b, r[i]));
-            OK(s, spar_member_get_energy(b, e[i]));
-            OK(s, spar_member_get_work(b, work[i]));
+            OK(s, spar_member_get_energy(b, 4, e[i]));
+            OK(s, spar_member_get_work(b, 3, work[i]));
             spar_session_destroy(&s);
         }
         assert_true(fabs(q[0][2]) > 0.5); /* it has swung */
@@ -400,9 +400,9 @@ static void test_energy(void **state) {
         OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, none));
-        OK(s, spar_member_get_energy(b, e[0]));
+        OK(s, spar_member_get_energy(b, 4, e[0]));
         scene_run(s, 1e-3, 400);
-        OK(s, spar_member_get_energy(b, e[1]));
+        OK(s, spar_member_get_energy(b, 4, e[1]));
         assert_true(e[1][3] > 0.01 * e[0][1]);
         NEAR(e[1][0] + e[1][1] + e[1][3], e[0][1], 2e-3 * e[0][1]);
         spar_session_destroy(&s);

@@ -228,7 +228,7 @@ static void bodies_carry_their_nodes(void **state) {
         const double force[2][3] = {{0, 0, 2}, {1, 1, 1}};
         double load[6], audit[8];
         OK(spar_fluid_push_forces(f, force[0], NULL));
-        OK(spar_fluid_get_audit(f, audit));
+        OK(spar_fluid_get_audit(f, 8, audit));
         CLOSE(audit[0], sqrt(1 + 1 + 9), 1e-14);
         assert_true(audit[3] < 1e-15 && audit[4] < 1e-15 && audit[5] < 1e-15 && audit[7] == 2);
         OK(spar_step_begin(s, 0.1));
@@ -659,7 +659,7 @@ static void loads_of_fluids_add(void **state) {
                 }
             }
             OK(spar_fluid_push_forces(f[k], force[k][0], moment[k][0]));
-            OK(spar_fluid_get_audit(f[k], audit));
+            OK(spar_fluid_get_audit(f[k], 8, audit));
             assert_true(audit[0] > 0 && audit[1] > 0 && audit[2] != 0);
             assert_true(audit[3] < 1e-13 && audit[4] < 1e-13 && audit[5] < 1e-13);
             assert_true(audit[6] > 10 && audit[6] < 20 && audit[7] == N);
@@ -736,7 +736,7 @@ static void bad_calls_are_refused(void **state) {
     OK(spar_fluid_map(f));
     OK(spar_fluid_pull_motion(f, 1, NULL, NULL));
     OK(spar_fluid_push_forces(f, force, NULL));
-    OK(spar_fluid_get_audit(f, before));
+    OK(spar_fluid_get_audit(f, 8, before));
     assert_int_equal(spar_fluid_push_forces(f, NULL, NULL), SPAR_ERR_ARGUMENT);
     force[1] = INFINITY;
     assert_int_equal(spar_fluid_push_forces(f, force, NULL), SPAR_ERR_ARGUMENT);
@@ -744,7 +744,7 @@ static void bad_calls_are_refused(void **state) {
     force[1] = 2;
     x[0] = NAN, x[1] = x[2] = 0;
     assert_int_equal(spar_fluid_push_forces(f, force, x), SPAR_ERR_ARGUMENT);
-    OK(spar_fluid_get_audit(f, after));
+    OK(spar_fluid_get_audit(f, 8, after));
     assert_memory_equal(before, after, sizeof before);
     OK(spar_fluid_push_forces(f, force, NULL));
     /* a member that is not committed */

@@ -186,7 +186,7 @@ static void test_use_before_commit_and_loads(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, 4, 10, K, M);
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_motion(b, q, NULL, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_energy(b, e));
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_energy(b, 4, e));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_set_load(b, 0, SPAR_LOAD_DEAD, load));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_solve_static(b, 1));
     REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_solve_modes(b, 1, f, NULL));

@@ -59,7 +59,7 @@ static void test_sections_are_linear(void **state) {
                 work += 0.5 * w * 5 * strain[c] * force[c];
             }
         }
-        OK(s, spar_member_get_energy(b, energy));
+        OK(s, spar_member_get_energy(b, 4, energy));
         NEAR(work, energy[1], 1e-11 * energy[1]);
         spar_session_destroy(&s);
     }
@@ -123,8 +123,8 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
             OK(s, spar_member_drive_root(b, q, rate, accel));
         }
         scene_run(s, dt, k > 0);
-        OK(s, spar_member_get_work(b, now.work));
-        OK(s, spar_member_get_energy(b, now.energy));
+        OK(s, spar_member_get_work(b, 3, now.work));
+        OK(s, spar_member_get_energy(b, 4, now.energy));
         double balance = -now.work[0] - now.work[1] - now.work[2];
         for (int i = 0; i < 4; i++) {
             balance += now.energy[i];

@@ -75,11 +75,11 @@ static void test_decay(void **state) {
         for (int i = 0; i < P; i++) {
             OK(s, spar_member_set_load(b, i, SPAR_LOAD_DEAD, (double[6]){0}));
         }
-        OK(s, spar_member_get_energy(b, e));
+        OK(s, spar_member_get_energy(b, 4, e));
         begin = e[1];
         double T = 3 / f[k];
         scene_run(s, T / 600, 600);
-        OK(s, spar_member_get_energy(b, e));
+        OK(s, spar_member_get_energy(b, 4, e));
         NEAR(log(begin / (e[0] + e[1])) / (2 * two_pi * f[k] * T), ratio[k], 0.03 * ratio[k]);
         NEAR((e[0] + e[1] + e[3]) / begin, 1, 1e-3);
         spar_session_destroy(&s);

@@ -98,10 +98,10 @@ static void look(const run *r, double *out) {
     OK(r->session, spar_member_get_loads(r->blade, out + 152));
     OK(r->session, spar_member_get_motion(r->piston, out + 200, out + 207, out + 213));
     OK(r->session, spar_member_get_reaction(r->blade, out + 219));
-    OK(r->session, spar_member_get_energy(r->blade, out + 225));
+    OK(r->session, spar_member_get_energy(r->blade, 4, out + 225));
     OK(r->session, spar_member_get_motion(r->point, out + 229, NULL, NULL));
     OK(r->session, spar_session_get_time(r->session, out + 236, NULL, NULL));
-    OK(r->session, spar_session_get_coupling(r->session, NULL, NULL, NULL, out + 237));
+    OK(r->session, spar_session_get_report(r->session, SPAR_REPORT_COUNT, out + 237));
 }
 
 static double dt_of(int64_t step) {

@@ -114,11 +114,13 @@ static void test_goes_back_to_the_bit(void **state) {
                 char *file[2];
                 OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
                 file[0] = contents("trial_bits.spar", &size[0]);
-                OK(c.s, spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, report));
-                OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
-                OK(c.s, spar_session_advise(c.s, 0.05, 0.01, 16, keep, press, &c, advice));
+                OK(c.s, spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report));
+                OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                                    table[0]));
+                OK(c.s, spar_session_advise(c.s, 0.05, 0.01, 16, keep, press, &c, SPAR_ADVICE_COUNT, advice));
                 c.fails = 7;
-                assert_int_equal(spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, report), SPAR_ERR_USER);
+                assert_int_equal(spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report),
+                                 SPAR_ERR_USER);
                 c.fails = 0;
                 OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
                 file[1] = contents("trial_bits.spar", &size[1]);
@@ -144,13 +146,13 @@ static void test_errors_of_dt(void **state) {
     build(&c, 0);
     OK(c.s, spar_session_set_gravity(c.s, none));
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-9, 50));
-    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 0, report));
+    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 0, SPAR_TRY_COUNT, report));
     assert_true(report[SPAR_TRY_MOTION] == 0);
     assert_true(report[SPAR_TRY_SOLUTIONS] >= 4096);
-    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 1, report));
+    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 1, SPAR_TRY_COUNT, report));
     assert_true(report[SPAR_TRY_MOTION] == 0 && report[SPAR_TRY_REACTION] == 0 && report[SPAR_TRY_LOAD] == 0);
     for (int k = 0; k < 2; k++) {
-        OK(c.s, spar_session_try(c.s, 0.32 / (128 << k), 128 << k, keep, press, &c, 1, report));
+        OK(c.s, spar_session_try(c.s, 0.32 / (128 << k), 128 << k, keep, press, &c, 1, SPAR_TRY_COUNT, report));
         error[k] = report[SPAR_TRY_MOTION];
     }
     NEAR(log2(error[0] / error[1]), 2, 0.3);
@@ -167,7 +169,7 @@ static void test_gravity_row(void **state) {
     build(&c, 0);
     OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_member_solve_static(c.b, 4));
-    OK(c.s, spar_session_report_effects(c.s, 1e-3, 8, keep, press, &c, table));
+    OK(c.s, spar_session_report_effects(c.s, 1e-3, 8, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     const double *gravity = table[SPAR_ROW_GRAVITY];
     assert_true(gravity[SPAR_COLUMN_IN_FORCE] == 1);
     assert_true(gravity[SPAR_COLUMN_SIZE] > 0.1 && gravity[SPAR_COLUMN_SIZE] <= 1);
@@ -202,7 +204,7 @@ static void test_left_out_of_statics(void **state) {
     OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION));
     OK(c.s, spar_member_commit(c.b));
     OK(c.s, spar_member_set_load(c.b, 5, SPAR_LOAD_DEAD, dead));
-    OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, table));
+    OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     /* reaction: force 10 + 2 g, moment over length 10 + g; without weight 10, 10 */
     double weight = hypot(2 * 9.81, 9.81), all = hypot(10 + 2 * 9.81, 10 + 9.81);
     NEAR(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_REACTION], weight / all, 1e-6);
@@ -216,7 +218,7 @@ static void test_fluid_rows(void **state) {
     scene c = {.load = 0.5, .drag = 0, .moments = 1};
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     build(&c, 0);
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
     assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_SIZE] > 0.05);
     assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_MOTION] > 0.01);
@@ -225,7 +227,7 @@ static void test_fluid_rows(void **state) {
     spar_session_destroy(&c.s);
     c = (scene){.load = 0.5, .drag = 0.05};
     build(&c, 0);
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, table));
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
     assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 0);
     assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_MOTION] > 0.01);
     spar_session_destroy(&c.s);
@@ -244,7 +246,7 @@ static void advised(double tolerance, double added) {
     if (added > 0) {
         OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
     }
-    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, keep, press, &c, advice));
+    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, keep, press, &c, SPAR_ADVICE_COUNT, advice));
     OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, &points));
     assert_true(advice[SPAR_ADVICE_ERROR] <= tolerance);
     assert_true(advice[SPAR_ADVICE_TRIALS] > 5);
@@ -376,7 +378,7 @@ static void test_advice_stays_stable(void **state) {
         double advice[SPAR_ADVICE_COUNT], largest = 0, t = 0, dt;
         spar_session *s = heave_session(&h);
         OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-6, 50));
-        OK(s, spar_session_advise(s, 1e-2, 0.02, 16, keep_heave, float_on, &h, advice));
+        OK(s, spar_session_advise(s, 1e-2, 0.02, 16, keep_heave, float_on, &h, SPAR_ADVICE_COUNT, advice));
         OK(s, spar_session_set_integrator(s, 0.9, (int)advice[SPAR_ADVICE_SUBSTEPS]));
         OK(s, spar_session_set_predictor(s, (int)advice[SPAR_ADVICE_PREDICTOR]));
         OK(s, spar_session_set_newton(s, 1e-15, advice[SPAR_ADVICE_NEWTON_RTOL], 50));
@@ -398,22 +400,27 @@ static void test_bad_input(void **state) {
     scene c = {.load = 0.02};
     double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], advice[SPAR_ADVICE_COUNT];
     build(&c, 0);
-    assert_int_equal(spar_session_try(NULL, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, NAN, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 12, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(NULL, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, NAN, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 12, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(spar_session_message(c.s), "multiple of 8"));
-    assert_int_equal(spar_session_try(c.s, 0.01, 0, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 1, report), SPAR_ERR_STATE);
-    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, NULL, NULL, advice), SPAR_ERR_UNSUPPORTED);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, press, &c, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 0, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, -1, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, 1, -1, table[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
+                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
+                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, NULL, NULL, SPAR_ADVICE_COUNT, advice),
+                     SPAR_ERR_UNSUPPORTED);
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, press, &c, -1, advice), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_member_get_advice(c.b, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
     OK(c.s, spar_step_begin(c.s, 0.01));
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_STATE);
-    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, table), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
+    assert_int_equal(
+        spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
+        SPAR_ERR_STATE);
     spar_session_destroy(&c.s);
 }
 
@@ -423,7 +430,7 @@ static int meddle(spar_session *s, double t, double dt, void *context) {
     spar_fluid *f = NULL;
     spar_member *m = NULL;
     double report[SPAR_TRY_COUNT];
-    assert_int_equal(spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_STATE);
+    assert_int_equal(spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
     assert_int_equal(spar_fluid_create(c->b, "late", &f), SPAR_ERR_STATE);
     assert_int_equal(spar_point_create(s, "late", NULL, NULL, &m), SPAR_ERR_STATE);
     assert_int_equal(spar_fluid_set_motion_nodes(c->f, 0, NULL), SPAR_ERR_STATE);
@@ -440,21 +447,61 @@ static void test_meddling(void **state) {
     scene c = {.load = 0.02};
     double report[SPAR_TRY_COUNT];
     build(&c, 0);
-    OK(c.s, spar_session_try(c.s, 0.01, 8, meddle, press, &c, 0, report));
+    OK(c.s, spar_session_try(c.s, 0.01, 8, meddle, press, &c, 0, SPAR_TRY_COUNT, report));
     step(&c, 0.01, 2);
     spar_session_destroy(&c.s);
 }
 
-/* What a callback asks and gives within trials: the residuals have the host's room, which is that of one iteration,
-   also where another scheme is tried; a first follower finds room for its reaction. */
+/* What a callback asks and gives within trials: the residuals have the room that the host says, whatever scheme is
+   tried; a first follower finds room for its reaction. */
 static int ask(spar_session *s, double t, double dt, int iteration, void *context) {
     scene *c = context;
     double residual[3] = {0, 7, 7}, size[3] = {0, 7, 7}, load[6] = {0, 0, 0.01, 0, 0, 0};
     int iterations;
-    OK(s, spar_session_get_coupling(s, &iterations, residual, size, NULL));
-    assert_true(iterations <= 1 && residual[1] == 7 && size[1] == 7);
+    OK(s, spar_session_get_iterations(s, &iterations, 1, residual, size));
+    assert_true(iterations >= 0 && residual[1] == 7 && size[1] == 7);
     OK(s, spar_member_set_load(c->b, 0, SPAR_LOAD_FOLLOWER, load));
     return press(s, t, dt, iteration, context);
+}
+
+/* A host made with a header that knows fewer entries, or more: what there is room for comes, the first ones first, and
+   the rest of the room is 0. Entries that a run's clock does not touch are the same bits whatever the room. */
+static void test_capacities(void **state) {
+    (void)state;
+    enum { ROWS = SPAR_ROW_COUNT + 2, COLUMNS = SPAR_COLUMN_COUNT + 1 };
+    scene c = {.load = 0.02};
+    double whole[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], more[ROWS][COLUMNS], less[3][2] = {{0}, {0}, {7, 7}};
+    build(&c, 0);
+    step(&c, 0.01, 3);
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, whole[0]));
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, ROWS, COLUMNS, more[0]));
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, 2, 2, less[0]));
+    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, 2, 2, NULL));
+    assert_true(whole[SPAR_ROW_INERTIA][SPAR_COLUMN_IN_FORCE] == 1 && whole[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE] > 0);
+    for (int r = 0; r < ROWS; r++) {
+        for (int k = 0; k < COLUMNS; k++) {
+            int known = r < SPAR_ROW_COUNT && k < SPAR_COLUMN_COUNT;
+            assert_true(known ? k == SPAR_COLUMN_SHARE || more[r][k] == whole[r][k] : more[r][k] == 0);
+        }
+    }
+    for (int r = 0; r < 3; r++) {
+        for (int k = 0; k < 2; k++) {
+            assert_true(less[r][k] == (r < 2 ? whole[r][k] : 7));
+        }
+    }
+    double wide[SPAR_TRY_COUNT + 1], narrow[2] = {7, 7};
+    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, press, &c, 0, SPAR_TRY_COUNT + 1, wide));
+    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, press, &c, 1, 1, narrow));
+    assert_true(wide[SPAR_TRY_SOLUTIONS] > 0 && wide[SPAR_TRY_COUNT] == 0 && narrow[0] == 0 && narrow[1] == 7);
+    double energy[SPAR_ENERGY_COUNT + 1], first[2] = {7, 7}, audit[SPAR_AUDIT_COUNT + 1], count[7];
+    OK(c.s, spar_member_get_energy(c.b, SPAR_ENERGY_COUNT + 1, energy));
+    OK(c.s, spar_member_get_energy(c.b, 1, first));
+    assert_true(energy[SPAR_ENERGY_COUNT] == 0 && energy[SPAR_ENERGY_KINETIC] > 0);
+    assert_true(first[0] == energy[0] && first[1] == 7);
+    OK(c.s, spar_fluid_get_audit(c.f, SPAR_AUDIT_COUNT + 1, audit));
+    OK(c.s, spar_fluid_get_audit(c.f, 7, count));
+    assert_true(audit[SPAR_AUDIT_COUNT] == 0 && audit[SPAR_AUDIT_NODES] > 0 && audit[SPAR_AUDIT_FORCE] == count[0]);
+    spar_session_destroy(&c.s);
 }
 
 static void test_asking(void **state) {
@@ -463,8 +510,8 @@ static void test_asking(void **state) {
     double advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
     build(&c, 0);
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 30));
-    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, keep, ask, &c, advice));
-    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, ask, &c, 0, report));
+    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, keep, ask, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, ask, &c, 0, SPAR_TRY_COUNT, report));
     spar_session_destroy(&c.s);
 }
 
@@ -473,13 +520,13 @@ static void test_nothing_to_try(void **state) {
     (void)state;
     double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     spar_session *s = scene_session();
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report));
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
     spar_member *p;
     OK(s, spar_point_create(s, "p", NULL, NULL, &p));
     OK(s, spar_member_commit(p));
-    OK(s, spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, table));
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, report));
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 1, report));
+    OK(s, spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
+    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report));
     assert_true(report[SPAR_TRY_MOTION] == 0);
     spar_session_destroy(&s);
 }
@@ -497,6 +544,7 @@ int main(void) {
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
         cmocka_unit_test(test_asking),
+        cmocka_unit_test(test_capacities),
         cmocka_unit_test(test_nothing_to_try),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

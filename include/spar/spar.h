@@ -38,6 +38,9 @@
      carry the same motion, and their loads add.
    - Counts and indices are int64_t, flags and enums int. n = 0 with NULL arrays is legal everywhere.
    - Outputs marked "NULL: not wanted" may be NULL; any other pointer may not, unless its line says so.
+   - Arrays whose entries have names (reports, tables, accounts) come with their capacity, since a later release may
+     know more of them: as many entries as there is room for are written, and those that this release does not know are
+     0. The enumerators that end in _COUNT say how many the header knows.
 
    Ownership. Every array is the caller's and is copied before the call returns; the library keeps no pointer of the
    host's except a callback and its context. Handles made by create are released by destroy; destroy takes NULL or a
@@ -131,7 +134,7 @@ enum {
     SPAR_COUPLING_IQN_ILS = 3      /* interface quasi-Newton by least squares (Degroote, Bathe, Vierendeels 2009) */
 };
 
-/* Entries of the report of spar_session_get_coupling. */
+/* Entries of the report of the coupling, spar_session_get_report. */
 enum {
     SPAR_REPORT_CONTRACTION = 0, /* mean factor by which an iteration shrinks the residual; 0 after one iteration */
     SPAR_REPORT_ADDED_MASS = 1,  /* (added mass) / (mass) in the most affected direction seen; iterated only */
@@ -207,14 +210,17 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
      advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
                             the trials, their errors count for as much more as they grow with time */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
-/* The coupling of the step under way, or else of the last one; the same on all ranks. residual, size: out, by
-   iteration, room for max_iterations of spar_session_set_coupling as it is set now (1 if explicit): the change of the
-   loads and the loads, [N], root of the sum of squares over all nodes of forces, and of moments divided by the member's
-   length. iterations: out, how many entries there are: those of the step, or, where the limit has been lowered since,
-   the first that have room.
-   report: out, [SPAR_REPORT_COUNT]. Each NULL: not wanted. Local. */
-SPAR_API int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
-                                       double report[SPAR_REPORT_COUNT]);
+/* The iterations of the step under way, or else of the last one; the same on all ranks. Local.
+     iterations: out, how many there were, which may be more than the capacity
+     capacity: in, of the two arrays; max_iterations of spar_session_set_coupling is always enough
+     residual[capacity], size[capacity]: out, by iteration, the change of the loads and the loads, N: root of the sum of
+           squares over all nodes of forces, and of moments divided by the member's length; 0 behind the last
+   Each NULL: not wanted. */
+SPAR_API int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity,
+                                         double *residual, double *size);
+/* What the coupling says of itself; the same on all ranks. report[capacity]: out, by SPAR_REPORT_*, NULL: not wanted.
+   Local. */
+SPAR_API int spar_session_get_report(const spar_session *session, int64_t capacity, double *report);
 /* t: out, t^n in s, the time of the last accepted step, from 0; step: out, steps accepted; iteration: out, coupling
    iterations of the step under way or just ended. Each NULL: not wanted. Local. */
 SPAR_API int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration);
@@ -395,18 +401,31 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
-/* energy[4]: out, J: kinetic, strain, potential in gravity (0 in the reference configuration), dissipated by damping
-   since t = 0 (up to t^n). Members spar does not solve for give zeros. With LARGE_ROTATION off, and of linear and modal
-   members, the quadratic forms of their equations; on a driven root only the strain energy, the others are those of the
-   motion. */
-SPAR_API int spar_member_get_energy(const spar_member *member, double energy[4]);
-/* work[3]: out, J, done on the member in the accepted steps by the loads kept (dead, follower, line), by the fluids,
-   and by a driven root. The account begins at zero with the first call, between steps, and anew where the motion is set
-   (static solution, initial velocity, load): nothing is computed for members it has not been asked for. Kinetic +
-   strain
+/* Energies of a member, J. */
+enum {
+    SPAR_ENERGY_KINETIC = 0,
+    SPAR_ENERGY_STRAIN = 1,
+    SPAR_ENERGY_GRAVITY = 2,    /* potential, 0 in the reference configuration */
+    SPAR_ENERGY_DISSIPATED = 3, /* by damping since t = 0, up to t^n */
+    SPAR_ENERGY_COUNT = 4
+};
+/* energy[capacity]: out, by SPAR_ENERGY_*, NULL: not wanted. Members spar does not solve for give zeros. With
+   LARGE_ROTATION off, and of linear and modal members, the quadratic forms of their equations; on a driven root only
+   the strain energy, the others are those of the motion. */
+SPAR_API int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy);
+/* Work done on a member, J. */
+enum {
+    SPAR_WORK_LOADS = 0, /* by the loads kept: dead, follower, line */
+    SPAR_WORK_FLUID = 1, /* by the fluids */
+    SPAR_WORK_ROOT = 2,  /* by a driven root */
+    SPAR_WORK_COUNT = 3
+};
+/* work[capacity]: out, by SPAR_WORK_*, in the accepted steps. The account begins at zero with the first call, between
+   steps, and anew where the motion is set (static solution, initial velocity, load): nothing is computed for members it
+   has not been asked for. Kinetic + strain
    + potential + dissipated energy less the sum of the three stays constant to the order of the integrator; of a linear
    or modal member on a root that turns but for the shortening of the bent beam, which they neglect. Local. */
-SPAR_API int spar_member_get_work(spar_member *member, double work[3]);
+SPAR_API int spar_member_get_work(spar_member *member, int64_t capacity, double *work);
 /* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
    >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities
    become 0. A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame
@@ -536,9 +555,20 @@ SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *
 SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);
 SPAR_API int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force);
 SPAR_API int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment);
-/* Of the last push. audit[8]: out, |force| N, |moment| about the origin N m and power W that came in from the nodes;
-   their errors after the transfer, relative to the sum of their parts' sizes; largest |x| of a node, m; n. */
-SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]);
+/* Figures of the last push. */
+enum {
+    SPAR_AUDIT_FORCE = 0,        /* size of the sum that came in from the nodes, N */
+    SPAR_AUDIT_MOMENT = 1,       /* the same of the moment about the origin, N m */
+    SPAR_AUDIT_POWER = 2,        /* and the power, W */
+    SPAR_AUDIT_FORCE_ERROR = 3,  /* their errors after the transfer, relative to the sum of their parts' sizes */
+    SPAR_AUDIT_MOMENT_ERROR = 4, /* the same of the moment */
+    SPAR_AUDIT_POWER_ERROR = 5,  /* and of the power */
+    SPAR_AUDIT_FARTHEST = 6,     /* largest distance of a node from the origin, m */
+    SPAR_AUDIT_NODES = 7,        /* how many nodes there are */
+    SPAR_AUDIT_COUNT = 8
+};
+/* audit[capacity]: out, by SPAR_AUDIT_*, NULL: not wanted. */
+SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audit);
 
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
 
@@ -610,10 +640,10 @@ enum {
 };
 /* One trial with the session as it is, for hosts that compare settings of their own. before, solve: in, NULL: none
    (without solve the loads stay as they are); context: in, handed to both. compare: in, 0: what later trials are
-   compared with (errors come out 0); 1: compared with that run, over the same time, with any dt. report: out,
-   [SPAR_TRY_COUNT]. Failures as of spar_step; SPAR_ERR_STATE: nothing to compare with. */
+   compared with (errors come out 0); 1: compared with that run, over the same time, with any dt. report[capacity]: out,
+   by SPAR_TRY_*, NULL: not wanted. Failures as of spar_step; SPAR_ERR_STATE: nothing to compare with. */
 SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                              spar_fluid_solver solve, void *context, int compare, double report[SPAR_TRY_COUNT]);
+                              spar_fluid_solver solve, void *context, int compare, int64_t capacity, double *report);
 
 /* Rows of the report of effects. */
 enum {
@@ -646,11 +676,12 @@ enum {
 SPAR_API const char *spar_effect_name(int row);
 /* What each effect is worth in the scene as it stands: sizes from the present state; errors and savings from trials of
    `steps` steps of dt, with the effect and without it, all members at once. before, solve, context: in, as of
-   spar_session_try; solve NULL: under the present loads, rows of the fluid not in force. table: out,
-   [SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], Fortran (SPAR_COLUMN_COUNT, SPAR_ROW_COUNT). */
+   spar_session_try; solve NULL: under the present loads, rows of the fluid not in force. rows, columns: in, the
+   capacity of the table; table[rows][columns]: out, by SPAR_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not
+   wanted. */
 SPAR_API int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                                         spar_fluid_solver solve, void *context,
-                                         double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]);
+                                         spar_fluid_solver solve, void *context, int64_t rows, int64_t columns,
+                                         double *table);
 
 /* Advice for a session. */
 enum {
@@ -669,14 +700,14 @@ enum {
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. tolerance: in, as SPAR_TRY_MOTION, in (0, 1). dt, steps: in, the host's dt, and how
    many of it the trials last: what happens later is not seen, but see the option advise.horizon. before, solve,
-   context: in, as of spar_session_try, called with other dt too. advice: out, [SPAR_ADVICE_COUNT]; what it says of
-   beams: spar_member_get_advice. Beams of one make (all that is described but name, placement and initial velocity) get
-   one advice. What is kept as it is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. A
-   log is told of each trial at SPAR_LOG_INFO. SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or
-   nothing converges; the message says what error was reached. */
+   context: in, as of spar_session_try, called with other dt too. advice[capacity]: out, by SPAR_ADVICE_*, NULL:
+   not wanted; what it says of beams: spar_member_get_advice. Beams of one make (all that is described but name,
+   placement and initial velocity) get one advice. What is kept as it is: the options advise.dt, advise.nodes,
+   advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO. SPAR_ERR_UNSUPPORTED: solve is
+   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
-                                 spar_before_step before, spar_fluid_solver solve, void *context,
-                                 double advice[SPAR_ADVICE_COUNT]);
+                                 spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
+                                 double *advice);
 /* What the last advice says of a beam: SPAR_FIDELITY_*, modes of a modal one (else 0), nodes per element, points for
    spar_beam_set_quadrature with the rule in force (0: as described). Each NULL: not wanted. Local. SPAR_ERR_STATE: no
    advice yet. */

@@ -114,16 +114,16 @@ enum {
 SPAR_API const char *spar_aero_effect_name(int row);
 /* What each effect of this object is worth in the scene as it stands, by trials as of spar_session_try with the effect
    and without it. session: in, that of the blades, which a rank without blades cannot tell. dt, steps, before, context:
-   in, as there; solve: in, the host's, which calls spar_aero_solve on this object. table: out,
-   [SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], Fortran (SPAR_COLUMN_COUNT, SPAR_AERO_ROW_COUNT), columns as of
-   spar_session_report_effects; size: change of the fluid's loads in the first step, relative to these. In force on all
-   ranks where on any: what is on and has something to do (losses and swirl with induction, hub loss with a hub radius,
-   moments with polars that have some). Collective over the session. The effects are as before afterwards, also after a
-   failure; the results of the last solve are then those of a trial, and spar_session_try compares with the run that had
-   all effects. */
+   in, as there; solve: in, the host's, which calls spar_aero_solve on this object. rows, columns: in,
+   the capacity of the table; table[rows][columns]: out, by SPAR_AERO_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows),
+   NULL: not wanted, columns as of spar_session_report_effects; size: change of the fluid's loads in the first step,
+   relative to these. In force on all ranks where on any: what is on and has something to do (losses and swirl with
+   induction, hub loss with a hub radius, moments with polars that have some). Collective over the session. The effects
+   are as before afterwards, also after a failure; the results of the last solve are then those of a trial, and
+   spar_session_try compares with the run that had all effects. */
 SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps,
-                                      spar_before_step before, spar_fluid_solver solve, void *context,
-                                      double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]);
+                                      spar_before_step before, spar_fluid_solver solve, void *context, int64_t rows,
+                                      int64_t columns, double *table);
 
 #ifdef __cplusplus
 }

@@ -27,7 +27,7 @@ const char *spar_aero_effect_name(int r) {
 }
 
 static int try_once(spar_session *s, const spari_run *t, int compare, double report[SPAR_TRY_COUNT]) {
-    return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, report);
+    return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, SPAR_TRY_COUNT, report);
 }
 
 static int has_moments(const spar_aero *aero) {
@@ -98,29 +98,30 @@ static int try_all(spar_session *s, spar_aero *aero, const spari_run *t, double 
     return SPAR_OK;
 }
 
-static int check_arguments(spar_session *s, const spar_aero *aero, const spari_run *t, const void *table,
-                           const char *call) {
+static int check_arguments(spar_session *s, const spar_aero *aero, const spari_run *t, int64_t table_rows,
+                           int64_t table_columns, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
                   "%s: the blades are of another session; give theirs", call);
     SPARI_REQUIRE(s, t->solve, SPAR_ERR_ARGUMENT, "%s: solve is NULL; give the one that spar_step is given", call);
-    SPARI_REQUIRE(s, table, SPAR_ERR_ARGUMENT, "%s: table is NULL", call);
-    return SPAR_OK;
+    SPARI_TRY(spari_need_capacity(s, call, table_rows));
+    return spari_need_capacity(s, call, table_columns);
 }
 
 int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps, spar_before_step before,
-                             spar_fluid_solver solve, void *context,
-                             double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+                             spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
+                             double *table) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
     spar_session *s = session;
     spari_run t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
-    SPARI_TRY(spari_trial_enter(s, __func__, &t, 0, 0, check_arguments(s, aero, &t, table, __func__)));
+    SPARI_TRY(
+        spari_trial_enter(s, __func__, &t, 0, 0, check_arguments(s, aero, &t, table_rows, table_columns, __func__)));
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(spari_named(s, __func__, try_all(s, aero, &t, made)));
     memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
-    memcpy(table, made, sizeof made);
+    spari_fill_table(table_rows, table_columns, table, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
 }

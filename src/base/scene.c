@@ -47,6 +47,12 @@ int(spari_fail)(spar_session *session, int status, const char *format, ...) {
     return status;
 }
 
+int spari_need_capacity(spar_session *session, const char *call, int64_t capacity) {
+    SPARI_REQUIRE(session, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
+                  "%s: a capacity of %lld; give the length of the array, 0 to 2^40", call, (long long)capacity);
+    return SPAR_OK;
+}
+
 int spari_named(spar_session *session, const char *call, int status) {
     char text[SPARI_MESSAGE_SIZE], *message = session ? session->message : thread_message;
     if (status != SPAR_OK && !strstr(message, call)) {

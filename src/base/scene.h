@@ -37,7 +37,6 @@ struct spar_session {
     int scheme;
     double coupling_atol, coupling_rtol;
     int coupling_max;
-    int room; /* in the host's arrays for the residuals: what a trial makes of the coupling is not known to it */
     double relaxation;
     int accept_unconverged;               /* option coupling.unconverged = accept */
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
@@ -76,6 +75,8 @@ void spari_log(const spar_session *session, int level, const char *text);
 /* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
    thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
 int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
+/* The room in a host's array, which its call has given. */
+int spari_need_capacity(spar_session *session, const char *call, int64_t capacity);
 /* Answers `status`; of a failure whose message, from below, does not name the public call, the message then begins with
    it. At the public edge. */
 int spari_named(spar_session *session, const char *call, int status);

@@ -38,6 +38,13 @@ void *spari_zalloc(int64_t n, size_t size);
 /* A copy of x[n], likewise; zeros where x is NULL. */
 double *spari_copy(const double *x, int64_t n);
 
+/* What a host gets of values[known] whose entries have names: array[capacity] takes what it has room for, and 0 where
+   there is more room; NULL: nothing. */
+void spari_fill(int64_t capacity, double *array, int64_t known, const double *values);
+/* The same of a table [known_rows][known_columns] into [rows][columns]. */
+void spari_fill_table(int64_t rows, int64_t columns, double *to, int64_t known_rows, int64_t known_columns,
+                      const double *values);
+
 /* Bytes into a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
 #define SPARI_HASH_BEGIN UINT64_C(14695981039346656037)
 uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size);

@@ -301,11 +301,12 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     return SPAR_OK;
 }
 
-int spar_fluid_get_audit(const spar_fluid *fluid, double audit[8]) {
+int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audit) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_FLUID_REQUIRE(fluid, audit, SPAR_ERR_ARGUMENT, "the place for the audit is NULL");
-    memcpy(audit, fluid->audit, sizeof fluid->audit);
+    SPARI_FLUID_REQUIRE(fluid, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
+                        "a capacity of %lld; give the length of the array, 0 to 2^40", (long long)capacity);
+    spari_fill(capacity, audit, SPAR_AUDIT_COUNT, fluid->audit);
     return SPAR_OK;
 }
 

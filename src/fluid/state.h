@@ -46,7 +46,7 @@ struct spar_fluid {
     double *reference; /* of the reference configuration */
     double *work;      /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
-    double audit[8];
+    double audit[SPAR_AUDIT_COUNT];
     /* several pushes within a step: mean force and moment [n][3] over [t^n, t^n + theta dt], and room for the next;
        moments from the first one given on */
     double *mean[2], *mean_next[2];

@@ -327,25 +327,25 @@ void spari_coupling_reject(spar_session *s) {
     }
 }
 
-int spar_session_get_coupling(const spar_session *session, int *iterations, double *residual, double *size,
-                              double report[SPAR_REPORT_COUNT]) {
+int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity, double *residual,
+                                double *size) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_coupling: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_capacity((spar_session *)session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;
-    int n = !c ? 0 : c->iterations < session->room ? c->iterations : session->room;
     if (iterations) {
-        *iterations = n;
+        *iterations = c ? c->iterations : 0;
     }
-    for (int i = 0; i < n; i++) {
-        if (residual) {
-            residual[i] = c->residual[i];
-        }
-        if (size) {
-            size[i] = c->size[i];
-        }
-    }
-    for (int i = 0; report && i < SPAR_REPORT_COUNT; i++) {
-        report[i] = c ? c->report[i] : 0;
-    }
+    spari_fill(capacity, residual, c ? c->iterations : 0, c ? c->residual : NULL);
+    spari_fill(capacity, size, c ? c->iterations : 0, c ? c->size : NULL);
+    return SPAR_OK;
+}
+
+int spar_session_get_report(const spar_session *session, int64_t capacity, double *report) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_capacity((spar_session *)session, __func__, capacity));
+    const spari_coupling *c = session->own->coupling;
+    spari_fill(capacity, report, c ? SPAR_REPORT_COUNT : 0, c ? c->report : NULL);
     return SPAR_OK;
 }

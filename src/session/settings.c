@@ -64,7 +64,6 @@ void spari_settings_default(spar_session *s) {
     s->coupling_atol = 1e-9;
     s->coupling_rtol = 1e-6;
     s->coupling_max = 50;
-    s->room = 1;
     s->relaxation = 1;
     s->coupling_columns = 30;
     s->coupling_reuse = 5;
@@ -154,7 +153,6 @@ int spar_session_set_coupling(spar_session *session, int scheme, double atol, do
     session->coupling_atol = atol;
     session->coupling_rtol = rtol;
     session->coupling_max = max_iterations;
-    session->room = scheme == SPAR_COUPLING_EXPLICIT ? 1 : max_iterations;
     session->coupling_stale = 1;
     return SPAR_OK;
 }

@@ -122,19 +122,19 @@ int spari_energy_of_body(const spar_member *m, double energy[4]) {
     spari_member_to_unique(m, 7, m->after.q, q);
     spari_member_to_unique(m, 6, m->after.v, v);
     spari_body_energy(m->body, q, v, energy);
-    energy[0] = m->effects & SPAR_EFFECT_INERTIA ? energy[0] : 0;
+    energy[SPAR_ENERGY_KINETIC] = m->effects & SPAR_EFFECT_INERTIA ? energy[SPAR_ENERGY_KINETIC] : 0;
     free(q);
     return SPAR_OK;
 }
 
-int spar_member_get_energy(const spar_member *member, double energy[4]) {
+int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
-    SPARI_REQUIRE(member->session, energy, SPAR_ERR_ARGUMENT, "%s: '%s': energy is NULL", __func__, member->name);
-    double found[4] = {0};
+    SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
+    double found[SPAR_ENERGY_COUNT] = {0};
     int status = member->row->energy ? member->row->energy(member, found) : SPAR_OK;
     SPARI_REQUIRE(member->session, status == SPAR_OK, status, "%s: no memory for '%s'", __func__, member->name);
-    found[3] = member->dissipated;
-    memcpy(energy, found, sizeof found);
+    found[SPAR_ENERGY_DISSIPATED] = member->dissipated;
+    spari_fill(capacity, energy, SPAR_ENERGY_COUNT, found);
     return SPAR_OK;
 }

@@ -12,7 +12,7 @@
 #include <string.h>
 
 struct spari_work {
-    double sum[3];      /* kept loads, fluids, root */
+    double sum[SPAR_WORK_COUNT];
     double reaction[6]; /* at t^n, of a driven root */
     double *fluid;      /* [nodes][6] fluid loads at t^n */
     double *load;       /* [nodes][6] scratch */
@@ -76,13 +76,13 @@ void spari_work_step(spar_member *m) {
             w->fluid[6 * i + c] = now;
         }
         increment(m, i, d);
-        w->sum[0] += dot6(kept, d);
-        w->sum[1] += dot6(fluid, d);
+        w->sum[SPAR_WORK_LOADS] += dot6(kept, d);
+        w->sum[SPAR_WORK_FLUID] += dot6(fluid, d);
     }
     if (m->root == SPAR_ROOT_DRIVEN) {
         spari_member_reaction_in(m, w->room, reaction);
         increment(m, 0, d);
-        w->sum[2] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
+        w->sum[SPAR_WORK_ROOT] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
     }
 }
@@ -94,11 +94,11 @@ void spari_work_restart(spar_member *m) {
     spari_member_reaction_in(m, w->room, w->reaction);
 }
 
-int spar_member_get_work(spar_member *member, double work[3]) {
+int spar_member_get_work(spar_member *member, int64_t capacity, double *work) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
-    SPARI_REQUIRE(s, work, SPAR_ERR_ARGUMENT, "%s: '%s': work is NULL", __func__, member->name);
+    SPARI_TRY(spari_need_capacity(s, __func__, capacity));
     if (!member->work) {
         SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
                       "%s: '%s': the account begins with the first call; make it between steps", __func__,
@@ -114,6 +114,6 @@ int spar_member_get_work(spar_member *member, double work[3]) {
         member->work = w;
         spari_work_restart(member);
     }
-    memcpy(work, member->work->sum, sizeof member->work->sum);
+    spari_fill(capacity, work, SPAR_WORK_COUNT, member->work->sum);
     return SPAR_OK;
 }

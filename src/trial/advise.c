@@ -387,36 +387,39 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
             *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0};
         }
     }
-    advice[SPAR_ADVICE_DT] = d->run.dt * (double)d->run.steps / (double)p->steps;
-    advice[SPAR_ADVICE_SUBSTEPS] = p->substeps;
-    advice[SPAR_ADVICE_SCHEME] = p->scheme;
-    advice[SPAR_ADVICE_COUPLING_RTOL] = p->rtol;
-    advice[SPAR_ADVICE_PREDICTOR] = p->predictor;
-    advice[SPAR_ADVICE_NEWTON_RTOL] = p->newton;
-    advice[SPAR_ADVICE_ERROR] = best->error;
-    advice[SPAR_ADVICE_COST] = isfinite(now->seconds) && now->seconds > 0 ? best->seconds / now->seconds : -1;
-    advice[SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1;
-    advice[SPAR_ADVICE_TRIALS] = d->trials;
+    const double made[SPAR_ADVICE_COUNT] = {
+        [SPAR_ADVICE_DT] = d->run.dt * (double)d->run.steps / (double)p->steps,
+        [SPAR_ADVICE_SUBSTEPS] = p->substeps,
+        [SPAR_ADVICE_SCHEME] = p->scheme,
+        [SPAR_ADVICE_COUPLING_RTOL] = p->rtol,
+        [SPAR_ADVICE_PREDICTOR] = p->predictor,
+        [SPAR_ADVICE_NEWTON_RTOL] = p->newton,
+        [SPAR_ADVICE_ERROR] = best->error,
+        [SPAR_ADVICE_COST] = isfinite(now->seconds) && now->seconds > 0 ? best->seconds / now->seconds : -1,
+        [SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1,
+        [SPAR_ADVICE_TRIALS] = d->trials,
+    };
+    memcpy(advice, made, sizeof made);
 }
 
-static int check_request(spar_session *s, double tolerance, const spari_run *run, const double *advice) {
+static int check_request(spar_session *s, double tolerance, const spari_run *run, int64_t capacity) {
     SPARI_TRY(spari_trial_check(s, SPARI_ADVISE, run));
     SPARI_REQUIRE(s, tolerance > 0 && tolerance < 1, SPAR_ERR_ARGUMENT, "%s: the tolerance is %g; give one in (0, 1)",
                   SPARI_ADVISE, tolerance);
-    SPARI_REQUIRE(s, advice, SPAR_ERR_ARGUMENT, "%s: advice is NULL", SPARI_ADVISE);
+    SPARI_TRY(spari_need_capacity(s, SPARI_ADVISE, capacity));
     SPARI_REQUIRE(s, run->solve, SPAR_ERR_UNSUPPORTED,
                   "%s: without a fluid solver there are no trials; give the one that spar_step is given", SPARI_ADVISE);
     return SPAR_OK;
 }
 
 int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
-                        spar_fluid_solver solve, void *context, double advice[SPAR_ADVICE_COUNT]) {
+                        spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
     spar_session *s = session;
     spari_advisor d = {.session = s, .run = {dt, steps, before, solve, context}, .tolerance = tolerance};
     spari_outcome now = {0}, best = {.seconds = INFINITY, .error = INFINITY};
-    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, advice)));
+    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     spari_remake **room = NULL;
@@ -429,7 +432,9 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     }
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
-        hand_over(&d, &now, &best, room, advice);
+        double made[SPAR_ADVICE_COUNT];
+        hand_over(&d, &now, &best, room, made);
+        spari_fill(capacity, advice, SPAR_ADVICE_COUNT, made);
     }
     free_room(&d, room);
     free(d.group);

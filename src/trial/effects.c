@@ -14,7 +14,7 @@
 /* ---- one trial for the host ---- */
 
 int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
-                     void *context, int compare, double report[SPAR_TRY_COUNT]) {
+                     void *context, int compare, int64_t capacity, double *report) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
@@ -22,9 +22,8 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     spari_record record = {0};
     spari_wish wish = {0};
     int status = spari_trial_check(s, __func__, &run);
-    if (status == SPAR_OK && !report) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: report is NULL", __func__);
-    } else if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
+    status = status == SPAR_OK ? spari_need_capacity(s, __func__, capacity) : status;
+    if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
         status =
             spari_fail(s, SPAR_ERR_STATE,
                        "%s: there is no run of these members to compare with; try with compare = 0 first", __func__);
@@ -36,12 +35,15 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
         status = record.own;
     }
     spari_wish_free(&wish);
-    if (status == SPAR_OK && report) { /* checked above */
-        report[SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->own->kept) : 0;
-        report[SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->own->kept) : 0;
-        report[SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->own->kept) : 0;
-        report[SPAR_TRY_SECONDS] = record.seconds;
-        report[SPAR_TRY_SOLUTIONS] = (double)record.solutions;
+    if (status == SPAR_OK) {
+        const double made[SPAR_TRY_COUNT] = {
+            [SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->own->kept) : 0,
+            [SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->own->kept) : 0,
+            [SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->own->kept) : 0,
+            [SPAR_TRY_SECONDS] = record.seconds,
+            [SPAR_TRY_SOLUTIONS] = (double)record.solutions,
+        };
+        spari_fill(capacity, report, SPAR_TRY_COUNT, made);
         if (!compare) {
             status = spari_trial_keep(s, &record);
         }
@@ -323,24 +325,21 @@ static int fill_rows(spar_session *s, const spari_run *run, double (*table)[SPAR
 }
 
 int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                                spar_fluid_solver solve, void *context,
-                                double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]) {
+                                spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
+                                double *table) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_run run = {dt, steps, before, solve, context};
     double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     int status = spari_trial_check(s, __func__, &run);
-    if (status == SPAR_OK && !table) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: table is NULL", __func__);
-    }
+    status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_rows) : status;
+    status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_columns) : status;
     SPARI_TRY(spari_trial_enter(s, __func__, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(spari_named(s, __func__, fill_rows(s, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
-    if (table) {                                 /* checked above */
-        memcpy(table, made, sizeof made);
-    }
+    spari_fill_table(table_rows, table_columns, table, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
 }

@@ -289,7 +289,7 @@ static void make(scene *s, const setting *is) {
     }
     if (is->account) {
         double work[3];
-        MUST(spar_member_get_work(s->member[0], work));
+        MUST(spar_member_get_work(s->member[0], 3, work));
     }
 }
 

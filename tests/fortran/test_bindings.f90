@@ -30,7 +30,8 @@ program test_bindings
   call refused(spar_session_set_reproducible(none, 0_c_int), 'spar_session_set_reproducible')
   call refused(spar_session_set_option(none), 'spar_session_set_option')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
-  call refused(spar_session_get_coupling(none), 'spar_session_get_coupling')
+  call refused(spar_session_get_iterations(none, capacity=0_c_int64_t), 'spar_session_get_iterations')
+  call refused(spar_session_get_report(none, 0_c_int64_t), 'spar_session_get_report')
   call refused(spar_point_create(none, member=made), 'spar_point_create')
   call refused(spar_rigid_create(none, member=made), 'spar_rigid_create')
   call refused(spar_beam_create(none, elements=0_c_int, nodes_per_element=0_c_int, member=made), 'spar_beam_create')
@@ -58,8 +59,8 @@ program test_bindings
   call refused(spar_member_get_loads(none), 'spar_member_get_loads')
   call refused(spar_member_get_reaction(none), 'spar_member_get_reaction')
   call refused(spar_beam_get_section(none, 0_c_int64_t), 'spar_beam_get_section')
-  call refused(spar_member_get_energy(none), 'spar_member_get_energy')
-  call refused(spar_member_get_work(none), 'spar_member_get_work')
+  call refused(spar_member_get_energy(none, 0_c_int64_t), 'spar_member_get_energy')
+  call refused(spar_member_get_work(none, 0_c_int64_t), 'spar_member_get_work')
   call refused(spar_member_solve_static(none, 0_c_int), 'spar_member_solve_static')
   call refused(spar_beam_set_modal_damping(none), 'spar_beam_set_modal_damping')
   call refused(spar_member_solve_modes(none, 0_c_int64_t), 'spar_member_solve_modes')
@@ -89,18 +90,21 @@ program test_bindings
   call refused(spar_fluid_pull_forces(none, 0.0_c_double), 'spar_fluid_pull_forces')
   call refused(spar_fluid_push_forces_at(none, 1.0_c_double), 'spar_fluid_push_forces_at')
   call refused(spar_fluid_push_forces(none), 'spar_fluid_push_forces')
-  call refused(spar_fluid_get_audit(none), 'spar_fluid_get_audit')
+  call refused(spar_fluid_get_audit(none, 0_c_int64_t), 'spar_fluid_get_audit')
   call refused(spar_step_begin(none, 0.0_c_double), 'spar_step_begin')
   call refused(spar_step_solve(none), 'spar_step_solve')
   call refused(spar_step_check(none), 'spar_step_check')
   call refused(spar_step_accept(none), 'spar_step_accept')
   call refused(spar_step_reject(none), 'spar_step_reject')
   call refused(spar_step(none, 0.0_c_double, c_null_funptr, none), 'spar_step')
-  call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int), &
+  call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int, &
+      0_c_int64_t), &
       'spar_session_try')
-  call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+  call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
+      0_c_int64_t, 0_c_int64_t), &
       'spar_session_report_effects')
-  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
+      0_c_int64_t), &
       'spar_session_advise')
   call refused(spar_member_get_advice(none), 'spar_member_get_advice')
   call check(c_associated(spar_effect_name(0_c_int)), 'spar_effect_name')
@@ -129,7 +133,8 @@ program test_bindings
   call refused(spar_aero_get_flags(none), 'spar_aero_get_flags')
   call refused(spar_aero_get_loads(none), 'spar_aero_get_loads')
   call check(c_associated(spar_aero_effect_name(0_c_int)), 'spar_aero_effect_name')
-  call refused(spar_aero_report_effects(none, none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none), &
+  call refused(spar_aero_report_effects(none, none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
+      0_c_int64_t, 0_c_int64_t), &
       'spar_aero_report_effects')
 
   ! spar_output.h

@@ -258,7 +258,7 @@ contains
     type(spar_fluid) :: loop_fluid
     type(springs) :: context
     real(c_double), parameter :: dt = 0.01_c_double
-    real(c_double) :: q(7,3), residual(100), report(SPAR_REPORT_COUNT)
+    real(c_double) :: q(7,3), residual(100), report(SPAR_REPORT_COUNT+1)
     integer(c_int) :: iterations
     integer :: i, k, mine
     logical :: done
@@ -290,10 +290,15 @@ contains
     call check(all(abs(q(:,2) - q(:,1)) <= 0) .and. all(abs(q(:,3) - q(:,1)) <= 0), 'callbacks and loop give the same bits')
     call check(context%calls == mine .and. own_calls == mine .and. mine > 100, 'each iteration is one call')
     call check(context%last_iteration == iterations - 1, 'iterations are counted from 0')
-    call session(1)%get_coupling(i, residual(1:iterations), report=report)
-    call check(i == iterations .and. all(residual(1:i) > 0) .and. all(residual(i+1:) < 0), 'a residual per iteration')
-    call session(1)%get_coupling(residual=residual(1:iterations-1), stat=k)
-    call check(k == SPAR_ERR_ARGUMENT, 'no room for the residual of the last iteration')
+    call session(1)%get_iterations(i, residual(1:iterations+1))
+    call check(i == iterations .and. all(residual(1:i) > 0) .and. abs(residual(i+1)) <= 0 .and. all(residual(i+2:) < 0), &
+        'a residual per iteration')
+    call session(1)%get_iterations(i, size=residual(10:9+iterations-1))
+    call check(i == iterations .and. all(residual(10:8+iterations) > 0) .and. residual(9+iterations) < 0, &
+        'as many sizes as there is room for')
+    call session(1)%get_report(report)
+    call check(report(SPAR_REPORT_CONTRACTION + 1) > 0 .and. abs(report(SPAR_REPORT_COUNT + 1)) <= 0, &
+        'what the library does not know is zero')
     ! f = -k x and x = ... + f dt^2 / (4 m), trapezoidal: each iteration shrinks the change of the load by k dt^2 / (4 m)
     call check(abs(residual(2) / residual(1) - 1e-4_c_double) < 1e-10_c_double, 'each iteration brings the same factor')
   end subroutine oscillator

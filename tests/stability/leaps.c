@@ -34,7 +34,7 @@ static run let_go(double rho, int fidelity, int root, int elements) {
 
 static double energy_of(const run *r) {
     double e[4];
-    OK(r->s, spar_member_get_energy(r->b, e));
+    OK(r->s, spar_member_get_energy(r->b, 4, e));
     return e[0] + e[1];
 }
 

@@ -51,7 +51,7 @@ static double run(double dt, int scheme, int order, int substeps, double *defect
     *defect = 0;
     for (int64_t n = (int64_t)(end / dt + 0.5); n > 0; n--) {
         OK(s, spar_step(s, dt, fluid, &h, NULL));
-        OK(s, spar_session_get_coupling(s, NULL, NULL, NULL, report));
+        OK(s, spar_session_get_report(s, SPAR_REPORT_COUNT, report));
         *defect = fmax(*defect, fabs(report[SPAR_REPORT_WORK_DEFECT]) / (load * 0.5 * dt));
     }
     OK(s, spar_member_get_motion(h.rod, q, NULL, NULL));

@@ -66,7 +66,7 @@ static void fly(double EI, double dt, flight *f) {
         OK(s, spar_member_get_motion(b, q, NULL, NULL));
         f->turn += 2 * remainder(atan2(q[6], q[3]) - f->turn / 2, pi);
         if (n == (int)(when[next] * per_second + 0.5)) {
-            OK(s, spar_member_get_energy(b, e));
+            OK(s, spar_member_get_energy(b, 4, e));
             for (int k = 0; k < 2; k++) {
                 f->loaded[next][k] = x0[k] + q[k];
                 f->end[next][k] = x0[3 * (COUNT - 1) + k] + q[7 * (COUNT - 1) + k];
@@ -159,7 +159,7 @@ static void test_robot_arm(void **state) {
             next++;
         }
     }
-    OK(s, spar_member_get_energy(b, e));
+    OK(s, spar_member_get_energy(b, 4, e));
     verify("robot arm: energy at 15", e[0] + e[1], 55.23, 0.01 * 55.23, "planar solution, 1 %");
     spar_session_destroy(&s);
     verified();

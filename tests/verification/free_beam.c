@@ -49,11 +49,11 @@ static drift fly(double dt, double rho) {
     OK(s, spar_member_set_initial_velocity(b, x0, v0, w));
     OK(s, spar_session_set_integrator(s, rho, 1));
     OK(s, spar_session_set_newton(s, 1e-13, 1e-13, 30));
-    OK(s, spar_member_get_energy(b, e0));
+    OK(s, spar_member_get_energy(b, 4, e0));
     momenta(b, P0, L0);
     for (int k = 0; k < (int)(0.5 / dt + 0.5); k++) {
         scene_run(s, dt, 1);
-        OK(s, spar_member_get_energy(b, e));
+        OK(s, spar_member_get_energy(b, 4, e));
         momenta(b, P, L);
         double dp[3], dl[3];
         for (int i = 0; i < 3; i++) {

@@ -25,7 +25,7 @@ static void spin(double dt, double rho, double end, top *out) {
     scene_run(s, dt, (int64_t)(end / dt + 0.5));
     OK(s, spar_member_get_motion(r, q, v, NULL));
     OK(s, spar_member_get_reaction(r, out->reaction));
-    OK(s, spar_member_get_energy(r, e));
+    OK(s, spar_member_get_energy(r, 4, e));
     memcpy(out->q, q + 3, sizeof out->q);
     spari_rotate(q + 3, c, out->x);
     spari_rotate_back(q + 3, v + 3, body);

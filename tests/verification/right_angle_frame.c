@@ -60,7 +60,7 @@ static void run(double dt, double rho, history *h) {
             for (int i = 0; i < 7; i++) {
                 assert_true(q[7 * ELBOW + i] == q[7 * ELBOW + 7 + i]); /* one motion at the joint */
             }
-            OK(s, spar_member_get_energy(b, e));
+            OK(s, spar_member_get_energy(b, 4, e));
             if (next == 1 || next == TIMES - 1) {
                 h->energy[next > 1] = e[0] + e[1];
             }

@@ -28,7 +28,7 @@ static void run(double dt, double end, double every, double rho, int sine, swing
         }
         scene_tip(b, q);
         memcpy(out->u[i], q, sizeof out->u[i]);
-        OK(s, spar_member_get_energy(b, e));
+        OK(s, spar_member_get_energy(b, 4, e));
         out->defect = fmax(out->defect, fabs(e[0] + e[1] - 150 * q[2]) / (150 * 2.3));
     }
     spar_session_destroy(&s);

@@ -450,11 +450,12 @@ static void use(scene *c) {
     double energy[4], reaction[6], report[SPAR_REPORT_COUNT], audit[8], residual[2][64];
     int done = 0;
     for (int k = 0; k < c->members; k++) {
-        (void)spar_member_get_energy(c->member[k], energy);
+        (void)spar_member_get_energy(c->member[k], 4, energy);
         (void)spar_member_get_reaction(c->member[k], reaction);
     }
-    (void)spar_session_get_coupling(c->session, NULL, residual[0], residual[1], report);
-    (void)spar_fluid_get_audit(c->fluid[0], audit);
+    (void)spar_session_get_iterations(c->session, NULL, 64, residual[0], residual[1]);
+    (void)spar_session_get_report(c->session, SPAR_REPORT_COUNT, report);
+    (void)spar_fluid_get_audit(c->fluid[0], 8, audit);
     (void)spar_step_solve(c->session);
     (void)solve(c->session, 0, dt, 0, c);
     (void)spar_step_check(c->session, &done);

@@ -212,8 +212,9 @@ void do_spar_aero_report_effects(call *c) {
     spar_fluid_solver solve;
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
-    double *table = OUT(c, SPAR_AERO_ROW_COUNT * SPAR_COLUMN_COUNT);
+    int64_t rows = arg_count(c, 0, SPAR_AERO_ROW_COUNT + 2), columns = arg_count(c, 0, SPAR_COLUMN_COUNT + 2);
+    double *table = OUT_OR_NULL(c, length(rows) * length(columns));
     a->busy++;
-    RUN(c, spar_aero_report_effects(a->a, l->s, dt, steps, before, solve, h, (double(*)[SPAR_COLUMN_COUNT])table));
+    RUN(c, spar_aero_report_effects(a->a, l->s, dt, steps, before, solve, h, rows, columns, table));
     a->busy--;
 }

@@ -241,8 +241,9 @@ void do_spar_fluid_push_forces_f32(call *c) {
 
 void do_spar_fluid_get_audit(call *c) {
     live_fluid *f = arg_fluid(c);
-    double *audit = OUT(c, 8);
-    RUN(c, spar_fluid_get_audit(f->f, audit));
+    int64_t n = arg_count(c, 0, SPAR_AUDIT_COUNT + 2);
+    double *audit = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_fluid_get_audit(f->f, n, audit));
 }
 
 void do_spar_fluid_write_vtk(call *c) {

@@ -312,14 +312,16 @@ void do_spar_beam_get_section(call *c) {
 
 void do_spar_member_get_energy(call *c) {
     live_member *m = arg_member(c, -1);
-    double *energy = OUT(c, 4);
-    RUN(c, spar_member_get_energy(m->m, energy));
+    int64_t n = arg_count(c, 0, SPAR_ENERGY_COUNT + 2);
+    double *energy = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_member_get_energy(m->m, n, energy));
 }
 
 void do_spar_member_get_work(call *c) {
     live_member *m = arg_member(c, -1);
-    double *work = OUT(c, 3);
-    RUN(c, spar_member_get_work(m->m, work));
+    int64_t n = arg_count(c, 0, SPAR_WORK_COUNT + 2);
+    double *work = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_member_get_work(m->m, n, work));
 }
 
 void do_spar_member_solve_static(call *c) {

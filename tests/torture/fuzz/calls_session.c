@@ -47,7 +47,7 @@ void do_spar_aero_effect_name(call *c) {
 /* ---- session ---- */
 
 static void begin_session(live_session *l, spar_session *s) {
-    *l = (live_session){.s = s, .room = 1};
+    *l = (live_session){.s = s};
 }
 
 void do_spar_session_create(call *c) {
@@ -152,9 +152,6 @@ void do_spar_session_set_coupling(call *c) {
     double atol = arg_real(c, 1e-9, 1e-5), rtol = arg_real(c, 1e-8, 1e-3);
     int most = arg_limit(c, 1, 12);
     RUN(c, spar_session_set_coupling(l->s, scheme, atol, rtol, most));
-    if (c->status == SPAR_OK) {
-        l->room = scheme == SPAR_COUPLING_EXPLICIT ? 1 : most;
-    }
 }
 
 void do_spar_session_set_relaxation(call *c) {
@@ -206,12 +203,19 @@ void do_spar_session_set_option(call *c) {
     RUN(c, spar_session_set_option(l->s, key, value));
 }
 
-void do_spar_session_get_coupling(call *c) {
+void do_spar_session_get_iterations(call *c) {
     live_session *l = arg_session(c);
     int *iterations = arg_out(c, sizeof(int), 1);
-    int room = l->s ? l->room : 1;
-    double *residual = OUT_OR_NULL(c, room), *size = OUT_OR_NULL(c, room), *report = OUT_OR_NULL(c, SPAR_REPORT_COUNT);
-    RUN(c, spar_session_get_coupling(l->s, iterations, residual, size, report));
+    int64_t n = arg_count(c, 0, 60);
+    double *residual = OUT_OR_NULL(c, length(n)), *size = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_session_get_iterations(l->s, iterations, n, residual, size));
+}
+
+void do_spar_session_get_report(call *c) {
+    live_session *l = arg_session(c);
+    int64_t n = arg_count(c, 0, SPAR_REPORT_COUNT + 2);
+    double *report = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_session_get_report(l->s, n, report));
 }
 
 void do_spar_session_get_time(call *c) {
@@ -336,8 +340,9 @@ void do_spar_session_try(call *c) {
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
     int compare = arg_int(c, 0, 1);
-    double *report = OUT(c, SPAR_TRY_COUNT);
-    RUN(c, spar_session_try(l->s, dt, steps, before, solve, h, compare, report));
+    int64_t n = arg_count(c, 0, SPAR_TRY_COUNT + 2);
+    double *report = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_session_try(l->s, dt, steps, before, solve, h, compare, n, report));
 }
 
 void do_spar_session_report_effects(call *c) {
@@ -347,8 +352,9 @@ void do_spar_session_report_effects(call *c) {
     spar_fluid_solver solve;
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
-    double *table = OUT(c, SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
-    RUN(c, spar_session_report_effects(l->s, dt, steps, before, solve, h, (double(*)[SPAR_COLUMN_COUNT])table));
+    int64_t rows = arg_count(c, 0, SPAR_ROW_COUNT + 2), columns = arg_count(c, 0, SPAR_COLUMN_COUNT + 2);
+    double *table = OUT_OR_NULL(c, length(rows) * length(columns));
+    RUN(c, spar_session_report_effects(l->s, dt, steps, before, solve, h, rows, columns, table));
 }
 
 void do_spar_session_advise(call *c) {
@@ -358,6 +364,7 @@ void do_spar_session_advise(call *c) {
     spar_fluid_solver solve;
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
-    double *advice = OUT(c, SPAR_ADVICE_COUNT);
-    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, before, solve, h, advice));
+    int64_t n = arg_count(c, 0, SPAR_ADVICE_COUNT + 2);
+    double *advice = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, before, solve, h, n, advice));
 }

@@ -46,7 +46,8 @@ enum {
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
-    CALL(spar_session_get_coupling, 60, FUZZ_PURE)                                                                     \
+    CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
+    CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_time, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_point_create, 25, FUZZ_CHANGES)                                                                          \
@@ -183,7 +184,6 @@ typedef struct live_session {
     spar_session *s;
     int busy; /* a call on it is under way */
     int wild; /* an odd number has been accepted: solutions may not exist */
-    int room; /* for the residuals of the coupling */
     int logs; /* it has a log */
     long logged;
 } live_session;
@@ -240,7 +240,7 @@ struct call {
     void *hold[CALL_HOLDS];
     int held;
     uint64_t before[3];
-    int taint, failures, room;
+    int taint, failures;
     size_t used;
     char text[CALL_TEXT];
 };

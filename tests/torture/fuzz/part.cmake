@@ -5,7 +5,7 @@ set_target_properties(fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY
 target_compile_definitions(fuzz PRIVATE _GNU_SOURCE SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 target_link_libraries(fuzz PRIVATE spar_flags spar_static m)
 add_test(NAME torture_fuzz_complete COMMAND fuzz --names "${PROJECT_SOURCE_DIR}/cmake/spar.map")
-add_test(NAME torture_fuzz_shrinks COMMAND fuzz --fault --calls 20000)
+add_test(NAME torture_fuzz_shrinks COMMAND fuzz --fault --calls 200000)
 add_test(NAME torture_fuzz COMMAND fuzz --calls 100000 --jobs 2 --all)
 add_test(NAME torture_fuzz_fresh COMMAND fuzz --calls 10000 --seed fresh)
 foreach(name IN ITEMS torture_fuzz_complete torture_fuzz_shrinks torture_fuzz torture_fuzz_fresh)

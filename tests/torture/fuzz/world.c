@@ -53,7 +53,7 @@ static void see_member(const live_member *m, uint64_t *h) {
     add_seen(h, spar_member_get_motion(m->m, seen, seen + 7 * n, seen + 13 * n), 19 * n);
     add_seen(h, spar_member_get_loads(m->m, seen), 6 * n);
     add_seen(h, spar_member_get_reaction(m->m, seen), 6);
-    add_seen(h, spar_member_get_energy(m->m, seen), 4);
+    add_seen(h, spar_member_get_energy(m->m, 4, seen), 4);
     if (m->kind == KIND_BEAM) {
         const double eta[2] = {0.3, 1};
         add_seen(h, spar_beam_get_section(m->m, 2, eta, seen, NULL, seen + 12, seen + 18), 26);
@@ -79,7 +79,7 @@ static void see_fluid(const live_fluid *f, uint64_t *h, uint64_t *of_last_push) 
             add_seen(h, spar_fluid_pull_motion(f->f, 1, seen, seen + 3 * n), 6 * n);
         }
     }
-    add_seen(of_last_push, spar_fluid_get_audit(f->f, seen), 8);
+    add_seen(of_last_push, spar_fluid_get_audit(f->f, 8, seen), 8);
 }
 
 static void see_aero(const live_aero *a, uint64_t *h) {
@@ -117,7 +117,8 @@ void fuzz_digest(world *w, int session, uint64_t digest[3]) {
     }
     add(digest + 1, &iteration, sizeof iteration);
     memset(seen, 0, 256 * sizeof *seen);
-    status = spar_session_get_coupling(s->s, &iteration, seen + 8, seen + 128, seen);
+    status = spar_session_get_iterations(s->s, &iteration, 120, seen + 8, seen + 128);
+    status = status == SPAR_OK ? spar_session_get_report(s->s, 8, seen) : status;
     add_seen(digest + 1, status, 256);
     add(digest + 1, &iteration, sizeof iteration);
     for (int i = 0; i < AEROS; i++) {
@@ -154,7 +155,6 @@ void fuzz_before(call *c) {
     }
     c->w->failures += c->watched && c->w->depth > 0; /* what is asked in between leaves messages */
     c->taint = c->w->taint;
-    c->room = c->session >= 0 ? c->w->session[c->session].room : 0;
     c->failures = c->w->failures;
     if (c->watched && c->session >= 0) {
         fuzz_digest(c->w, c->session, c->before);
@@ -256,9 +256,6 @@ void fuzz_after(call *c, int status) {
     world *w = c->w;
     c->status = status;
     if (c->session >= 0) {
-        if (c->what->flags & FUZZ_TRIAL) { /* settings made within it went with it */
-            w->session[c->session].room = c->room;
-        }
         w->session[c->session].busy--;
     }
     if (w->verbose) {

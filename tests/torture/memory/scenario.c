@@ -316,7 +316,7 @@ static void act_describe(void) {
     CALL(spar_member_set_motion, point, q, x, x);
     CALL(spar_member_get_reference, b, x, q);
     note(x, 30 * sizeof *x);
-    CALL(spar_member_get_energy, b, energy);
+    CALL(spar_member_get_energy, b, 4, energy);
     NOTE(energy);
     note_member(b);
     PLAIN_0(spar_version);
@@ -351,7 +351,7 @@ static void act_step(void) {
     CALL(spar_member_set_load, b, 4, SPAR_LOAD_FOLLOWER, load);
     CALL(spar_beam_set_line_load, b, SPAR_LOAD_DEAD, 2, eta, along[0]);
     CALL(spar_beam_set_line_load, b, SPAR_LOAD_FOLLOWER, 2, eta, along[0]);
-    CALL(spar_member_get_work, b, work);
+    CALL(spar_member_get_work, b, 3, work);
     for (int i = 1; i <= 5; i++) {
         double turn = 0.02 * i, q[7] = {0, 0, 0, cos(0.5 * turn), sin(0.5 * turn), 0, 0}, v[6] = {0, 0, 0, 1},
                a[6] = {0};
@@ -373,14 +373,15 @@ static void act_step(void) {
         expect_none(&h, before);
         note_member(b);
     }
-    CALL(spar_session_get_coupling, s, &iteration, residual, size, report);
+    CALL(spar_session_get_iterations, s, &iteration, (int64_t)(sizeof residual / sizeof *residual), residual, size);
+    CALL(spar_session_get_report, s, SPAR_REPORT_COUNT, report);
     NOTE(report);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
-    CALL(spar_fluid_get_audit, h.fluid[0], audit);
+    CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);
     note(all, 36 * sizeof *all);
-    CALL(spar_member_get_work, b, work);
+    CALL(spar_member_get_work, b, 3, work);
     NOTE(work);
     CALL(spar_beam_get_section, b, 2, eta, strain, force, NULL, NULL);
     NOTE(force);
@@ -408,7 +409,7 @@ static void act_rungs(void) {
         h.fluid[k] = begin_fluid(m, name[k], 10, &h.n[k], h.x[k]);
         CALL(spar_fluid_map, h.fluid[k]);
         if (k != 3) {
-            CALL(spar_member_get_work, m, work);
+            CALL(spar_member_get_work, m, 3, work);
         }
         CALL(spar_member_set_load, m, 1, SPAR_LOAD_DEAD, load);
         if (k == 0) {
@@ -471,7 +472,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_pull_forces, f, 1, n ? out : NULL);
     note(out, (size_t)(3 * n) * sizeof *out);
     CALL(spar_fluid_pull_forces_f32, f, 1, n ? x32 : NULL);
-    CALL(spar_fluid_get_audit, sections, audit);
+    CALL(spar_fluid_get_audit, sections, 8, audit);
     CALL(spar_step_reject, s);
     go(&h, 2);
     CALL(spar_fluid_set_sections, sections, 3, xi, NULL); /* mapped again */
@@ -585,7 +586,7 @@ static void act_try(void) {
     describe_trial(&h);
     go(&h, 1);
     for (int compare = 0; compare < 2; compare++) {
-        CALL(spar_session_try, h.session, 0.02, 8, before_step, solve, &h, compare, report);
+        CALL(spar_session_try, h.session, 0.02, 8, before_step, solve, &h, compare, SPAR_TRY_COUNT, report);
         note(report, 3 * sizeof *report);
     }
     go(&h, 1);
@@ -596,7 +597,8 @@ static void act_effects(void) {
     host h = {0};
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     describe_trial(&h);
-    CALL(spar_session_report_effects, h.session, 0.02, 8, before_step, solve, &h, table);
+    CALL(spar_session_report_effects, h.session, 0.02, 8, before_step, solve, &h, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+         table[0]);
     go(&h, 1);
     end_session(&h.session);
 }
@@ -609,7 +611,7 @@ static void act_advise(void) {
     describe_trial(&h);
     CALL(spar_session_set_option, h.session, "advise.dt", "keep");
     CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
-    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, before_step, solve, &h, advice);
+    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
     CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
     go(&h, 1);
     end_session(&h.session);
@@ -695,7 +697,8 @@ static void act_aero(void) {
         NOTE(force);
         PLAIN(spar_aero_effect_name, 0);
         if (run.ranks == 1) {
-            CALL(spar_aero_report_effects, w.aero, s, 0.01, 8, NULL, blow, &w, table);
+            CALL(spar_aero_report_effects, w.aero, s, 0.01, 8, NULL, blow, &w, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
+                 table[0]);
             CALL(spar_step, s, 0.01, blow, &w, NULL);
             note_member(blade);
         }

@@ -225,20 +225,20 @@ static int make_load(scene *c, const arguments *a) {
     return spar_session_load(c->session, a->path);
 }
 static int make_try(scene *c, const arguments *a) {
-    return spar_session_try(c->session, a->dt, a->steps, a->before, a->solve, c, a->compare, a->no_out ? NULL : out);
+    return spar_session_try(c->session, a->dt, a->steps, a->before, a->solve, c, a->compare,
+                            a->no_out ? -1 : SPAR_TRY_COUNT, out);
 }
 static int make_effects(scene *c, const arguments *a) {
-    double(*table)[SPAR_COLUMN_COUNT] = (double(*)[SPAR_COLUMN_COUNT])out;
-    return spar_session_report_effects(c->session, a->dt, a->steps, a->before, a->solve, c, a->no_out ? NULL : table);
+    return spar_session_report_effects(c->session, a->dt, a->steps, a->before, a->solve, c,
+                                       a->no_out ? -1 : SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, out);
 }
 static int make_advise(scene *c, const arguments *a) {
     return spar_session_advise(c->session, a->tolerance, a->dt, a->steps, a->before, a->solve, c,
-                               a->no_out ? NULL : out);
+                               a->no_out ? -1 : SPAR_ADVICE_COUNT, out);
 }
 static int make_aero(scene *c, const arguments *a) {
-    double(*table)[SPAR_COLUMN_COUNT] = (double(*)[SPAR_COLUMN_COUNT])out;
     return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
-                                    a->no_out ? NULL : table);
+                                    a->no_out ? -1 : SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, out);
 }
 
 /* Where a call belongs: nothing committed, before the first step, between steps, and within one. */
