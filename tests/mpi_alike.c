@@ -93,21 +93,22 @@ static void trials(void **state) {
 
 static void advice(void **state) {
     (void)state;
-    static const char *const option[][2] = {{"advise.dt", "keep"},       {"advise.nodes", "keep"},
-                                            {"advise.fidelity", "keep"}, {"advise.coupling", "keep"},
-                                            {"advise.horizon", "7"},     {"coupling.target", "0.5"}};
+    static const char *const option[][2] = {
+        {"advise.dt", "keep"},   {"advise.nodes", "keep"},   {"advise.fidelity", "keep"}, {"advise.coupling", "keep"},
+        {"advise.horizon", "7"}, {"advise.fluid_cost", "7"}, {"coupling.target", "0.5"}};
+    enum { OPTIONS = sizeof option / sizeof *option };
     double a[SPAR_ADVICE_COUNT];
-    for (int k = 0; k < 9 && size > 1; k++) {
+    for (int k = 0; k < OPTIONS + 3 && size > 1; k++) {
         scene c;
         create(&c);
         spar_session *s = c.session;
-        if (k < 6) {
+        if (k < OPTIONS) {
             OK(s, spar_session_set_option(s, option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
             differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a), option[k][0]);
-        } else if (k == 6) {
+        } else if (k == OPTIONS) {
             differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
                     "tolerance (here ");
-        } else if (k == 7) {
+        } else if (k == OPTIONS + 1) {
             differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
                     "steps (here ");
         } else {

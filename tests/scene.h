@@ -2,37 +2,12 @@
 #ifndef SCENE_H
 #define SCENE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "check.h"
 
-#include <cmocka.h>
-
-#include <math.h>
-#include <spar/spar.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "math/rotation.h"
-
-/* The call must succeed; else the message says why. */
-#define OK(session, call)                                                                                              \
-    do {                                                                                                               \
-        int status_ = (call);                                                                                          \
-        if (status_ != SPAR_OK) {                                                                                      \
-            fail_msg("%s: %s: %s", #call, spar_status_text(status_), spar_session_message(session));                   \
-        }                                                                                                              \
-    } while (0)
-
-/* |got - expected| <= tolerance, with both printed when not */
-#define NEAR(got, expected, tolerance)                                                                                 \
-    do {                                                                                                               \
-        double got_ = (got), expected_ = (expected), tolerance_ = (tolerance);                                         \
-        if (!(fabs(got_ - expected_) <= tolerance_)) {                                                                 \
-            fail_msg("%s is %.17g, expected %.17g within %g (off by %g)", #got, got_, expected_, tolerance_,           \
-                     got_ - expected_);                                                                                \
-        }                                                                                                              \
-    } while (0)
 
 static inline void scene_diagonal(double *m, double a, double b, double c, double d, double e, double f) {
     const double x[6] = {a, b, c, d, e, f};

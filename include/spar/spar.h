@@ -208,7 +208,10 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change
      advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
-                            the trials, their errors count for as much more as they grow with time */
+                            the trials, their errors count for as much more as they grow with time
+     advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
+                            what its nodes lead one to expect; where the solutions of the reference run take more than
+                            ten times that, their time in powers of a hundred of it */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The iterations of the step under way, or else of the last one; the same on all ranks. Local.
      iterations: out, how many there were, which may be more than the capacity
@@ -622,8 +625,8 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
    accelerations from the balance of forces. All calls here are collective, between steps; before and
    solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are
-   compared at 8 times, evenly spread. What a run costs is the processor time of its steps, the fluid's included, on all
-   ranks. */
+   compared at 8 times, evenly spread. The seconds of a run are the processor time of its steps, the fluid's included, on
+   all ranks; advice goes by counted work, not by them. */
 
 /* t, dt: the step goes from t to t + dt. Answer 0 for success; anything else ends the trial with SPAR_ERR_USER. */
 typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
@@ -692,7 +695,7 @@ enum {
     SPAR_ADVICE_PREDICTOR = 4,
     SPAR_ADVICE_NEWTON_RTOL = 5,   /* atol 1e-15 */
     SPAR_ADVICE_ERROR = 6,         /* estimated, as SPAR_TRY_MOTION */
-    SPAR_ADVICE_COST = 7,          /* of a second of the run, relative to the session as it is with the dt given */
+    SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
     SPAR_ADVICE_COUNT = 10
@@ -702,9 +705,12 @@ enum {
    many of it the trials last: what happens later is not seen, but see the option advise.horizon. before, solve,
    context: in, as of spar_session_try, called with other dt too. advice[capacity]: out, by SPAR_ADVICE_*, NULL:
    not wanted; what it says of beams: spar_member_get_advice. Beams of one make (all that is described but name,
-   placement and initial velocity) get one advice. What is kept as it is: the options advise.dt, advise.nodes,
-   advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO. SPAR_ERR_UNSUPPORTED: solve is
-   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached. */
+   placement and initial velocity) get one advice. Costs are counted (iterations of Newton, tangents, nodes,
+   unknowns, solutions of the fluid) and not timed, so that the same scene gets the same advice each time; what a
+   solution of the fluid counts for: the option advise.fluid_cost. What is kept as it is: the options advise.dt,
+   advise.nodes, advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO.
+   SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what
+   error was reached. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);

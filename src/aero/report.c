@@ -114,7 +114,7 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
     spar_session *s = session;
-    spari_run t = {dt, steps, before, solve, context};
+    spari_run t = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE];
     SPARI_TRY(

@@ -47,6 +47,7 @@ struct spar_session {
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
     int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
     double horizon;                                        /* option advise.horizon */
+    double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
     int coupling_stale;                                    /* settings of the coupling have changed since it was made */
 

@@ -41,6 +41,7 @@ static const spari_setting settings[] = {
     {"option advise.fidelity (1: keep)", offsetof(spar_session, keep_fidelity), 1},
     {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
     {"option advise.horizon", offsetof(spar_session, horizon), 0},
+    {"option advise.fluid_cost", offsetof(spar_session, fluid_cost), 0},
     {"numbers of members", offsetof(spar_session, member_count), 1},
     /* what a setter has done, though the setting is as it was */
     {"calls that set the coupling", offsetof(spar_session, coupling_stale), 1},
@@ -215,6 +216,7 @@ static const number_option number_options[] = {
     {"coupling.filter", offsetof(spar_session, coupling_filter), 0, 0, 0.5, "a number from 0 to 0.5"},
     {"coupling.target", offsetof(spar_session, coupling_target), 0, 1e-15, 1, "a number from 1e-15 to 1"},
     {"advise.horizon", offsetof(spar_session, horizon), 0, 0, 1e300, "a number >= 0 (seconds)"},
+    {"advise.fluid_cost", offsetof(spar_session, fluid_cost), 0, 0, 1e300, "a number >= 0 (seconds)"},
     {"coupling.motion_atol", offsetof(spar_session, motion_atol), 0, 0, 1e300, "a number >= 0 (metres)"},
     {"coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0, 0, 1, "a number from 0 to 1"},
 };

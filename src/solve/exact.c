@@ -53,6 +53,10 @@ static void exact_accept(spar_member *m) {
     spari_solver_accept(m->solution);
 }
 
+static void exact_effort(const spar_member *m, spari_effort *effort) {
+    spari_solver_effort(m->solution, effort);
+}
+
 static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     spari_solver *s = m->solution;
     spari_member_gather(m, m->dead, s->load);
@@ -132,6 +136,7 @@ const spari_fidelity spari_fidelity_exact = {
     .restart = exact_restart,
     .advance = exact_advance,
     .accept = exact_accept,
+    .effort = exact_effort,
     .rest = exact_rest,
     .reaction_room = spari_reaction_at_root_room,
     .reaction = spari_reaction_at_root,

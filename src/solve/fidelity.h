@@ -5,6 +5,7 @@
 
 #include "../comm/comm.h"
 #include "../member/structure.h"
+#include "effort.h"
 
 /* A row. Of the operations NULL means: nothing to do. They are called where spari_fidelity_is_here, but for those that
    every rank calls. 0 or a status; messages name the member, the public call puts its name before. */
@@ -32,6 +33,8 @@ typedef struct spari_fidelity {
     int (*advance)(spar_member *m, double dt);
     /* t^{n+1} becomes t^n */
     void (*accept)(spar_member *m);
+    /* what all that has taken since the member was made; NULL: nothing to speak of */
+    void (*effort)(const spar_member *m, spari_effort *effort);
     /* equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; leaves t^n alone, writes m->after.
        onward: from the shape that the last call found, if that leads there; else from t^n. NULL: there is none */
     int (*rest)(spar_member *m, const double *fluid, int load_steps, int onward);

@@ -198,6 +198,17 @@ static void frame_shape(const spar_member *m, const double *x, double *room, dou
     spari_member_from_unique(m, 6, room, nodes);
 }
 
+static void frame_effort(const spar_member *m, spari_effort *e) {
+    const spari_frame *f = m->solution;
+    *e = (spari_effort){.iterations = f->solves,
+                        .tangents = f->factors,
+                        .nodes = f->nodes,
+                        .elements = f->elements,
+                        .per_element = m->per_element,
+                        .unknowns = f->n,
+                        .band = spari_effort_band(f->n, f->block)};
+}
+
 static int64_t frame_state_size(const spar_member *m) {
     return spari_frame_state_size(m->solution);
 }
@@ -218,9 +229,10 @@ static void frame_load(spar_member *m, const double *state) {
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
     .free = frame_free, .restart = frame_restart, .advance = frame_advance, .accept = frame_accept,                    \
-    .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole,            \
-    .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape,                \
-    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load
+    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
+    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
+    .shape = frame_shape, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,              \
+    .load = frame_load
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

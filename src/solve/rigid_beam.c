@@ -210,6 +210,10 @@ static spari_solver *solver_of(const spar_member *m) {
     return b->solver;
 }
 
+static void rigid_effort(const spar_member *m, spari_effort *effort) {
+    spari_solver_effort(solver_of(m), effort);
+}
+
 static int64_t rigid_state_size(const spar_member *m) {
     return spari_solver_state_size(solver_of(m));
 }
@@ -237,6 +241,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .restart = rigid_restart,
     .advance = rigid_advance,
     .accept = rigid_accept,
+    .effort = rigid_effort,
     .rest = spari_carried_rest,
     .reaction_room = spari_reaction_of_whole_room,
     .reaction = spari_reaction_of_whole,

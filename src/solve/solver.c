@@ -125,6 +125,18 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
     return 0;
 }
 
+void spari_solver_effort(const spari_solver *s, spari_effort *e) {
+    const spari_body *b = s->body;
+    *e = (spari_effort){.iterations = s->newton,
+                        .tangents = s->factors,
+                        .nodes = b->unique,
+                        .elements = b->elements,
+                        .per_element = b->per_element,
+                        .points = b->linear[0] ? 0 : b->first[b->elements],
+                        .unknowns = 6 * b->unique,
+                        .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
+}
+
 /* Of a node: 25 doubles at either end of the step, 4 of the kept turn, 6 of the leap. */
 enum { STATE_HEAD = 12, STATE_NODE = 60 };
 

@@ -7,6 +7,7 @@
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "arms.h"
+#include "effort.h"
 #include "linear.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
@@ -55,6 +56,9 @@ void spari_solver_accept(spari_solver *solver);
 /* Equilibrium under the load `load`, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
    the last call found, if that leads there; else from t^n. */
 int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);
+
+/* What it has taken so far. */
+void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 
 /* All that the next steps depend on, to the last bit, as doubles, for save and load; the kept tangent is part of it.
    is_state: whether `count` doubles can be the state of this solver. */

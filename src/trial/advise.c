@@ -1,7 +1,7 @@
 /* The cheapest settings for a tolerance, by trials (plan.h). First a run that is converged; then, one after the other
    with a share of the tolerance for each, what of the structure can be left out; then the coupling and dt together;
    then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
-   those of whole runs, costs the processor time of their steps. */
+   those of whole runs, costs what is counted in them (cost.h). */
 #include "../base/quiet.h"
 #include "plan.h"
 
@@ -19,10 +19,10 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const spari_reco
     int few = spari_rule.least_nodes - 1, enough = p->group[g].nodes;
     while (enough - few > 1) {
         int middle = (few + enough) / 2;
-        double part, seconds;
+        double part, cost;
         spari_plan q = *p;
         q.group[g].nodes = middle;
-        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
+        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
         if (part <= spari_rule.nodes) {
             enough = middle;
         } else {
@@ -35,36 +35,36 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const spari_reco
 
 /* Takes the plan if it is within the share and cheaper than the best so far. */
 static int consider(spari_advisor *d, const spari_plan *p, const spari_record *base, double share, spari_plan *best,
-                    double *seconds, int *taken) {
+                    double *cost, int *taken) {
     double part, took;
     SPARI_TRY(spari_plan_distance(d, p, base, &part, &took));
-    *taken = part <= share && took < spari_rule.worth * *seconds;
+    *taken = part <= share && took < spari_rule.worth * *cost;
     if (*taken) {
         *best = *p;
-        *seconds = took;
+        *cost = took;
     }
     return SPAR_OK;
 }
 
 static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
     static const int64_t modes[] = {16, 8, 4, 2};
-    double seconds = base->seconds;
+    double cost = spari_plan_cost(d, base);
     spari_plan best = *p, q = *p;
     int taken, small;
     spari_shape *b = &q.group[g];
     b->fidelity = SPAR_FIDELITY_LINEAR;
-    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &small));
+    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &small));
     for (size_t k = 0; k < sizeof modes / sizeof *modes && small; k++) {
         b->fidelity = SPAR_FIDELITY_MODAL;
         b->modes = modes[k];
-        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
     }
     b->modes = 0;
     b->fidelity = SPAR_FIDELITY_RIGID;
-    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
+    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
     if (taken && spari_member_root_is_given(spari_plan_member(d, g))) {
         b->fidelity = SPAR_FIDELITY_PRESCRIBED;
-        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &seconds, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
     }
     *p = best;
     return SPAR_OK;
@@ -72,13 +72,13 @@ static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_recor
 
 static int choose_points(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
     const spari_beam *beam = spari_plan_member(d, g)->beam;
-    double part, seconds;
+    double part, cost;
     if (spari_beam_rule(beam) != SPAR_QUADRATURE_SECTIONS || beam->points == 1) {
         return SPAR_OK;
     }
     spari_plan q = *p;
     q.group[g].points = 1;
-    SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
+    SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
     if (part <= spari_rule.points) {
         *p = q;
     }
@@ -88,10 +88,10 @@ static int choose_points(spari_advisor *d, spari_plan *p, int g, const spari_rec
 static int choose_newton(spari_advisor *d, spari_plan *p, const spari_record *base) {
     static const double tolerance[] = {1e-3, 1e-6, 1e-9};
     for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++) {
-        double part, seconds;
+        double part, cost;
         spari_plan q = *p;
         q.newton = tolerance[k];
-        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &seconds));
+        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
         if (part <= spari_rule.newton) {
             *p = q;
             return SPAR_OK;
@@ -149,13 +149,13 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int *j, spari_outcome 
         double ratio = isfinite(o.error) ? o.error / d->tolerance : 100;
         if (spari_plan_is_good(d, &o)) {
             good = at;
-            if (o.seconds < spari_rule.worth * best->seconds) {
+            if (o.cost < spari_rule.worth * best->cost) {
                 *best = o;
                 *j = at;
             }
         } else {
             bad = at;
-            if (o.seconds > best->seconds && isfinite(o.seconds)) {
+            if (o.cost > best->cost && isfinite(o.cost)) {
                 return SPAR_OK; /* finer steps cost more still */
             }
         }
@@ -190,7 +190,7 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
             spari_outcome o;
             p.steps = d->run.steps;
             SPARI_TRY(spari_plan_measure(d, &p, &o));
-            *best = spari_plan_is_good(d, &o) && o.seconds < best->seconds ? o : *best;
+            *best = spari_plan_is_good(d, &o) && o.cost < best->cost ? o : *best;
         } else {
             SPARI_TRY(coarsest_steps(d, p, &j, best));
         }
@@ -218,7 +218,7 @@ static int finer(const spari_advisor *d, spari_plan *p, int g) {
 }
 
 static int fewer_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->keep_nodes && is_elastic(p, g) && p->group[g].nodes-- > spari_rule.least_nodes;
+    return !d->session->keep_nodes && p->group[g].nodes-- > spari_rule.least_nodes;
 }
 
 static int more_nodes(const spari_advisor *d, spari_plan *p, int g) {
@@ -286,7 +286,7 @@ static int improve(spari_advisor *d, spari_outcome *best) {
                     continue;
                 }
                 SPARI_TRY(spari_plan_measure(d, &p, &o));
-                if (spari_plan_is_good(d, &o) && o.seconds < spari_rule.worth * best->seconds) {
+                if (spari_plan_is_good(d, &o) && o.cost < spari_rule.worth * best->cost) {
                     *best = o;
                     moved = 1;
                 }
@@ -307,17 +307,17 @@ static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
 /* The cheapest of all settings that keep the tolerance and stay stable. */
 static int find_stable(spari_advisor *d, spari_outcome *best) {
     int stays = 0;
-    for (int k = 0; k < spari_rule.doubted && isfinite(best->seconds); k++) {
+    for (int k = 0; k < spari_rule.doubted && isfinite(best->cost); k++) {
         SPARI_TRY(spari_plan_stays(d, &best->plan, &stays));
         if (stays) {
             return SPAR_OK;
         }
-        spari_outcome next = {.error = INFINITY, .seconds = INFINITY};
+        spari_outcome next = {.error = INFINITY, .cost = INFINITY};
         for (int i = 0; i < d->known_count; i++) {
             spari_outcome *o = &d->known[i];
             if (is_no_stabler(&o->plan, &best->plan)) {
                 o->error = INFINITY;
-            } else if (spari_plan_is_good(d, o) && o->seconds < next.seconds) {
+            } else if (spari_plan_is_good(d, o) && o->cost < next.cost) {
                 next = *o;
             }
         }
@@ -337,13 +337,13 @@ static int search_plans(spari_advisor *d, const spari_plan *present, spari_outco
     SPARI_TRY(spari_plan_measure(d, present, now));
     SPARI_TRY(choose_structure(d, &finest, &structure));
     SPARI_TRY(choose_time(d, &structure, best));
-    if (!isfinite(best->seconds)) {
+    if (!isfinite(best->cost)) {
         SPARI_TRY(choose_time(d, &finest, best));
     }
-    if (spari_plan_is_good(d, now) && now->seconds < best->seconds) {
+    if (spari_plan_is_good(d, now) && now->cost < best->cost) {
         *best = *now;
     }
-    if (isfinite(best->seconds)) {
+    if (isfinite(best->cost)) {
         SPARI_TRY(improve(d, best));
         return find_stable(d, best);
     }
@@ -395,7 +395,7 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_PREDICTOR] = p->predictor,
         [SPAR_ADVICE_NEWTON_RTOL] = p->newton,
         [SPAR_ADVICE_ERROR] = best->error,
-        [SPAR_ADVICE_COST] = isfinite(now->seconds) && now->seconds > 0 ? best->seconds / now->seconds : -1,
+        [SPAR_ADVICE_COST] = isfinite(now->cost) && now->cost > 0 ? best->cost / now->cost : -1,
         [SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1,
         [SPAR_ADVICE_TRIALS] = d->trials,
     };
@@ -417,8 +417,10 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
     spar_session *s = session;
-    spari_advisor d = {.session = s, .run = {dt, steps, before, solve, context}, .tolerance = tolerance};
-    spari_outcome now = {0}, best = {.seconds = INFINITY, .error = INFINITY};
+    spari_advisor d = {.session = s,
+                       .run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context},
+                       .tolerance = tolerance};
+    spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);

@@ -18,7 +18,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    spari_run run = {dt, steps, before, solve, context};
+    spari_run run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
     spari_record record = {0};
     spari_wish wish = {0};
     int status = spari_trial_check(s, __func__, &run);
@@ -330,7 +330,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    spari_run run = {dt, steps, before, solve, context};
+    spari_run run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
     double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     int status = spari_trial_check(s, __func__, &run);
     status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_rows) : status;

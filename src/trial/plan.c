@@ -1,6 +1,8 @@
 /* Settings that advice tries: how they are written down, run, measured and compared. */
 #include "plan.h"
 
+#include "cost.h"
+
 #include "../math/basis.h"
 #include "../member/beam.h"
 
@@ -9,31 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-const spari_rules spari_rule = {.reference_ends = 0.25,
-                                .reference_most = 0.5,
-                                .reference_newton = 1e-10,
-                                .reference_rtol = 1e-8,
-                                .rung = 0.35,
-                                .nodes = 0.25,
-                                .points = 0.15,
-                                .newton = 0.02,
-                                .loosest_newton = 1e-3,
-                                .good = 0.9,
-                                .worth = 0.95,
-                                .timed = 0.05,
-                                .repeats = 3,
-                                .least_nodes = 3,
-                                .most_substeps = 8,
-                                .modes = 8,
-                                .tried = 100,
-                                .doubted = 12,
-                                .longer = 4,
-                                .least_steps = 256,
-                                .stays_newton = 1e-9,
-                                .stays_rtol = 1e-4,
-                                .seesaw = 1e-8,
-                                .grows = 2};
 
 /* ---- plans ---- */
 
@@ -157,7 +134,7 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
     return text;
 }
 
-static void tell_plan(const spari_advisor *d, const spari_plan *p, double error, double seconds) {
+static void tell_plan(const spari_advisor *d, const spari_plan *p, double error, double cost) {
     spar_session *s = d->session;
     char what[SPARI_MESSAGE_SIZE / 2], text[SPARI_MESSAGE_SIZE];
     if (!s->log) {
@@ -165,12 +142,16 @@ static void tell_plan(const spari_advisor *d, const spari_plan *p, double error,
     }
     (void)describe_plan(d, p, what, sizeof what);
     if (isfinite(error)) {
-        (void)snprintf(text, sizeof text, "%s: trial %d: %s: error %.3g, %.4g s", SPARI_ADVISE, d->trials, what, error,
-                       seconds);
+        (void)snprintf(text, sizeof text, "%s: trial %d: %s: error %.3g, cost %.4g", SPARI_ADVISE, d->trials, what,
+                       error, cost);
     } else {
         (void)snprintf(text, sizeof text, "%s: trial %d: %s: fails: %.300s", SPARI_ADVISE, d->trials, what, s->message);
     }
     spari_log(s, SPAR_LOG_INFO, text);
+}
+
+double spari_plan_cost(const spari_advisor *d, const spari_record *r) {
+    return r->work + d->fluid * (double)r->solutions;
 }
 
 /* How much larger an error is over the time that the host will run: errors of phase grow with time. */
@@ -187,24 +168,18 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
             return SPAR_OK;
         }
     }
-    double spent = 0;
+    spari_record r;
     *out = (spari_outcome){*p, INFINITY, INFINITY};
-    for (int k = 0; k < spari_rule.repeats && spent < spari_rule.timed; k++) {
-        spari_record r;
-        int status = spari_plan_run(d, p, 1, &r);
-        if (status != SPAR_OK) {
-            spari_record_free(&r);
-            if (!spari_plan_fails(status)) {
-                return status;
-            }
-            break;
-        }
+    int status = spari_plan_run(d, p, 1, &r);
+    if (status == SPAR_OK) {
         out->error = spari_record_motion(&r, &d->reference) * later(d, &r, &d->reference) + d->reference_error;
-        out->seconds = fmin(out->seconds, r.seconds);
-        spent += r.seconds;
-        spari_record_free(&r);
+        out->cost = spari_plan_cost(d, &r);
     }
-    tell_plan(d, p, out->error, out->seconds);
+    spari_record_free(&r);
+    if (status != SPAR_OK && !spari_plan_fails(status)) {
+        return status;
+    }
+    tell_plan(d, p, out->error, out->cost);
     if (d->known_count < SPARI_KNOWN) {
         d->known[d->known_count++] = *out;
     }
@@ -215,13 +190,12 @@ int spari_plan_is_good(const spari_advisor *d, const spari_outcome *o) {
     return o->error <= spari_rule.good * d->tolerance;
 }
 
-int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double *part,
-                        double *seconds) {
+int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double *part, double *cost) {
     spari_record r;
     int status = spari_plan_run(d, p, 1, &r);
     *part = status == SPAR_OK ? spari_record_motion(&r, base) * later(d, &r, base) / d->tolerance : INFINITY;
-    *seconds = r.seconds;
-    tell_plan(d, p, *part * d->tolerance, r.seconds);
+    *cost = spari_plan_cost(d, &r);
+    tell_plan(d, p, *part * d->tolerance, *cost);
     spari_record_free(&r);
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
@@ -252,10 +226,25 @@ static spari_plan reference_plan(const spari_advisor *d, const spari_plan *prese
     return p;
 }
 
+/* What a solution of the fluid counts for, by the reference runs. */
+static void weigh_fluid(spari_advisor *d, double seconds, int64_t solutions) {
+    spar_session *s = d->session;
+    char text[SPARI_MESSAGE_SIZE];
+    d->fluid = spari_cost_solution(s, d->reference.fluid, seconds, solutions);
+    if (s->log) {
+        (void)snprintf(text, sizeof text,
+                       "%s: a solution of the fluid counts for %.4g, by its nodes %.4g, a second for %.4g",
+                       SPARI_ADVISE, d->fluid, d->reference.fluid, spari_rule.price.second);
+        spari_log(s, SPAR_LOG_INFO, text);
+    }
+}
+
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
     spar_session *s = d->session;
-    double change = 0, before = 0;
+    double change = 0, before = 0, seconds = 0;
+    int64_t solutions = 0;
     d->reference_error = INFINITY;
+    d->run.timed = s->fluid_cost <= 0;
     int ends = s->keep_dt && s->keep_nodes ? 0 : s->keep_dt ? 2 : SPARI_FINEST;
     for (int level = 0; level <= ends && d->reference_error > spari_rule.reference_ends * d->tolerance; level++) {
         spari_record finer;
@@ -269,6 +258,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
             tell_plan(d, &p, INFINITY, 0);
             continue; /* too coarse, perhaps */
         }
+        seconds += finer.fluid_seconds, solutions += finer.solutions;
         before = change;
         change = d->reference.motion ? spari_record_motion(&d->reference, &finer) : 0;
         if (d->reference.motion) { /* what is left: the changes to come, a geometric series */
@@ -277,11 +267,13 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
         } else if (ends == 0) {
             d->reference_error = 0;
         }
-        tell_plan(d, &p, change, finer.seconds);
+        tell_plan(d, &p, change, spari_plan_cost(d, &finer));
         spari_record_free(&d->reference);
         d->reference = finer;
         *finest = p;
     }
+    d->run.timed = 0;
+    weigh_fluid(d, seconds, solutions);
     SPARI_REQUIRE(s, d->reference.motion, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
                   SPARI_ADVISE, s->message);
     SPARI_REQUIRE(s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
@@ -318,7 +310,7 @@ int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
     }
     double error = status == SPAR_OK ? spari_record_motion(&run, &finer) : INFINITY;
     *stays = error <= longer * d->tolerance && !seesaws(&run, &finer);
-    tell_plan(d, p, error, run.seconds);
+    tell_plan(d, p, error, spari_plan_cost(d, &run));
     spari_record_free(&run);
     spari_record_free(&finer);
     return spari_plan_fails(status) ? SPAR_OK : status;

@@ -2,6 +2,7 @@
 #ifndef SPARI_PLAN_H
 #define SPARI_PLAN_H
 
+#include "rules.h"
 #include "trial.h"
 
 #define SPARI_ADVISE "spar_session_advise"
@@ -11,30 +12,6 @@ enum {
     SPARI_FINEST = 6, /* the reference halves dt so often at most */
     SPARI_KNOWN = 400 /* settings remembered at most */
 };
-
-/* What advice goes by. Shares are parts of the tolerance. */
-typedef struct spari_rules {
-    double reference_ends;   /* dt is halved until the reference's own error is below this share, */
-    double reference_most;   /* and above this one there is no reference */
-    double reference_newton; /* with what it is solved: Newton's tolerance, */
-    double reference_rtol;   /* and the coupling's */
-    double rung, nodes;      /* shares that a lower fidelity and fewer nodes may take, */
-    double points, newton;   /* fewer quadrature points, a looser Newton */
-    double loosest_newton;   /* its tolerance goes no further */
-    double good;             /* share that the error of good settings is below: the rest is for what no trial shows */
-    double worth;            /* a change has to bring the cost below this part of it: more than the clock's noise */
-    double timed;            /* seconds that a short run is repeated for, */
-    int repeats;             /* so many times at most */
-    int least_nodes;         /* of an element; 2 lock */
-    int most_substeps;       /* in a step */
-    int modes;               /* that a beam's first modal try has */
-    int tried, doubted;      /* settings measured before moves end, and whose stability is looked at, at most */
-    int longer, least_steps; /* that is looked at in a run so many times as long, and of so many steps at least, */
-    double stays_newton;     /* against one of half the dt: with what that is solved, */
-    double stays_rtol;       /* and coupled */
-    double seesaw, grows;    /* loads that turn round with every step: squares of what counts, and of its growth */
-} spari_rules;
-extern const spari_rules spari_rule;
 
 /* What of a beam is chosen. */
 typedef struct spari_shape {
@@ -52,7 +29,7 @@ typedef struct spari_plan {
 
 typedef struct spari_outcome {
     spari_plan plan;
-    double error, seconds; /* INFINITY: it fails */
+    double error, cost; /* INFINITY: it fails */
 } spari_outcome;
 
 typedef struct spari_advisor {
@@ -62,6 +39,7 @@ typedef struct spari_advisor {
     int groups, *group;     /* [members] of which group; -1: as it is */
     spari_record reference; /* the run that errors are taken against */
     double reference_error;
+    double fluid;         /* what a solution of the fluid counts for; known once the reference is */
     spari_outcome *known; /* [SPARI_KNOWN] settings measured against the reference */
     int known_count, trials;
 } spari_advisor;
@@ -87,7 +65,9 @@ int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, spari_out
 int spari_plan_is_good(const spari_advisor *advisor, const spari_outcome *outcome);
 /* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. */
 int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double *part,
-                        double *seconds);
+                        double *cost);
+/* What the run has cost, the fluid's solutions among it. */
+double spari_plan_cost(const spari_advisor *advisor, const spari_record *record);
 /* Finds the reference: halves dt until the error that is left, judged by how the changes fall, is a small part of the
    tolerance. finest: its settings. */
 int spari_plan_reference(spari_advisor *advisor, const spari_plan *present, spari_plan *finest);

@@ -1,6 +1,8 @@
 /* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
 #include "trial.h"
 
+#include "cost.h"
+
 #include "../base/quiet.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
@@ -327,16 +329,39 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     }
 }
 
+/* The host's fluid solver, timed. */
+typedef struct timed_fluid {
+    const spari_run *run;
+    clock_t spent;
+} timed_fluid;
+
+static int solve_timed(spar_session *s, double t, double dt, int iteration, void *context) {
+    timed_fluid *fluid = context;
+    clock_t since = clock();
+    int answer = fluid->run->solve(s, t, dt, iteration, fluid->run->context);
+    fluid->spent += clock() - since;
+    return answer;
+}
+
+/* Steps once, and keeps what it cost. */
+static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
+    int iterations = 0, timed = run->timed && run->solve;
+    timed_fluid fluid = {run, 0};
+    clock_t since = clock();
+    int status = timed ? spar_step(s, run->dt, solve_timed, &fluid, &iterations)
+                       : spar_step(s, run->dt, run->solve, run->context, &iterations);
+    r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
+    r->fluid_seconds += (double)fluid.spent / CLOCKS_PER_SEC;
+    r->solutions += iterations;
+    r->work += status == SPAR_OK ? spari_cost_step(s, iterations) : 0;
+    return status;
+}
+
 static int march(spar_session *s, const spari_run *run, const sight *w, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
-        int iterations = 0;
         SPARI_TRY(prepare_step(s, run));
-        clock_t since = clock();
-        int status = spar_step(s, run->dt, run->solve, run->context, &iterations);
-        r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
-        r->solutions += iterations;
-        SPARI_TRY(status);
+        SPARI_TRY(step_once(s, run, r));
         watch_loads(s, i, run->steps, r, size);
         if (i * SPARI_SAMPLES % run->steps == 0) {
             int64_t k = i * SPARI_SAMPLES / run->steps - 1;
@@ -352,6 +377,15 @@ static int march(spar_session *s, const spari_run *run, const sight *w, spari_re
     return SPAR_OK;
 }
 
+/* What a run took, summed over the ranks. */
+static int share_costs(spar_session *s, spari_record *r) {
+    enum { COSTS = 4 };
+    double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s), spari_cost_fluids(s)};
+    int status = spari_comm_sum(s->comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message);
+    r->seconds = cost[0], r->fluid_seconds = cost[1], r->work = cost[2], r->fluid = cost[3];
+    return status;
+}
+
 /* The members and fluids there now are the trial's. */
 static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
     sight w = {NULL, NULL};
@@ -363,9 +397,7 @@ static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
     }
     if (status == SPAR_OK) {
         memcpy(r->report, s->own->coupling->report, sizeof r->report);
-        double shared[2] = {r->seconds, 0};
-        status = spari_comm_sum(s->comm, shared, 1, SPAR_OK, s->message, sizeof s->message);
-        r->seconds = shared[0];
+        status = share_costs(s, r);
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);

@@ -18,6 +18,7 @@ typedef struct spari_run {
     spar_before_step before;
     spar_fluid_solver solve;
     void *context;
+    int timed; /* whether the time of the fluid's solutions is wanted */
 } spari_run;
 
 /* What is to be otherwise than the session has it. */
@@ -41,6 +42,9 @@ struct spari_record {
     double alternating[2]; /* part of the loads that turns round from step to step, squared, in the second and in the
                               last quarter of the run, relative to the loads of both */
     double seconds;        /* processor time of the steps, all ranks */
+    double fluid_seconds;  /* of timed runs: of that, the fluid's */
+    double work;           /* what the steps cost without the fluid, and what a solution of the fluid may cost by its */
+    double fluid;          /* nodes, counted (cost.h); all ranks */
     int64_t solutions;     /* calls of the fluid solver */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */

@@ -171,7 +171,8 @@ void do_spar_session_set_option(call *c) {
                                        "fluid.audit",          "advise.dt",       "advise.nodes",
                                        "advise.fidelity",      "advise.coupling", "coupling.columns",
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
-                                       "coupling.motion_rtol", "coupling.target", "advise.horizon"};
+                                       "coupling.motion_rtol", "coupling.target", "advise.horizon",
+                                       "advise.fluid_cost"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -186,14 +187,16 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1e-12", "1e-3"},
                                             {"0", "1e-6", "0.1"},
                                             {"0.01", "1", "1e-15"},
-                                            {"0", "1", "0.01"}};
+                                            {"0", "1", "0.01"},
+                                            {"0", "1", "1e-6"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);
-    int k = below(c, 15);
+    enum { KEYS = sizeof keys / sizeof *keys };
+    int k = below(c, KEYS);
     const char *key = keys[k], *value = values[k][below(c, 3)];
     if (odd(c)) {
-        key = chance(c, 30) ? NULL : chance(c, 50) ? "coupling.none%n" : keys[below(c, 15)];
+        key = chance(c, 30) ? NULL : chance(c, 50) ? "coupling.none%n" : keys[below(c, KEYS)];
     }
     if (odd(c)) {
         value = chance(c, 20) ? NULL : strange[below(c, 17)];

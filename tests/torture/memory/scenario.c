@@ -270,6 +270,7 @@ static void settings(spar_session *s) {
                                             {"fluid.far", "take"},
                                             {"fluid.audit", "on"},
                                             {"advise.horizon", "0"},
+                                            {"advise.fluid_cost", "0"},
                                             {"advise.coupling", "vary"}};
     CALL(spar_session_set_gravity, s, g);
     CALL(spar_session_set_integrator, s, 0.8, 1);

@@ -667,6 +667,7 @@ static const struct setting {
     {"advise.fidelity", "advise.fidelity", "vary", "keep"},
     {"advise.coupling", "advise.coupling", "vary", "keep"},
     {"advise.horizon", "advise.horizon", "9", "0"},
+    {"advise.fluid_cost", "advise.fluid_cost", "1", "0"},
 };
 enum { SET = sizeof set / sizeof *set };
 

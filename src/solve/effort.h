@@ -1,0 +1,19 @@
+/* What solving for a member has taken, counted: the same on every machine and under every load, as no time is. */
+#ifndef SPARI_EFFORT_H
+#define SPARI_EFFORT_H
+
+#include <stdint.h>
+
+typedef struct spari_effort {
+    int64_t iterations, tangents;     /* since the member was made: of Newton, and formed and factored */
+    int nodes, elements, per_element; /* what each of them was of */
+    int points;                       /* quadrature points that an iteration goes through; 0: it takes matrices */
+    int unknowns, band;               /* of the linear system, and how many of them a row couples at most */
+} spari_effort;
+
+/* A row of a chain of elements meets two of them, with what a factorisation fills in. */
+static inline int spari_effort_band(int unknowns, int block) {
+    return unknowns < 2 * block ? unknowns : 2 * block;
+}
+
+#endif

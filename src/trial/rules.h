@@ -1,0 +1,51 @@
+/* What advice goes by: shares of the tolerance, limits, prices. All its constants stand here, their values in rules.c.
+ */
+#ifndef SPARI_RULES_H
+#define SPARI_RULES_H
+
+/* What counts in a run cost, in instructions (cost.h). Taken from what `valgrind --tool=callgrind` counts in the
+   release build, for one and two elements of 4 to 12 nodes: whole steps come out within a tenth. */
+typedef struct spari_prices {
+    double node, point, point_node;   /* an iteration of Newton: a node, a quadrature point, a node that it sees */
+    double pair;                      /* a tangent: a pair of nodes of an element, */
+    double tangent_point;             /* a quadrature point, */
+    double tangent_point_pair;        /* a pair of nodes that it sees; */
+    double factor, factor_row;        /* factored: an unknown, another in its row, */
+    double factor_fill;               /* a pair of those */
+    double solve, solve_row;          /* a linear system: an unknown, another in its row */
+    double frame_node;                /* a linear or modal member's solution: a node; */
+    double product, product_row;      /* a product with one of its matrices, and each entry */
+    double step_node, solution_node;  /* beside all this: a node in a step, and in each solution of it */
+    double column, column_pair;       /* IQN-ILS: an unknown in a column, and in a pair of columns */
+    double map, map_pair;             /* motion and loads of a fluid: a node of the member, a pair in an element, */
+    double map_node, map_shape;       /* a node of the fluid, each of the member's that it is tied to */
+    double fluid;                     /* the host's fluid, which cannot be counted: a solution at least, */
+    double fluid_node, fluid_section; /* for each node, for each section of blade elements. That is believed, */
+    double believed;                  /* unless the time taken is so many times as much: then that in whole powers */
+    double second;                    /* of the square of it, at so many instructions a second */
+} spari_prices;
+
+/* What advice goes by. Shares are parts of the tolerance. */
+typedef struct spari_rules {
+    double reference_ends;   /* dt is halved until the reference's own error is below this share, */
+    double reference_most;   /* and above this one there is no reference */
+    double reference_newton; /* with what it is solved: Newton's tolerance, */
+    double reference_rtol;   /* and the coupling's */
+    double rung, nodes;      /* shares that a lower fidelity and fewer nodes may take, */
+    double points, newton;   /* fewer quadrature points, a looser Newton */
+    double loosest_newton;   /* its tolerance goes no further */
+    double good;             /* share that the error of good settings is below: the rest is for what no trial shows */
+    double worth;            /* a change has to bring the cost below this part of it */
+    int least_nodes;         /* of an element; 2 lock */
+    int most_substeps;       /* in a step */
+    int modes;               /* that a beam's first modal try has */
+    int tried, doubted;      /* settings measured before moves end, and whose stability is looked at, at most */
+    int longer, least_steps; /* that is looked at in a run so many times as long, and of so many steps at least, */
+    double stays_newton;     /* against one of half the dt: with what that is solved, */
+    double stays_rtol;       /* and coupled */
+    double seesaw, grows;    /* loads that turn round with every step: squares of what counts, and of its growth */
+    spari_prices price;
+} spari_rules;
+extern const spari_rules spari_rule;
+
+#endif

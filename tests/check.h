@@ -1,0 +1,33 @@
+/* What tests demand of a call and of a number. */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <spar/spar.h>
+
+/* The call must succeed; else the message says why. */
+#define OK(session, call)                                                                                              \
+    do {                                                                                                               \
+        int status_ = (call);                                                                                          \
+        if (status_ != SPAR_OK) {                                                                                      \
+            fail_msg("%s: %s: %s", #call, spar_status_text(status_), spar_session_message(session));                   \
+        }                                                                                                              \
+    } while (0)
+
+/* |got - expected| <= tolerance, with both printed when not */
+#define NEAR(got, expected, tolerance)                                                                                 \
+    do {                                                                                                               \
+        double got_ = (got), expected_ = (expected), tolerance_ = (tolerance);                                         \
+        if (!(fabs(got_ - expected_) <= tolerance_)) {                                                                 \
+            fail_msg("%s is %.17g, expected %.17g within %g (off by %g)", #got, got_, expected_, tolerance_,           \
+                     got_ - expected_);                                                                                \
+        }                                                                                                              \
+    } while (0)
+
+#endif
