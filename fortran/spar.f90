@@ -108,6 +108,7 @@ module spar
     procedure :: step_accept => session_step_accept
     procedure :: step_reject => session_step_reject
     procedure :: step => session_step
+    procedure :: solve_static => session_solve_static
     procedure, private :: session_try_64, session_try_32
     generic :: try => session_try_64, session_try_32
     procedure, private :: session_report_effects_64, session_report_effects_32
@@ -630,6 +631,26 @@ contains
     call fill_record(self, record, to_solver, to_before, solve, context=context)
     call finish(spar_step(self%handle, dt, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
   end subroutine session_step
+
+  ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
+  ! default 1.
+  subroutine session_solve_static(self, load_steps, solve, context, iterations, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    integer, intent(in), optional :: load_steps
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(inout), optional :: iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+    integer(c_int) :: parts
+
+    parts = 1
+    if (present(load_steps)) parts = int(load_steps, c_int)
+    call fill_record(self, record, to_solver, to_before, solve, context=context)
+    call finish(spar_session_solve_static(self%handle, parts, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
+  end subroutine session_solve_static
 
   ! What C is handed for the host's procedures: the record with them, and the calls that read it; none for none.
   subroutine fill_record(self, record, to_solver, to_before, solve, before, context)

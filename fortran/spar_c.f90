@@ -681,6 +681,16 @@ module spar_c
       integer(c_int) :: status
     end function spar_step
 
+    function spar_session_solve_static(session, load_steps, solve, context, iterations) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: load_steps
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_session_solve_static
+
     function spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report) bind(c) &
         result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr

@@ -14,8 +14,8 @@
        } while (!done);
        spar_step_accept(s);                         or spar_step_reject(s)
 
-   and spar_step runs it with a callback. "The spec" below is the theory document of the coupling, whose steps 1 to 8
-   these are.
+   and spar_step runs it with a callback. docs/theory.md has the equations behind it, which are cited below as (T1) and
+   so on, and the parts 1 to 8 of a step.
 
    Conventions
    - Units are SI; any consistent set works, gravity included. Angles are in radians.
@@ -47,7 +47,7 @@
    handle that is NULL already, and sets the handle to NULL. create writes the handle only when it succeeds.
 
    Ranks. "Collective" means: called on every rank of the session, in the same order and with the same arguments, but
-   for outputs, contexts, the fluid solver of spar_step and the paths of save and load. Members are
+   for outputs, contexts, fluid solvers of steps and static solutions and the paths of save and load. Members are
    described on every rank with the same arguments, and settings made alike; each rank's fluids are its own, and a rank
    may have none. A collective call compares, before it does anything, which call it is, its arguments and, between
    steps, all settings but the options fluid.far and fluid.audit: where the ranks differ it is SPAR_ERR_COMM on all of
@@ -177,7 +177,7 @@ SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, 
    rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
    50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
-/* Polynomial the loads are extrapolated with to t^{n+1} in step 1: 0, 1 (default; the spec's, with dt^{n+1}/dt^n), 2;
+/* Polynomial the loads are extrapolated with to t^{n+1} in part 1 of a step: 0, 1 (default, (T11)), 2;
    no farther than ten times the last step, so that a much longer one does not start from its rounding. As many loads
    are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has been raised.
    SPAR_ERR_MEMORY: the order is as before. */
@@ -201,8 +201,8 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
                             iteration to the next by no more than atol + rtol times their way since t^n (root of the
                             sum of squares; turns count times the member's length)
      coupling.target        1e-15 to 1, default 0.01: the error that the advised dt aims at
-     fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the spec's average of the two
-                            states, or the node motion interpolated on the group (does not cut corners)
+     fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
+                            (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
@@ -213,7 +213,7 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
                             what its nodes lead one to expect; where the solutions of the reference run take more than
                             ten times that, their time in powers of a hundred of it */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
-/* The iterations of the step under way, or else of the last one; the same on all ranks. Local.
+/* The iterations of the step under way, or else of the last step or static solution; the same on all ranks. Local.
      iterations: out, how many there were, which may be more than the capacity
      capacity: in, of the two arrays; max_iterations of spar_session_set_coupling is always enough
      residual[capacity], size[capacity]: out, by iteration, the change of the loads and the loads, N: root of the sum of
@@ -461,11 +461,11 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
 
 enum {
     SPAR_PROJECT_BOUNDED = 0, /* nearest point by bounds on the squared distance: always the global one */
-    SPAR_PROJECT_RPOLY = 1    /* the spec's: all roots of the derivative of the squared distance */
+    SPAR_PROJECT_RPOLY = 1    /* all roots of the derivative of the squared distance, by Jenkins and Traub */
 };
 /* How rotations are interpolated between the nodes of an element. Force, moment and power are conserved in both. */
 enum {
-    SPAR_INTERPOLATE_NODAL = 0,     /* the spec's: normalised sum of quaternions, sums of velocities */
+    SPAR_INTERPOLATE_NODAL = 0,     /* (T4): normalised sum of quaternions, sums of velocities */
     SPAR_INTERPOLATE_CONSISTENT = 1 /* the same places; velocities are their exact derivative, moments the transpose */
 };
 enum { SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1 };
@@ -497,7 +497,7 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
 /* kind: in, SPAR_INTERPOLATE_*, default nodal. */
 SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind);
-/* Finds the foot of every node on the reference line (the spec's map): the nearest place of all, of equally near ones
+/* Finds the foot of every node on the reference line, (T1) to (T3): the nearest place of all, of equally near ones
    the first along the line. The member must be committed; the feet of a point or rigid body are its node. A joint
    belongs to the lower element. To be called after nodes are set or replaced; sets that were not replaced are mapped
    again where they were. A map is not saved with a session: it is found again, a million nodes in half a second.
@@ -511,12 +511,12 @@ SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int f
    wanted. */
 SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags);
 /* x_map[n][3]: out, foot in the reference configuration, m; q_map[n][4]: out, its section frame; con[n][3]: out, from
-   the foot to the node (the spec's motion-con; its force-con is the negative). NULL: not wanted. */
+   the foot to the node, the arm c of (T3). NULL: not wanted. */
 SPAR_API int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
 /* The interpolation behind the map. first_node[n]: out, node of the member the P = nodes_per_element basis values
    begin at; phi[n][P]: out. NULL: not wanted. */
 SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi);
-/* Motion nodes at t^n + theta dt (the spec's steps 3 and 4). theta: in, in [0,1]: 1 backward Euler, 1/2
+/* Motion nodes at t^n + theta dt (parts 3 and 4 of a step, (T4) to (T6)). theta: in, in [0,1]: 1 backward Euler, 1/2
    Crank-Nicolson, 0 explicit. x[n][3]: out, places, m; v[n][3]: out, m/s. NULL: not wanted. Before the first step:
    the initial state. SPAR_ERR_NUMERIC: the rotations of an element's nodes cancel. */
 SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
@@ -543,10 +543,10 @@ SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const 
    as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: asked for
    the first time after a push without SPAR_EFFECT_FLUID_HISTORY. */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
-/* Loads at t^{n+1} on the force nodes where they are now (the spec's step 7); before the first step those at t = 0.
-   Replaces what the fluid pushed before. force[n][3]: in, N; moment[n][3]: in, N m, about each node, NULL: none. A
-   refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
-   follows. */
+/* Loads at t^{n+1} on the force nodes where they are now (part 7 of a step, (T8) to (T10)); before the first step those
+   at t = 0. Replaces what the fluid pushed before. force[n][3]: in, N; moment[n][3]: in, N m, about each node, NULL:
+   none. A refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good
+   push follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
 /* For a fluid that takes several steps within dt: its loads over the part of the step that ends at t^n + theta dt,
    theta in (0, 1], rising from push to push; a theta that does not rise begins anew (the next iteration). The loads in
@@ -600,6 +600,28 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
    solve; iterations: out, how many it took, NULL: not wanted. Accepts, or after a failure of any part rejects and
    answers that part's status. */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
+
+/* Static equilibrium of all members with the fluid's answer: the shape under gravity, all kept loads and the loads that
+   the fluid has on that shape (a wing's trim, a flag in steady flow). The fluid solver is called as in spar_step, and
+   iterated by the session's coupling scheme until the loads agree within its tolerances; explicit: it is called once.
+   Each iteration begins with the members' static solutions, as spar_member_solve_static makes them; the last one is
+   under the loads that came last, so that shape and loads are in balance to rounding. From then on these are the motion
+   and the loads at t^n: steps begin at rest, and with loads extrapolated from there on. What is extrapolated, and what
+   IQN-ILS has learned in earlier steps, is forgotten.
+     load_steps: in, >= 1, parts that the loads of the first iteration come on in
+     solve: in, NULL: no fluid on this rank, loads pushed stay. In it t is the clock, dt 0 and iteration from 0; pulls
+       give the shape at any theta; it settles its flow around it. What it may not call in a step it may not call here
+     context: in, handed to solve
+     iterations: out, calls of solve on each rank, also after a failure; NULL: not wanted
+   Points and external members stand where they are, or where solve puts them (spar_member_set_motion), which finds an
+   external member's equilibrium under spar_member_get_loads; rigid and prescribed ones as spar_member_solve_static has
+   them. spar_session_get_iterations and _get_report tell of its iterations; the option coupling.unconverged does not
+   matter here. A log is warned where Aitken or IQN-ILS has found an equilibrium beyond static divergence, which a run
+   leaves. Between steps or before the first one. Collective. SPAR_ERR_STATE: nothing holds a member; SPAR_ERR_NUMERIC:
+   no equilibrium of a member, or none with the fluid in max_iterations: the message names the member whose loads change
+   most, and says whether and how fast they grow. */
+SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
+                                       int *iterations);
 
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
    fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. path: in;

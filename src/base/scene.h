@@ -60,8 +60,10 @@ struct spar_session {
     int iterating; /* the last check asked for another iteration */
     int started;   /* the clock has run */
     int failed;    /* the last check of the step under way failed */
-    int lent;      /* the host's fluid solver runs inside spar_step, to which the step under way belongs */
-    int trial;     /* a trial run is under way (trial.h) */
+    const char
+        *lent;    /* the call that the host's fluid solver runs inside, to which what is under way belongs; or NULL */
+    int standing; /* what is under way is a static solution: there is one state, whatever theta a fluid pulls at */
+    int trial;    /* a trial run is under way (trial.h) */
 
     const spari_setting *settings;
     int setting_count;

@@ -24,6 +24,8 @@ int spari_fluid_keep(spar_fluid *fluid, int order);
 void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_last[2]);
 void spari_fluid_accept(spar_fluid *fluid);
 void spari_fluid_reject(spar_fluid *fluid);
+/* What was pushed last holds at t^n, as after a static solution. */
+void spari_fluid_settle(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
 spar_fluid *spari_fluid_next(const spar_fluid *fluid); /* the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);

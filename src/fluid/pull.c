@@ -6,6 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+double spari_fluid_time(const spar_fluid *fluid, double theta) {
+    return fluid->member->session->standing && theta >= 0 && theta <= 1 ? 1 : theta;
+}
+
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller) {
     if (!(theta >= 0 && theta <= 1)) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
@@ -305,6 +309,7 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
     const spari_nodes *s;
     wanted left = *w;
     fluid->asked |= parts_of(w, theta);
+    theta = spari_fluid_time(fluid, theta);
     if (fluid->mute & SPARI_MUTE_HALF_STEP && theta > 0) {
         theta = 1;
     }

@@ -27,6 +27,7 @@ static int start_history(spar_fluid *fluid, int64_t n, const char *caller) {
 
 static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, const char *caller) {
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
+    theta = spari_fluid_time(fluid, theta);
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     int64_t n = s ? s->n : 0;
@@ -338,6 +339,18 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
         for (int k = 1; k <= order; k++) {
             h->after[i] += w[k] * h->past[k][i];
         }
+    }
+}
+
+void spari_fluid_settle(spar_fluid *fluid) {
+    spari_history *h = fluid->history;
+    spari_fluid_forget_refusal(fluid);
+    fluid->mean_theta = 0;
+    if (fluid->load) {
+        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
+    }
+    if (h && h->n > 0) {
+        memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
     }
 }
 

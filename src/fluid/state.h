@@ -82,10 +82,12 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
 /* Finite numbers x [n][width]. */
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
                              int width);
+/* theta, or 1 in a static solution, where time stands. */
+double spari_fluid_time(const spar_fluid *fluid, double theta);
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller);
 /* least: least |Q|^2 the kernels met. */
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
-/* Reference foot and its orientation (the spec's normalised sum of the nodes' quaternions). */
+/* Reference foot and its orientation (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);

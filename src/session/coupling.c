@@ -76,8 +76,7 @@ int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
     if (!c || !make_vectors(s, c)) {
         spari_coupling_free(&c);
         return spari_fail(s, SPAR_ERR_MEMORY,
-                          "spar_step_begin: no memory for the coupling; ask for fewer columns "
-                          "(option coupling.columns)");
+                          "no memory for the coupling; ask for fewer columns (option coupling.columns)");
     }
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
@@ -205,8 +204,9 @@ static void record(spari_coupling *c, double residual, double size) {
     }
 }
 
-static int not_converged(spar_session *s, double residual, double size) {
+static int not_converged(spar_session *s) {
     const spari_coupling *c = s->own->coupling;
+    int last = c->iterations - 1;
     char motion[80] = "";
     if (wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
@@ -216,40 +216,54 @@ static int not_converged(spar_session *s, double residual, double size) {
         "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
         "N%s; added mass about %.3g of the mass); take a smaller relaxation, another scheme or a smaller "
         "dt, or reject the step",
-        s->iteration, residual, size, motion, c->report[SPAR_REPORT_ADDED_MASS]);
+        s->iteration, c->residual[last], c->size[last], motion, c->report[SPAR_REPORT_ADDED_MASS]);
 }
 
-int spari_coupling_check(spar_session *s, int *done) {
+int spari_coupling_compare(spar_session *s, int *agreed) {
     spari_coupling *c = s->own->coupling;
     double residual, size;
-    *done = 1;
+    *agreed = 0;
     load_norms(s, NULL, &residual, &size);
     SPARI_REQUIRE(s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
-                  "spar_step_check: the loads are too large to be squared (the iteration blows up); take a smaller "
-                  "relaxation or dt, or reject the step");
+                  "the loads are too large to be squared (the iteration blows up); take a smaller relaxation or dt, or "
+                  "reject the step");
     int motion = c->accelerator && wants_motion(s);
     if (motion) {
         motion_norms(s);
     }
     record(c, residual, size);
-    if (!c->accelerator || (residual <= s->coupling_atol + s->coupling_rtol * size &&
-                            (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled))) {
-        return SPAR_OK;
-    }
-    if (s->iteration >= s->coupling_max) {
-        if (!s->accept_unconverged) {
-            return not_converged(s, residual, size);
-        }
-        c->report[SPAR_REPORT_UNCONVERGED] += 1;
-        return SPAR_OK;
-    }
-    *done = 0;
+    *agreed = residual <= s->coupling_atol + s->coupling_rtol * size &&
+              (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled);
+    return SPAR_OK;
+}
+
+void spari_coupling_next(spar_session *s) {
+    spari_coupling *c = s->own->coupling;
     stack(s);
     spari_accelerator_next(c->accelerator, c->x, c->g, c->x);
     unstack(s);
     c->report[SPAR_REPORT_ADDED_MASS] = spari_accelerator_ratio(c->accelerator);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
     c->report[SPAR_REPORT_DROPPED] = spari_accelerator_dropped(c->accelerator);
+}
+
+int spari_coupling_check(spar_session *s, int *done) {
+    spari_coupling *c = s->own->coupling;
+    int agreed;
+    *done = 1;
+    SPARI_TRY(spari_named(s, "spar_step_check", spari_coupling_compare(s, &agreed)));
+    if (agreed || !c->accelerator) {
+        return SPAR_OK;
+    }
+    if (s->iteration >= s->coupling_max) {
+        if (!s->accept_unconverged) {
+            return not_converged(s);
+        }
+        c->report[SPAR_REPORT_UNCONVERGED] += 1;
+        return SPAR_OK;
+    }
+    *done = 0;
+    spari_coupling_next(s);
     return SPAR_OK;
 }
 

@@ -34,7 +34,11 @@ int spari_coupling_prepare(spar_session *session);
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
-/* After the loads have been exchanged: whether they agree with those used, else the next ones. */
+/* After the loads have been exchanged: whether they agree with those used, as the tolerances have it; and the next
+   loads to use, of a scheme that iterates. SPAR_ERR_NUMERIC: they are beyond numbers. */
+int spari_coupling_compare(spar_session *session, int *agreed);
+void spari_coupling_next(spar_session *session);
+/* Both, as a step wants it: done where they agree, or where it goes on with what there is. */
 int spari_coupling_check(spar_session *session, int *done);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);

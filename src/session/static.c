@@ -1,60 +1,417 @@
-/* Static equilibrium of one member, in its session. */
+/* Static equilibrium in a session: of one member, and of all members with the fluid's answer. */
 #include "../base/quiet.h"
+#include "../comm/enter.h"
+#include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/edge.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
+#include "coupling.h"
 #include "exchange.h"
+#include "lend.h"
+#include "own.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* ---- one member ---- */
+
+/* Whether spar can find an equilibrium of a member that it solves for. */
+static int check_held(const spar_member *m, const char *call) {
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
+                  call, m->name);
+    int loose = m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C);
+    SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root",
+                  call, m->name);
+    return SPAR_OK;
+}
+
+static int check_member_static(const spar_member *m, const char *call, int load_steps) {
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
+                  call, m->name);
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first",
+                  call, m->name);
+    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, m->name,
+                  load_steps);
+    SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
+                  call, m->name);
+    SPARI_TRY(check_held(m, call));
+    return s->started ? SPAR_OK : spari_session_pushes(s, call);
+}
 
 /* The motion after of a member that spar solves for, on the rank that does. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
-    return spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
+    return m->row->rest && spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
+}
+
+static void copy_loads(const spar_member *m, const double *from, double *to) {
+    memcpy(to, from, (size_t)(6 * m->nodes) * sizeof *to);
+}
+
+/* What the owner's solvers keep of a member (NULL: of all), to be put back where no equilibrium is found: each with its
+   length in front. */
+static int put_aside(spar_session *s, const spar_member *only, double **aside) {
+    int64_t n = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        n += only && m != only ? 0 : 1 + spari_fidelity_state_size(m);
+    }
+    double *at = *aside = spari_zalloc(n, sizeof *at);
+    SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
+    for (const spar_member *m = s->members; m; m = m->next) {
+        if (only && m != only) {
+            continue;
+        }
+        *at = (double)spari_fidelity_state_size(m);
+        if (*at > 0) {
+            m->row->save(m, at + 1);
+        }
+        at += 1 + (int64_t)*at;
+    }
+    return SPAR_OK;
+}
+
+static void put_back(spar_session *s, const spar_member *only, const double *aside) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (only && m != only) {
+            continue;
+        }
+        if (*aside > 0) {
+            m->row->load(m, aside + 1);
+        }
+        aside += 1 + (int64_t)*aside;
+    }
+}
+
+/* The motion after holds at t^n, found under `fluid` loads. */
+static void settle_member(spar_member *m, const double *fluid) {
+    m->dissipated_step = 0;
+    spari_member_solved(m, fluid);
+    spari_member_settle(m);
+}
+
+static int find_rest(spar_member *m, int load_steps) {
+    spar_session *s = m->session;
+    if (!s->started) {
+        SPARI_TRY(spari_session_exchange_loads(s));
+        spari_session_take_loads(s, m, m->load_pushed);
+    }
+    return spari_session_share_motion(s, solve_member_static(m, m->load_pushed, load_steps, 0));
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = member->session;
-    int status = SPAR_OK;
-    if (!member->committed) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
-                            __func__, member->name);
-    } else if (s->phase != SPARI_IDLE) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first", __func__,
-                            member->name);
-    } else if (load_steps < 1) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", __func__, member->name,
-                            load_steps);
-    } else if (!member->row->rest) {
-        status = spari_fail(s, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
-                            __func__, member->name);
-    } else if (member->root == SPAR_ROOT_FREE ||
-               (member->root == SPAR_ROOT_PINNED && member->body && !member->body->C)) {
-        status =
-            spari_fail(s, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root", __func__, member->name);
-    }
-    if (status == SPAR_OK && !s->started) {
-        status = spari_session_pushes(s, __func__);
-    }
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
-    SPARI_TRY(spari_member_enter(member, __func__, alike, 1, status));
-    SPARI_TRY(spari_session_seal(s, SPAR_OK));
-    memcpy(member->load_before, member->load_pushed, (size_t)(6 * member->nodes) * sizeof(double));
-    if (!s->started) {
-        SPARI_TRY(spari_session_exchange_loads(s));
-        spari_session_take_loads(s, member, member->load_pushed);
+    SPARI_TRY(spari_member_enter(member, __func__, alike, 1, check_member_static(member, __func__, load_steps)));
+    double *aside = NULL;
+    int status = spari_session_seal(s, put_aside(s, member, &aside));
+    if (status == SPAR_OK) {
+        copy_loads(member, member->load_pushed, member->load_before);
+        status = find_rest(member, load_steps);
+        if (status == SPAR_OK) {
+            settle_member(member, member->load_pushed);
+        } else {
+            spari_member_reject(member);
+            put_back(s, member, aside);
+            copy_loads(member, member->load_before, member->load_pushed);
+        }
     }
-    status = solve_member_static(member, member->load_pushed, load_steps, 0);
-    status = spari_session_share_motion(s, status);
+    free(aside);
+    return spari_named(s, __func__, status);
+}
+
+/* ---- all members, with the fluid ---- */
+
+static const char session_call[] = "spar_session_solve_static";
+
+static int check_session_static(spar_session *s, int load_steps) {
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+                  session_call);
+    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", session_call,
+                  load_steps);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_TRY(check_held(m, session_call));
+    }
+    return s->started ? SPAR_OK : spari_session_pushes(s, session_call);
+}
+
+/* Columns and weights are of this solution alone: those of the steps know another map. What the steps had is put
+   aside. */
+static int prepare_coupling(spar_session *s, spari_coupling **of_steps) {
+    spari_coupling *own = NULL;
+    int status = spari_enter(s, "coupling", spari_coupling_create(s, &own));
     if (status != SPAR_OK) {
-        spari_member_reject(member);
-        memcpy(member->load_pushed, member->load_before, (size_t)(6 * member->nodes) * sizeof(double));
+        spari_coupling_free(&own);
+        return status;
+    }
+    *of_steps = s->own->coupling;
+    s->own->coupling = own;
+    return SPAR_OK;
+}
+
+/* The shape has been set anew, and the steps begin anew with their coupling. */
+static void keep_coupling(spar_session *s, spari_coupling *of_steps) {
+    if (of_steps) {
+        s->own->coupling->report[SPAR_REPORT_UNCONVERGED] = of_steps->report[SPAR_REPORT_UNCONVERGED];
+    }
+    spari_coupling_free(&of_steps);
+    s->coupling_stale = 1;
+}
+
+static void swap_lists(double **a, double **b) {
+    double *other = *a;
+    *a = *b;
+    *b = other;
+}
+
+/* The steps go on with what they had; what is told of the last iteration is that of this one. */
+static void restore_coupling(spar_session *s, spari_coupling *of_steps) {
+    spari_coupling *own = s->own->coupling;
+    if (!of_steps) {
+        s->coupling_stale = 1;
+        return;
+    }
+    int most = of_steps->most;
+    of_steps->most = own->most;
+    own->most = most;
+    of_steps->iterations = own->iterations;
+    swap_lists(&of_steps->residual, &own->residual);
+    swap_lists(&of_steps->size, &own->size);
+    for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
+        of_steps->report[i] = own->report[i];
+    }
+    s->own->coupling = of_steps;
+    spari_coupling_free(&own);
+}
+
+/* Fluids may push and pull as in a step. */
+static int begin_static(spar_session *s) {
+    static const double last[2] = {1, 1};
+    for (spar_member *m = s->members; m; m = m->next) {
+        copy_loads(m, m->load_pushed, m->load_before);
+        copy_loads(m, m->load_pushed, m->load_used);
+    }
+    if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
+        SPARI_TRY(spari_session_exchange_loads(s));
+        for (spar_member *m = s->members; m; m = m->next) {
+            spari_session_take_loads(s, m, m->load_used);
+        }
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_begin(f, 0, 1, last);
+    }
+    s->iteration = s->iterating = s->failed = 0;
+    s->started = s->standing = 1;
+    s->phase = SPARI_SOLVED;
+    spari_coupling_begin(s);
+    return SPAR_OK;
+}
+
+static void end_static(spar_session *s) {
+    s->phase = SPARI_IDLE;
+    s->started = s->step > 0;
+    s->standing = 0;
+}
+
+static void settle_all(spar_session *s) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        copy_loads(m, m->load_pushed, m->load_history[0]);
+        copy_loads(m, m->load_pushed, m->load_before);
+        m->motion_given = 0;
+        settle_member(m, m->load_pushed);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_settle(f);
+    }
+    s->past = 0; /* what was before leads nowhere from here */
+}
+
+static void leave_as_it_was(spar_session *s, const double *aside) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_member_reject(m);
+        copy_loads(m, m->load_before, m->load_pushed);
+    }
+    put_back(s, NULL, aside);
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_reject(f);
+    }
+}
+
+/* The shapes under the loads in use. */
+static int solve_all(spar_session *s, int load_steps, int onward) {
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        status = solve_member_static(m, m->load_used, load_steps, onward);
+    }
+    SPARI_TRY(spari_session_share_motion(s, status));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_member_solved(m, m->load_used);
+    }
+    return SPAR_OK;
+}
+
+/* The fluid's loads on these shapes, from all ranks. */
+static int ask_fluid(spar_session *s, spar_fluid_solver solve, void *context) {
+    int status = spari_lend(s, session_call, solve, 0, context);
+    if (status == SPAR_ERR_COMM) {
+        return status;
+    }
+    status = status == SPAR_OK ? spari_session_pushes(s, session_call) : status;
+    SPARI_TRY(spari_enter(s, session_call, status));
+    SPARI_TRY(spari_session_exchange_loads(s));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_session_take_loads(s, m, m->load_pushed);
+    }
+    s->iteration++;
+    return SPAR_OK;
+}
+
+/* The member whose loads changed most in the last iteration. */
+static const spar_member *most_changed(const spar_session *s) {
+    const spar_member *found = s->members;
+    double most = -1;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        double sum = 0;
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            double r = (m->load_pushed[i] - m->load_used[i]) / (i % 6 < 3 ? 1 : s->own->coupling->length[k]);
+            sum += r * r;
+        }
+        if (!(sum <= most)) { /* or is no number */
+            most = sum;
+            found = m;
+        }
+    }
+    return found;
+}
+
+/* Mean factor from iteration to iteration in the later half of them, 0: too few to tell. */
+static double growth(const spari_coupling *c) {
+    int last = c->iterations - 1, from = last / 2;
+    return last > 0 && c->residual[from] > 0 ? pow(c->residual[last] / c->residual[from], 1.0 / (last - from)) : 0;
+}
+
+static const char *cure_for(const spar_session *s) {
+    return s->scheme == SPAR_COUPLING_IQN_ILS
+               ? "where loads grow faster with the shape than the stiffness (static divergence) there is no stable "
+                 "equilibrium: lower the loads or stiffen the member"
+               : "take another scheme (spar_session_set_coupling, IQN-ILS) or a smaller relaxation; where loads grow "
+                 "faster with the shape than the stiffness (static divergence) there is no stable equilibrium";
+}
+
+/* why: what ended the iteration, this rank's or a peer's message; NULL: its limit. */
+static int not_settled(spar_session *s, int status, const char *why) {
+    const spari_coupling *c = s->own->coupling;
+    int n = c->iterations;
+    double factor = growth(c);
+    if (n == 0 || !s->members || (factor <= 1 && why)) {
+        return spari_fail(s, status, "%s: %s", session_call, why ? why : "no iterations");
+    }
+    const char *member = most_changed(s)->name;
+    if (factor > 1) {
+        return spari_fail(s, status,
+                          "%s: the loads grow from iteration to iteration, %.4g times in each: they changed by %.3g N "
+                          "of %.3g N in the last of %d, most on member '%s' (%.400s); %s",
+                          session_call, factor, c->residual[n - 1], c->size[n - 1], n, member,
+                          why ? why : "the limit of iterations", cure_for(s));
+    }
+    return spari_fail(s, status,
+                      "%s: no equilibrium with the fluid in %d iterations: the loads still change by %.3g N of %.3g N, "
+                      "most on member '%s'; allow more iterations, or %s",
+                      session_call, n, c->residual[n - 1], c->size[n - 1], member, cure_for(s));
+}
+
+static int not_solved(spar_session *s, int status) {
+    char why[SPARI_MESSAGE_SIZE];
+    memcpy(why, s->message, sizeof why);
+    return status == SPAR_ERR_COMM ? status : not_settled(s, status, why);
+}
+
+/* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */
+static void warn_of_divergence(const spar_session *s) {
+    char text[SPARI_MESSAGE_SIZE];
+    double ratio = s->own->coupling->report[SPAR_REPORT_ADDED_MASS];
+    if (!s->log || ratio >= -1 || s->scheme < SPAR_COUPLING_AITKEN) {
+        return;
+    }
+    (void)snprintf(text, sizeof text,
+                   "%s: a change of the fluid's loads comes back %.3g times as large from the shape that it makes: the "
+                   "equilibrium found lies beyond static divergence, and a run leaves it",
+                   session_call, -ratio);
+    spari_log(s, SPAR_LOG_WARNING, text);
+}
+
+/* Whether the shapes are those under the loads that came back, to the bit; else they are in use from here. */
+static int stands_under_answer(spar_session *s) {
+    int same = 1;
+    for (spar_member *m = s->members; m; m = m->next) {
+        same &= memcmp(m->load_used, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double)) == 0;
+        copy_loads(m, m->load_pushed, m->load_used);
+    }
+    return same;
+}
+
+static int find_equilibrium(spar_session *s, int load_steps, spar_fluid_solver solve, void *context) {
+    int agreed = 0;
+    while (!agreed) {
+        int status = solve_all(s, load_steps, s->iteration > 0);
+        if (status != SPAR_OK) {
+            return not_solved(s, status);
+        }
+        SPARI_TRY(ask_fluid(s, solve, context));
+        status = spari_coupling_compare(s, &agreed);
+        if (status != SPAR_OK) {
+            return not_settled(s, status, "they are beyond the range of numbers");
+        }
+        if (s->scheme == SPAR_COUPLING_EXPLICIT) {
+            break;
+        }
+        if (!agreed && s->iteration >= s->coupling_max) {
+            return not_settled(s, SPAR_ERR_NUMERIC, NULL);
+        }
+        if (!agreed) {
+            spari_coupling_next(s);
+        }
+    }
+    warn_of_divergence(s);
+    int status = stands_under_answer(s) ? SPAR_OK : solve_all(s, load_steps, 1);
+    return status == SPAR_OK ? SPAR_OK : not_solved(s, status);
+}
+
+int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
+                              int *iterations) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    SPARI_TRY(spari_lend_refuse(s, __func__));
+    const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, load_steps)));
+    spari_coupling *of_steps = NULL;
+    double *aside = NULL;
+    int status = spari_session_seal(s, put_aside(s, NULL, &aside));
+    status = status == SPAR_OK ? prepare_coupling(s, &of_steps) : status;
+    if (status != SPAR_OK) {
+        free(aside);
         return spari_named(s, __func__, status);
     }
-    member->dissipated_step = 0;
-    spari_member_solved(member, member->load_pushed);
-    spari_member_settle(member);
-    return SPAR_OK;
+    status = begin_static(s);
+    status = status == SPAR_OK ? find_equilibrium(s, load_steps, solve, context) : status;
+    if (iterations) {
+        *iterations = s->iteration;
+    }
+    if (status == SPAR_OK) {
+        settle_all(s);
+        keep_coupling(s, of_steps);
+    } else {
+        leave_as_it_was(s, aside);
+        restore_coupling(s, of_steps);
+    }
+    end_static(s);
+    free(aside);
+    return spari_named(s, __func__, status);
 }

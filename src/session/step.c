@@ -5,6 +5,7 @@
 #include "../solve/life.h"
 #include "coupling.h"
 #include "exchange.h"
+#include "lend.h"
 #include "own.h"
 
 #include "../comm/enter.h"
@@ -20,15 +21,6 @@ static const char *const phase_name[] = {"no step is under way", "the step has b
 
 static int wrong_phase(spar_session *s, const char *call, const char *cure) {
     return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->phase], cure);
-}
-
-/* What ends or moves on a step is for who began it. Refused before the ranks meet: they are at another call. */
-static int refuse_lent(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->lent, SPAR_ERR_STATE,
-                  "%s: the step under way is spar_step's, which has called this fluid solver; pull, push and return "
-                  "from it, or make the step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
-                  call);
-    return SPAR_OK;
 }
 
 /* ---- begin ---- */
@@ -49,8 +41,8 @@ static int check_begin(spar_session *s, double dt) {
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
-/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. With order 1 the spec's
-   f + dt^{n+1}/dt^n (f^n - f^{n-1}). */
+/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
+   docs/theory.md. */
 static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
     double w[3];
     spari_predictor(order, dt, last, w);
@@ -75,12 +67,12 @@ int spar_step_begin(spar_session *session, double dt) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(refuse_lent(s, __func__));
+    SPARI_TRY(spari_lend_refuse(s, __func__));
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, dt)));
     if (anew) {
-        SPARI_TRY(spari_enter(s, "coupling", spari_coupling_prepare(s)));
+        SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
@@ -138,7 +130,7 @@ int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(refuse_lent(s, __func__));
+    SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
@@ -197,7 +189,7 @@ static int check_iteration(spar_session *s, int status, int *done) {
 int spar_step_check(spar_session *session, int *done) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
-    SPARI_TRY(refuse_lent(session, __func__));
+    SPARI_TRY(spari_lend_refuse(session, __func__));
     return check_iteration(session, SPAR_OK, done);
 }
 
@@ -215,7 +207,7 @@ int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(refuse_lent(s, __func__));
+    SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = SPAR_OK;
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
@@ -265,7 +257,7 @@ int spar_step_reject(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
     spar_session *s = session;
-    SPARI_TRY(refuse_lent(s, __func__));
+    SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
@@ -278,24 +270,9 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
     int done = 0;
     while (!done) {
         SPARI_TRY(spar_step_solve(s));
-        int status = SPAR_OK;
-        if (solve) {
-            int64_t failures = s->failures;
-            s->parted = 0;
-            spari_host host;
-            spari_host_begin(&host);
-            s->lent = 1;
-            int answer = solve(s, s->time, s->dt, s->iteration, context);
-            s->lent = 0;
-            spari_host_end(&host);
-            if (s->parted) { /* this rank alone called the others from here: they met it, and know */
-                return SPAR_ERR_COMM;
-            }
-            if (answer != 0) {
-                int told = s->failures != failures; /* what went wrong there */
-                status = spari_fail(s, SPAR_ERR_USER, "spar_step: the fluid solver answered %d in iteration %d%s%.800s",
-                                    answer, s->iteration, told ? ": " : "", told ? s->message : "");
-            }
+        int status = spari_lend(s, "spar_step", solve, s->dt, context);
+        if (status == SPAR_ERR_COMM) {
+            return status;
         }
         SPARI_TRY(check_iteration(s, status, &done));
     }
@@ -304,7 +281,7 @@ static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
 
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     SPARI_QUIET;
-    SPARI_TRY(session ? refuse_lent(session, __func__) : SPAR_OK);
+    SPARI_TRY(session ? spari_lend_refuse(session, __func__) : SPAR_OK);
     SPARI_TRY(spar_step_begin(session, dt));
     int status = iterate(session, solve, context);
     if (iterations) {

@@ -67,7 +67,7 @@ static int work(host *h, int64_t turn) {
 
 static int solve_fluid(spar_session *session, double t, double dt, int iteration, void *context) {
     host *h = context;
-    if (session != h->w->session[h->session].s || !isfinite(t) || !(dt > 0) || iteration < 0) {
+    if (session != h->w->session[h->session].s || !isfinite(t) || !(dt >= 0) || iteration < 0) {
         fuzz_finding("callback", "a solver was given t = %g, dt = %g, iteration %d", t, dt, iteration);
     }
     return work(h, h->mode == HOST_CHAOS ? h->count : iteration);

@@ -207,7 +207,7 @@ static void check_mark(const call *c) {
     }
 }
 
-/* Within a step a failure may have moved the iterate; a failed spar_step has made iterations. */
+/* Within a step a failure may have moved the iterate; a failed spar_step or static solution has made iterations. */
 static void check_state(const call *c) {
     static const char *const part[3] = {"state", "report of coupling or audit", "blade element's results"};
     int flags = c->what->flags, parts[3] = {1, 1, 1};
@@ -220,7 +220,7 @@ static void check_state(const call *c) {
         }
         parts[2] = c->index != CALL_spar_aero_solve;
     }
-    if (c->index == CALL_spar_step) {
+    if (c->index == CALL_spar_step || c->index == CALL_spar_session_solve_static) {
         parts[1] = parts[2] = 0;
     }
     parts[2] = parts[2] && !(flags & FUZZ_TRIAL);

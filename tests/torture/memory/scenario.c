@@ -531,6 +531,32 @@ static void describe_saved(host *h) {
     }
 }
 
+/* With the fluid: before the first step and after it, of each scheme. */
+static void act_equilibrium(void) {
+    for (int scheme = SPAR_COUPLING_EXPLICIT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+        host h = {0};
+        spar_session *s = h.session = begin_session();
+        h.members = h.fluids = 2;
+        CALL(spar_session_set_coupling, s, scheme, 1e-8, 1e-4, 40);
+        for (int k = 0; k < 2; k++) {
+            spar_member *b = h.member[k] = begin_beam(s, k ? "linear" : "exact", 1, 3, k);
+            if (k == 1) {
+                CALL(spar_member_set_fidelity, b, SPAR_FIDELITY_LINEAR, 0);
+            }
+            CALL(spar_member_commit, b);
+            h.fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h.n[k], h.x[k]);
+            CALL(spar_fluid_map, h.fluid[k]);
+        }
+        for (int k = 0; k < 2; k++) {
+            int iterations = 0;
+            CALL(spar_session_solve_static, s, 2, solve, &h, &iterations);
+            note(&iterations, sizeof iterations);
+            go(&h, 1);
+        }
+        end_session(&h.session);
+    }
+}
+
 static void act_save(void) {
     char path[400];
     host h = {0}, other = {0};
@@ -709,8 +735,9 @@ static void act_aero(void) {
     end_session(&s);
 }
 
-const act acts[] = {{"describe", act_describe, 1}, {"step", act_step, 1},     {"rungs", act_rungs, 1},
-                    {"fluids", act_fluids, 1},     {"static", act_static, 1}, {"save", act_save, 1},
-                    {"output", act_output, 1},     {"try", act_try, 1},       {"effects", act_effects, 1},
-                    {"beamdyn", act_beamdyn, 1},   {"aero", act_aero, 1},     {"advise", act_advise, 0}};
+const act acts[] = {{"describe", act_describe, 1},      {"step", act_step, 1},     {"rungs", act_rungs, 1},
+                    {"fluids", act_fluids, 1},          {"static", act_static, 1}, {"save", act_save, 1},
+                    {"output", act_output, 1},          {"try", act_try, 1},       {"effects", act_effects, 1},
+                    {"beamdyn", act_beamdyn, 1},        {"aero", act_aero, 1},     {"advise", act_advise, 0},
+                    {"equilibrium", act_equilibrium, 1}};
 const int act_count = (int)(sizeof acts / sizeof *acts);

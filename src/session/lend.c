@@ -1,0 +1,36 @@
+/* The host's fluid solver inside a call of the library's: see lend.h. */
+#include "lend.h"
+
+#include "../base/quiet.h"
+
+int spari_lend_refuse(spar_session *s, const char *call) {
+    SPARI_REQUIRE(
+        s, !s->lent, SPAR_ERR_STATE,
+        "%s: what is under way is %s's, which has called this fluid solver; pull, push and return from it, or "
+        "make the step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
+        call, s->lent);
+    return SPAR_OK;
+}
+
+int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, double dt, void *context) {
+    if (!solve) {
+        return SPAR_OK;
+    }
+    int64_t failures = s->failures;
+    spari_host host;
+    s->parted = 0;
+    spari_host_begin(&host);
+    s->lent = lender;
+    int answer = solve(s, s->time, dt, s->iteration, context);
+    s->lent = NULL;
+    spari_host_end(&host);
+    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+        return SPAR_ERR_COMM;
+    }
+    if (answer == 0) {
+        return SPAR_OK;
+    }
+    int told = s->failures != failures; /* what went wrong there */
+    return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver answered %d in iteration %d%s%.800s", lender, answer,
+                      s->iteration, told ? ": " : "", told ? s->message : "");
+}
