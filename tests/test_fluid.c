@@ -364,7 +364,7 @@ static void single_precision_at_the_edge(void **state) {
 
 /* ---- time ---- */
 
-/* The spec's average at theta, the ends exactly; on the group a quarter turn about z halves to an eighth turn. */
+/* The average (T12) at theta, the ends exactly; on the group a quarter turn about z halves to an eighth turn. */
 static void theta_lies_between_the_times(void **state) {
     (void)state;
     enum { N = 20 };
@@ -429,7 +429,7 @@ static void group_interpolation_keeps_the_radius(void **state) {
     spar_session_destroy(&s);
 }
 
-/* The spec's average of the two times cuts the corner of a turn by phi: R cos(phi/2), that is R (1 - phi^2/8) but for
+/* The average of the two times, (T12), cuts the corner of a turn by phi: R cos(phi/2), that is R (1 - phi^2/8) but for
    R phi^4/384. On the group the radius stays. */
 static void half_step_cuts_the_corner(void **state) {
     (void)state;
@@ -521,7 +521,7 @@ static void pulls_give_what_is_asked_for(void **state) {
     }
 }
 
-/* Node forces at theta between f^n and f^{n+1}; predicted at the begin of a step as the spec says, with the ratio of
+/* Node forces at theta between f^n and f^{n+1}; predicted at the begin of a step by (T11), with the ratio of
    the steps; a rejected step leaves no trace. f(t) = 2 + 3 t: linear prediction is exact from the third step on. */
 static void node_forces_are_kept_and_predicted(void **state) {
     (void)state;

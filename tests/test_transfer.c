@@ -116,7 +116,7 @@ static void basis_at(const scene *s, double xi, double *phi) {
     spari_lagrange(s->nodes, gll, bary, xi, phi, NULL);
 }
 
-/* Nodal: the spec's sums. Consistent: p_l = q_l Q* / |Q|^2 = (s_l, w_l), omega = sum phi_l (s_l I - [w_l]x) omega_l.
+/* Nodal: the sums (T4). Consistent: p_l = q_l Q* / |Q|^2 = (s_l, w_l), omega = sum phi_l (s_l I - [w_l]x) omega_l.
    Its acceleration is differentiated from that: with z = sum phi_l 2 q_l'' Q* / |Q|^2, alpha = vec z - omega d ln |Q|^2
    / dt. */
 static void state_at(const scene *s, int64_t j, int consistent, state *o) {
@@ -424,7 +424,7 @@ static void velocity_is_the_derivative_of_place(void **unused) {
 
 /* ---- loads in ---- */
 
-/* The spec's sums, and for the consistent kind the transpose phi_l (s_l I + [w_l]x) M_j. */
+/* The sums (T8) and (T9), and for the consistent kind the transpose phi_l (s_l I + [w_l]x) M_j. */
 static void loads_by_formula(const scene *s, int consistent, int has_moment, double (*load)[6]) {
     memset(load, 0, sizeof *load * (size_t)(s->elements * s->nodes));
     for (int64_t j = 0; j < s->n; j++) {

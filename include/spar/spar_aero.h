@@ -60,7 +60,7 @@ SPAR_API void spar_polar_destroy(spar_polar **polar);
    made anew. */
 SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero);
 SPAR_API void spar_aero_destroy(spar_aero **aero);
-/* Section i of every blade: chord >= 0 in m, twist in rad, polar. The twist is the spec's tau: positive turns the
+/* Section i of every blade: chord >= 0 in m, twist in rad, polar. Positive twist turns the
    leading edge into the wind and lowers the angle of attack, i.e. minus a right-handed turn about the section's x. */
 SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
 /* The shaft: a point of its axis in m, its direction (any length but 0), pointing downwind, the radii in m, measured

@@ -66,7 +66,7 @@ static void series_at(const double *c, int modes, int offset, int n, double xi, 
     }
 }
 
-/* Reference foot and its orientation (the spec's normalised sum of the nodes' quaternions). */
+/* Reference foot and its orientation (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
     int modes = fluid->member->per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;

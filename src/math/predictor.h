@@ -13,7 +13,7 @@
 enum { SPARI_REACH = 10 };
 
 /* Weights at t^{n+1} of the values at t^n, t^{n-1}, t^{n-2}: the polynomial of `order` 0, 1 or 2 through them, last[0]
-   the step to t^n and last[1] the one before. Order 1 is the spec's f + dt^{n+1}/dt^n (f^n - f^{n-1}). */
+   the step to t^n and last[1] the one before. Order 1 is (T11), f^n + dt^{n+1}/dt^n (f^n - f^{n-1}). */
 static inline void spari_predictor(int order, double dt, const double last[2], double w[3]) {
     w[0] = 1, w[1] = w[2] = 0;
     dt = dt > SPARI_REACH * last[0] ? SPARI_REACH * last[0] : dt;
