@@ -100,6 +100,14 @@ module spar
     procedure :: get_time => session_get_time
     procedure :: get_iterations => session_get_iterations
     procedure :: get_report => session_get_report
+    procedure :: get_gravity => session_get_gravity
+    procedure :: get_integrator => session_get_integrator
+    procedure :: get_newton => session_get_newton
+    procedure :: get_predictor => session_get_predictor
+    procedure :: get_coupling => session_get_coupling
+    procedure :: get_relaxation => session_get_relaxation
+    procedure :: get_reproducible => session_get_reproducible
+    procedure :: get_option => session_get_option
     procedure :: save => session_save
     procedure :: load => session_load
     procedure :: step_begin => session_step_begin
@@ -163,6 +171,15 @@ module spar
     procedure :: solve_modes => member_solve_modes
     procedure :: set_modal_damping => member_set_modal_damping
     procedure :: get_advice => member_get_advice
+    procedure :: get_placement => member_get_placement
+    procedure :: get_root => member_get_root
+    procedure :: get_external => member_get_external
+    procedure :: get_effects => member_get_effects
+    procedure :: get_fidelity => member_get_fidelity
+    procedure :: get_owner => member_get_owner
+    procedure :: get_elements => member_get_elements
+    procedure :: get_quadrature => member_get_quadrature
+    procedure :: get_damping => member_get_damping
     procedure :: write_vtk => member_write_vtk
   end type spar_member
 
@@ -201,6 +218,8 @@ module spar
     procedure :: pull_forces_f32 => fluid_pull_forces_f32
     procedure :: push_forces_f32 => fluid_push_forces_f32
     procedure :: get_audit => fluid_get_audit
+    procedure :: get_projection => fluid_get_projection
+    procedure :: get_interpolation => fluid_get_interpolation
     procedure :: write_vtk => fluid_write_vtk
     procedure, private :: fluid_assign
     generic :: assignment(=) => fluid_assign
@@ -517,6 +536,210 @@ contains
 
     call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
   end subroutine session_get_time
+
+  ! ---- what is set ----
+
+  subroutine session_get_gravity(self, g, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout) :: g(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
+  end subroutine session_get_gravity
+
+  subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: rho_inf
+    integer(c_int), intent(inout), optional :: substeps
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_integrator(self%handle, rho_inf, substeps), self%handle, stat, errmsg)
+  end subroutine session_get_integrator
+
+  subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: atol
+    real(c_double), intent(inout), optional :: rtol
+    integer(c_int), intent(inout), optional :: max_iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_newton(self%handle, atol, rtol, max_iterations), self%handle, stat, errmsg)
+  end subroutine session_get_newton
+
+  subroutine session_get_predictor(self, order, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int), intent(inout) :: order
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_predictor(self%handle, order), self%handle, stat, errmsg)
+  end subroutine session_get_predictor
+
+  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int), intent(inout), optional :: scheme
+    real(c_double), intent(inout), optional :: atol
+    real(c_double), intent(inout), optional :: rtol
+    integer(c_int), intent(inout), optional :: max_iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_coupling(self%handle, scheme, atol, rtol, max_iterations), self%handle, stat, errmsg)
+  end subroutine session_get_coupling
+
+  subroutine session_get_relaxation(self, omega, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout) :: omega
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
+  end subroutine session_get_relaxation
+
+  subroutine session_get_reproducible(self, on, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    logical, intent(inout) :: on
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, found
+
+    status = spar_session_get_reproducible(self%handle, found)
+    if (status == SPAR_OK) on = found /= 0
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_reproducible
+
+  subroutine member_get_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout), optional :: x(3)
+    real(c_double), intent(inout), optional :: q(4)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_placement
+
+  subroutine member_get_root(self, kind, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_root(self%handle, kind), self%session, stat, errmsg)
+  end subroutine member_get_root
+
+  subroutine member_get_external(self, on, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: on
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, found
+
+    status = spar_member_get_external(self%handle, found)
+    if (status == SPAR_OK) on = found /= 0
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_external
+
+  subroutine member_get_effects(self, effects, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout) :: effects
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_effects(self%handle, effects), self%session, stat, errmsg)
+  end subroutine member_get_effects
+
+  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout), optional :: kind
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_fidelity(self%handle, kind, modes), self%session, stat, errmsg)
+  end subroutine member_get_fidelity
+
+  subroutine member_get_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout) :: rank
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_owner(self%handle, rank), self%session, stat, errmsg)
+  end subroutine member_get_owner
+
+  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout), optional :: elements
+    integer(c_int), intent(inout), optional :: nodes_per_element
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_elements(self%handle, elements, nodes_per_element), self%session, stat, errmsg)
+  end subroutine member_get_elements
+
+  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int), intent(inout), optional :: rule
+    integer(c_int), intent(inout), optional :: points
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_quadrature(self%handle, rule, points), self%session, stat, errmsg)
+  end subroutine member_get_quadrature
+
+  subroutine member_get_damping(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: mu(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
+  end subroutine member_get_damping
+
+  subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(inout), optional :: method
+    real(c_double), intent(inout), optional :: max_distance
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_projection(self%handle, method, max_distance), self%session, stat, errmsg)
+  end subroutine fluid_get_projection
+
+  subroutine fluid_get_interpolation(self, kind, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(inout) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_interpolation(self%handle, kind), self%session, stat, errmsg)
+  end subroutine fluid_get_interpolation
+
+  ! value is as long as what is set.
+  subroutine session_get_option(self, key, value, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    character(*), intent(in) :: key
+    character(:), allocatable, intent(inout) :: value
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer, parameter :: room = 64
+    character(kind=c_char) :: text(room)
+    integer(c_int) :: status
+    integer :: i
+
+    status = spar_session_get_option(self%handle, c_text(key), int(room, c_int64_t), text)
+    if (status == SPAR_OK) then
+      value = ''
+      do i = 1, room
+        if (text(i) == c_null_char) exit
+        value = value // text(i)
+      end do
+    end if
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_option
 
   ! residual and size, by iteration from 1, take as many as they have room for: as many as set_coupling allows is always enough.
   subroutine session_get_iterations(self, iterations, residual, size, stat, errmsg)

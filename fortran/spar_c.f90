@@ -173,6 +173,152 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_time
 
+    function spar_session_get_gravity(session, g) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: g(3)
+      integer(c_int) :: status
+    end function spar_session_get_gravity
+
+    function spar_session_get_integrator(session, rho_inf, substeps) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: rho_inf
+      integer(c_int), intent(inout), optional :: substeps
+      integer(c_int) :: status
+    end function spar_session_get_integrator
+
+    function spar_session_get_newton(session, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: atol
+      real(c_double), intent(inout), optional :: rtol
+      integer(c_int), intent(inout), optional :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_get_newton
+
+    function spar_session_get_predictor(session, order) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: order
+      integer(c_int) :: status
+    end function spar_session_get_predictor
+
+    function spar_session_get_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: scheme
+      real(c_double), intent(inout), optional :: atol
+      real(c_double), intent(inout), optional :: rtol
+      integer(c_int), intent(inout), optional :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_get_coupling
+
+    function spar_session_get_relaxation(session, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: omega
+      integer(c_int) :: status
+    end function spar_session_get_relaxation
+
+    function spar_session_get_reproducible(session, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: on
+      integer(c_int) :: status
+    end function spar_session_get_reproducible
+
+    function spar_member_get_placement(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: x(3)
+      real(c_double), intent(inout), optional :: q(4)
+      integer(c_int) :: status
+    end function spar_member_get_placement
+
+    function spar_member_get_root(member, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_member_get_root
+
+    function spar_member_get_external(member, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: on
+      integer(c_int) :: status
+    end function spar_member_get_external
+
+    function spar_member_get_effects(member, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: effects
+      integer(c_int) :: status
+    end function spar_member_get_effects
+
+    function spar_member_get_fidelity(member, kind, modes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int64_t), intent(inout), optional :: modes
+      integer(c_int) :: status
+    end function spar_member_get_fidelity
+
+    function spar_member_get_owner(member, rank) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: rank
+      integer(c_int) :: status
+    end function spar_member_get_owner
+
+    function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: elements
+      integer(c_int), intent(inout), optional :: nodes_per_element
+      integer(c_int) :: status
+    end function spar_beam_get_elements
+
+    function spar_beam_get_quadrature(beam, rule, points) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: rule
+      integer(c_int), intent(inout), optional :: points
+      integer(c_int) :: status
+    end function spar_beam_get_quadrature
+
+    function spar_beam_get_damping(beam, mu) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(inout), optional :: mu(6)
+      integer(c_int) :: status
+    end function spar_beam_get_damping
+
+    function spar_fluid_get_projection(fluid, method, max_distance) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), intent(inout), optional :: method
+      real(c_double), intent(inout), optional :: max_distance
+      integer(c_int) :: status
+    end function spar_fluid_get_projection
+
+    function spar_fluid_get_interpolation(fluid, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_fluid_get_interpolation
+
+    function spar_session_get_option(session, key, capacity, text) bind(c) result(status)
+      import :: c_char, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: key(*)
+      integer(c_int64_t), value :: capacity
+      character(kind=c_char), intent(inout), optional :: text(*)
+      integer(c_int) :: status
+    end function spar_session_get_option
+
     function spar_session_get_iterations(session, iterations, capacity, residual, size) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session

@@ -67,11 +67,11 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "rho_inf", spar_session_set_integrator(s, 1.1, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rho_inf", spar_session_set_integrator(s, NAN, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "substeps", spar_session_set_integrator(s, 1, 0));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "tolerances", spar_session_set_newton(s, -1, 0, 10));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "atol is -1; give a finite number >= 0", spar_session_set_newton(s, -1, 0, 10));
     REFUSED(s, SPAR_ERR_ARGUMENT, "iterations", spar_session_set_newton(s, 0, 0, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "order", spar_session_set_predictor(s, 3));
     REFUSED(s, SPAR_ERR_ARGUMENT, "scheme", spar_session_set_coupling(s, 9, 0, 0, 1));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "tolerances", spar_session_set_coupling(s, 1, NAN, 0, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "cannot be", spar_session_set_option(s, "fluid.theta", "red"));
@@ -239,8 +239,126 @@ static void test_steps(void **state) {
     spar_session_destroy(&s);
 }
 
+/* What is set is read: the defaults of spar.h, and all that setters have been given, also options as text. */
+static void test_read_back(void **state) {
+    (void)state;
+    static const char *const option[][3] = {{"coupling.unconverged", "error", "accept"},
+                                            {"coupling.columns", "30", "7"},
+                                            {"coupling.reuse", "5", "0"},
+                                            {"coupling.filter", "0.0001", "0.12345678901234566"},
+                                            {"coupling.motion_atol", "0", "1e-09"},
+                                            {"coupling.motion_rtol", "0", "0.1"},
+                                            {"coupling.target", "0.01", "1e-15"},
+                                            {"fluid.theta", "average", "group"},
+                                            {"fluid.far", "take", "refuse"},
+                                            {"fluid.audit", "on", "off"},
+                                            {"advise.dt", "vary", "keep"},
+                                            {"advise.nodes", "vary", "keep"},
+                                            {"advise.fidelity", "vary", "keep"},
+                                            {"advise.coupling", "vary", "keep"},
+                                            {"advise.horizon", "0", "600"},
+                                            {"advise.fluid_cost", "0", "0.25"}};
+    const double g[3] = {1, -2, 3};
+    double rho, atol, rtol, omega, now[3];
+    int substeps, most, order, scheme, on;
+    char word[32];
+    spar_session *s = scene_session();
+    OK(s, spar_session_get_integrator(s, &rho, &substeps));
+    assert_true(rho == 0.9 && substeps == 1);
+    OK(s, spar_session_get_newton(s, &atol, &rtol, &most));
+    assert_true(atol == 1e-15 && rtol == 1e-12 && most == 50);
+    OK(s, spar_session_get_coupling(s, &scheme, &atol, &rtol, &most));
+    assert_true(scheme == SPAR_COUPLING_EXPLICIT && atol == 1e-9 && rtol == 1e-6 && most == 50);
+    OK(s, spar_session_get_relaxation(s, &omega));
+    OK(s, spar_session_get_predictor(s, &order));
+    OK(s, spar_session_get_reproducible(s, &on));
+    assert_true(omega == 1 && order == 1 && on == 0);
+    OK(s, spar_session_set_gravity(s, g));
+    OK(s, spar_session_set_integrator(s, 0.25, 3));
+    OK(s, spar_session_set_newton(s, 1e-3, 1e-4, 5));
+    OK(s, spar_session_set_predictor(s, 2));
+    OK(s, spar_session_set_coupling(s, SPAR_COUPLING_AITKEN, 1e-5, 1e-7, 9));
+    OK(s, spar_session_set_relaxation(s, 0.3));
+    OK(s, spar_session_set_reproducible(s, 7));
+    OK(s, spar_session_get_gravity(s, now));
+    OK(s, spar_session_get_integrator(s, &rho, &substeps));
+    assert_true(memcmp(g, now, sizeof g) == 0 && rho == 0.25 && substeps == 3);
+    OK(s, spar_session_get_newton(s, &atol, &rtol, &most));
+    assert_true(atol == 1e-3 && rtol == 1e-4 && most == 5);
+    OK(s, spar_session_get_coupling(s, &scheme, NULL, &rtol, NULL));
+    assert_true(scheme == SPAR_COUPLING_AITKEN && rtol == 1e-7);
+    OK(s, spar_session_get_relaxation(s, &omega));
+    OK(s, spar_session_get_predictor(s, &order));
+    OK(s, spar_session_get_reproducible(s, &on));
+    assert_true(omega == 0.3 && order == 2 && on == 1);
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        OK(s, spar_session_get_option(s, option[i][0], sizeof word, word));
+        assert_string_equal(word, option[i][1]);
+        OK(s, spar_session_set_option(s, option[i][0], option[i][2]));
+        OK(s, spar_session_get_option(s, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
+        assert_string_equal(word, option[i][2]);
+    }
+    REFUSED(s, SPAR_ERR_ARGUMENT, "takes 7 characters, not 6", spar_session_get_option(s, "fluid.far", 6, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_get_option(s, "far", 32, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give average or group", spar_session_set_option(s, "fluid.theta", "red"));
+    assert_int_equal(spar_session_get_newton(NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    spar_session_destroy(&s);
+}
+
+/* The same of members and fluids; effects and quadrature are those in force. */
+static void test_read_members(void **state) {
+    (void)state;
+    const double place[3] = {1, 2, 3}, q[4] = {0.6, 0, 0.8, 0}, mu[6] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
+    double C[36], J[36], x[3], r[4], found[6], far;
+    int kind, on, rank, elements, nodes, rule, points, effects, method;
+    int64_t modes;
+    scene_diagonal(C, 1, 1, 1, 1, 1, 1);
+    scene_diagonal(J, 1, 1, 1, 1, 1, 1);
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "beam", 3, 4, 1, C, J);
+    spar_fluid *f;
+    OK(s, spar_beam_get_elements(b, &elements, &nodes));
+    OK(s, spar_beam_get_quadrature(b, &rule, &points));
+    OK(s, spar_member_get_root(b, &kind));
+    assert_true(elements == 3 && nodes == 4 && rule == SPAR_QUADRATURE_GAUSS && points == 0);
+    assert_int_equal(kind, SPAR_ROOT_FIXED);
+    REFUSED(s, SPAR_ERR_STATE, "not committed", spar_member_get_effects(b, &effects));
+    OK(s, spar_beam_set_quadrature(b, SPAR_QUADRATURE_LOBATTO, 6));
+    OK(s, spar_beam_set_damping(b, mu));
+    OK(s, spar_member_set_placement(b, place, q));
+    OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
+    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 5));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_FLUID_MOMENT));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_beam_get_quadrature(b, &rule, &points));
+    OK(s, spar_beam_get_damping(b, found));
+    OK(s, spar_member_get_placement(b, x, r));
+    assert_true(rule == SPAR_QUADRATURE_LOBATTO && points == 6 && memcmp(found, mu, sizeof mu) == 0);
+    assert_true(memcmp(x, place, sizeof x) == 0 && fabs(r[0] - 0.6) < 1e-15 && fabs(r[2] - 0.8) < 1e-15);
+    OK(s, spar_member_get_root(b, &kind));
+    assert_int_equal(kind, SPAR_ROOT_DRIVEN);
+    OK(s, spar_member_get_fidelity(b, &kind, &modes));
+    OK(s, spar_member_get_external(b, &on));
+    OK(s, spar_member_get_owner(b, &rank));
+    OK(s, spar_member_get_effects(b, &effects));
+    assert_true(kind == SPAR_FIDELITY_MODAL && modes == 5 && on == 0 && rank == 0);
+    assert_int_equal(effects, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_FLUID_MOMENT);
+    OK(s, spar_fluid_create(b, "air", &f));
+    OK(s, spar_fluid_get_projection(f, &method, &far));
+    OK(s, spar_fluid_get_interpolation(f, &kind));
+    assert_true(method == SPAR_PROJECT_BOUNDED && far <= 0 && kind == SPAR_INTERPOLATE_NODAL);
+    OK(s, spar_fluid_set_projection(f, SPAR_PROJECT_RPOLY, 0.25));
+    OK(s, spar_fluid_set_interpolation(f, SPAR_INTERPOLATE_CONSISTENT));
+    OK(s, spar_fluid_get_projection(f, &method, &far));
+    OK(s, spar_fluid_get_interpolation(f, &kind));
+    assert_true(method == SPAR_PROJECT_RPOLY && far == 0.25 && kind == SPAR_INTERPOLATE_CONSISTENT);
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_read_back),
+        cmocka_unit_test(test_read_members),
         cmocka_unit_test(test_null_handles),
         cmocka_unit_test(test_session_settings),
         cmocka_unit_test(test_members),

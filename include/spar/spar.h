@@ -162,10 +162,11 @@ SPAR_API void spar_session_destroy(spar_session **session);
 SPAR_API const char *spar_session_message(const spar_session *session);
 
 /* The setters below are local, made alike on every rank (see "Ranks"), and allowed between steps only (SPAR_ERR_STATE
-   during one). */
+   during one). The getter beside each gives what is set, at any time: local, each output NULL: not wanted. */
 
 /* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
+SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
 /* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). rho_inf: in, spectral radius at infinite
    frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9; an exact beam that spins at Omega without a driven
    root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. dt may grow or shrink by any
@@ -173,24 +174,31 @@ SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
    substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
    default 1. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
+SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
    rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
    50. */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
+SPAR_API int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations);
 /* Polynomial the loads are extrapolated with to t^{n+1} in part 1 of a step: 0, 1 (default, (T11)), 2;
    no farther than ten times the last step, so that a much longer one does not start from its rounding. As many loads
    are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has been raised.
    SPAR_ERR_MEMORY: the order is as before. */
 SPAR_API int spar_session_set_predictor(spar_session *session, int order);
+SPAR_API int spar_session_get_predictor(const spar_session *session, int *order);
 /* How a step is iterated. scheme: in, SPAR_COUPLING_*. Done when the change of the fluid's nodal loads is below atol
    + rtol |loads|, in newtons, moments by the member's length; max_iterations >= 1, past which spar_step_check answers
    SPAR_ERR_NUMERIC (or accepts, see the option coupling.unconverged). Defaults: explicit, 1e-9, 1e-6, 50. */
 SPAR_API int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
+SPAR_API int spar_session_get_coupling(const spar_session *session, int *scheme, double *atol, double *rtol,
+                                       int *max_iterations);
 /* omega: in, part of the change of loads that is taken in an iteration, in (0,2]; default 1. */
 SPAR_API int spar_session_set_relaxation(spar_session *session, double omega);
+SPAR_API int spar_session_get_relaxation(const spar_session *session, double *omega);
 /* on: in, 1: nodal loads come out the same to the last bit however the fluid nodes are spread over the ranks; 0
    (default): to rounding. SPAR_ERR_UNSUPPORTED: on several ranks in this release. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
+SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);
 /* The long tail, by words and numbers as text. key, value: in.
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
@@ -213,6 +221,11 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
                             what its nodes lead one to expect; where the solutions of the reference run take more than
                             ten times that, their time in powers of a hundred of it */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
+/* The value of an option as a text that spar_session_set_option takes.
+     key: in
+     capacity: in, of the text, its end included; 32 is always enough, SPAR_ERR_ARGUMENT if it is too little
+     text[capacity]: out */
+SPAR_API int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text);
 /* The iterations of the step under way, or else of the last step or static solution; the same on all ranks. Local.
      iterations: out, how many there were, which may be more than the capacity
      capacity: in, of the two arrays; max_iterations of spar_session_set_coupling is always enough
@@ -283,6 +296,9 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
    in, 2 to 24. Needs a line (axis or nodes) and sections before the commit. Default root: fixed. */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
+/* What it was created with, or, within a trial that varies nodes, has now. elements, nodes_per_element: out, NULL: not
+   wanted. Local. */
+SPAR_API int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element);
 /* The reference line by points, in the beam's own frame; the nodes are a least-squares fit, exact at both ends. n:
    in, >= 2; eta[n]: in, strictly increasing, the first 0, the last 1; xyz[n][3]: in, m; twist[n]: in, rad about the
    tangent, right-handed, linear between the points, NULL: 0. Replaces an earlier line. Local. */
@@ -302,9 +318,14 @@ SPAR_API int spar_beam_set_sections(spar_member *beam, int64_t n, const double *
    are more than two stations, else Gauss with as many points as nodes. Commit refuses a rule too coarse for the
    element. Local. */
 SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points);
+/* rule: out, the one in force; points: out, 0 if they were not set: as many as nodes, or in each piece between sections
+   as many as its length asks for. NULL: not wanted. Local. */
+SPAR_API int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points);
 /* Stiffness-proportional damping: stress = C (strain + mu strain rate), per strain component in the order of the
    stiffness. mu[6]: in, s, >= 0. Local. */
 SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
+/* mu[6]: out, s, also those of spar_beam_set_modal_damping; 0: none. Local. */
+SPAR_API int spar_beam_get_damping(const spar_member *beam, double mu[6]);
 /* Axis, sections and damping of a beam from BeamDyn's files: the primary file's members, key points and twist, the
    blade file's stations (blade_path NULL: the file that the primary one names, beside it). BeamDyn's z axis, along the
    blade, becomes the beam's x axis, its x and y axes y and z. Elements, nodes and quadrature are those of the beam, not
@@ -315,14 +336,23 @@ SPAR_API int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path,
 /* Takes the member from its own frame to its reference place: x -> R(q) x + x. x: in, m, NULL: unchanged; q: in,
    NULL: unchanged. For a point or a rigid body instead of those given to create. Local. */
 SPAR_API int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]);
+/* x[3], q[4]: out, NULL: not wanted. Local. */
+SPAR_API int spar_member_get_placement(const spar_member *member, double x[3], double q[4]);
 /* kind: in, SPAR_ROOT_*. Local. */
 SPAR_API int spar_member_set_root(spar_member *member, int kind);
+/* kind: out. Local. */
+SPAR_API int spar_member_get_root(const spar_member *member, int *kind);
 /* on: in, 1: the host solves this member: motion by spar_member_set_motion, loads by spar_member_get_loads; a beam
    then needs no sections. Local. */
 SPAR_API int spar_member_set_external(spar_member *member, int on);
+/* on: out. Local. */
+SPAR_API int spar_member_get_external(const spar_member *member, int *on);
 /* effects: in, SPAR_EFFECT_* or-ed. Default: what the description implies (no damping given, none computed). Asking
    for what the description has nothing for is legal and has no effect. Local. */
 SPAR_API int spar_member_set_effects(spar_member *member, int effects);
+/* effects: out, those in force: of what was asked for, or of all, what the description has something for. After commit.
+   Local. */
+SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
 /* How a beam is solved. kind: in, SPAR_FIDELITY_*, default exact; modes: in, of a modal member, >= 1, else unused.
      prescribed  needs a fixed or driven root; its support takes the loads (get_reaction), it has neither inertia nor
                  weight
@@ -339,12 +369,16 @@ SPAR_API int spar_member_set_effects(spar_member *member, int effects);
    Beams only, before commit. Local. At commit SPAR_ERR_ARGUMENT: more modes than the nodes have, or fewer than those 6
    or 3; SPAR_ERR_STATE: linear or modal, free or pinned, with INERTIA off; SPAR_ERR_NUMERIC: fewer modes with mass. */
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
+/* kind: out; modes: out, of a modal member, else 0. NULL: not wanted. Local. */
+SPAR_API int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *modes);
 /* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
    step, before or after commit. Local. */
 SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                               const double omega[3]);
 /* rank: in, who solves the member. Default: spread over the ranks in order of creation. Local. */
 SPAR_API int spar_member_set_owner(spar_member *member, int rank);
+/* rank: out, who solves it. Local. */
+SPAR_API int spar_member_get_owner(const spar_member *member, int *rank);
 /* Checks the description, that it is the same on every rank (SPAR_ERR_COMM if not), and takes all memory; nothing of
    it can be changed afterwards. Needed before anything below. Collective. */
 SPAR_API int spar_member_commit(spar_member *member);
@@ -495,8 +529,12 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
 /* method: in, SPAR_PROJECT_*, default bounded; max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and
    refused under the option fluid.far = refuse); <= 0: no limit (default). For the next spar_fluid_map. */
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
+/* method, max_distance: out, NULL: not wanted. */
+SPAR_API int spar_fluid_get_projection(const spar_fluid *fluid, int *method, double *max_distance);
 /* kind: in, SPAR_INTERPOLATE_*, default nodal. */
 SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind);
+/* kind: out. */
+SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
 /* Finds the foot of every node on the reference line, (T1) to (T3): the nearest place of all, of equally near ones
    the first along the line. The member must be committed; the feet of a point or rigid body are its node. A joint
    belongs to the lower element. To be called after nodes are set or replaced; sets that were not replaced are mapped

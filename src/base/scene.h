@@ -11,12 +11,26 @@ typedef struct spari_own spari_own;   /* session/session.h */
 /* Where a step stands. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
 
-/* A setting that all ranks make alike. */
+/* A setting: a row of the one table of them (session/settings.c). */
 typedef struct spari_setting {
-    const char *name;
-    size_t field; /* of the session */
-    int whole;    /* an int, else a double */
+    const char *name; /* in full: "rho_inf of spar_session_set_integrator" */
+    const char *key;  /* of an option, or the argument's; NULL: what a call has done, compared between ranks only */
+    size_t field;     /* of the session */
+    enum {
+        SPARI_IS_REAL,
+        SPARI_IS_WHOLE,
+        SPARI_IS_WORD
+    } kind; /* a double, an int, an int that has words for 0 and 1 */
+    int by; /* the call that sets it */
+    double least, most;
+    const char *range, *words[2]; /* what may be given, in words */
+    double initial;
+    int flags; /* SPARI_ALIKE, ... */
 } spari_setting;
+enum {
+    SPARI_ALIKE = 1,      /* all ranks have it the same: compared in collective calls */
+    SPARI_OF_COUPLING = 2 /* the memory of the coupling is made for it: made anew when it is set, and saved with it */
+};
 
 struct spar_session {
     spari_comm *comm;
@@ -38,6 +52,7 @@ struct spar_session {
     double coupling_atol, coupling_rtol;
     int coupling_max;
     double relaxation;
+    int reproducible;
     int accept_unconverged;               /* option coupling.unconverged = accept */
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
@@ -71,6 +86,9 @@ struct spar_session {
 
     spari_own *own; /* what is the session's alone (session.h) */
 };
+
+/* What it is set to. */
+double spari_setting_value(const spar_session *session, const spari_setting *of);
 
 /* Tells the host's log, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);

@@ -13,8 +13,8 @@ static int enter(spar_session *s, const char *call, const spari_alike *alike, in
 }
 
 static spari_alike alike_of(const spar_session *s, const spari_setting *of) {
-    const void *field = (const char *)s + of->field;
-    return of->whole ? spari_whole(of->name, *(const int *)field) : spari_real(of->name, *(const double *)field);
+    double x = spari_setting_value(s, of);
+    return of->kind == SPARI_IS_REAL ? spari_real(of->name, x) : spari_whole(of->name, (int64_t)x);
 }
 
 int spari_enter(spar_session *s, const char *call, int status) {
@@ -28,8 +28,10 @@ int spari_enter_alike(spar_session *s, const char *call, const spari_alike *alik
         return status;
     }
     assert(count + s->setting_count <= SPARI_MOST_ALIKE);
-    for (; n < s->setting_count; n++) {
-        all[n] = alike_of(s, s->settings + n);
+    for (int i = 0; i < s->setting_count; i++) {
+        if (s->settings[i].flags & SPARI_ALIKE) {
+            all[n++] = alike_of(s, s->settings + i);
+        }
     }
     for (int i = 0; i < count; i++) {
         all[n++] = alike[i];

@@ -245,3 +245,22 @@ int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
     fluid->consistent = kind == SPAR_INTERPOLATE_CONSISTENT;
     return SPAR_OK;
 }
+
+int spar_fluid_get_projection(const spar_fluid *fluid, int *method, double *max_distance) {
+    SPARI_FLUID_HANDLE(fluid);
+    if (method) {
+        *method = fluid->method;
+    }
+    if (max_distance) {
+        *max_distance = fluid->max_distance;
+    }
+    return SPAR_OK;
+}
+
+int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind) {
+    SPARI_FLUID_HANDLE(fluid);
+    if (kind) {
+        *kind = fluid->consistent ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL;
+    }
+    return SPAR_OK;
+}

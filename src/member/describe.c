@@ -322,6 +322,86 @@ int spar_member_set_owner(spar_member *member, int rank) {
     return SPAR_OK;
 }
 
+/* ---- what has been said ---- */
+
+static int need_a_beam(const spar_member *m, const char *call) {
+    SPARI_TRY(spari_need_member(m, call));
+    SPARI_REQUIRE(m->session, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
+    return SPAR_OK;
+}
+
+static void hand_int(int *to, int from) {
+    if (to) {
+        *to = from;
+    }
+}
+
+int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element) {
+    SPARI_TRY(need_a_beam(beam, __func__));
+    hand_int(elements, beam->elements);
+    hand_int(nodes_per_element, beam->per_element);
+    return SPAR_OK;
+}
+
+int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points) {
+    SPARI_TRY(need_a_beam(beam, __func__));
+    hand_int(rule, spari_beam_rule(beam->beam));
+    hand_int(points, beam->beam->points);
+    return SPAR_OK;
+}
+
+int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
+    SPARI_TRY(need_a_beam(beam, __func__));
+    if (mu) {
+        memcpy(mu, beam->beam->mu, sizeof beam->beam->mu);
+    }
+    return SPAR_OK;
+}
+
+int spar_member_get_placement(const spar_member *member, double x[3], double q[4]) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    if (x) {
+        memcpy(x, member->place_x, sizeof member->place_x);
+    }
+    if (q) {
+        memcpy(q, member->place_q, sizeof member->place_q);
+    }
+    return SPAR_OK;
+}
+
+int spar_member_get_root(const spar_member *member, int *kind) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    hand_int(kind, member->root);
+    return SPAR_OK;
+}
+
+int spar_member_get_external(const spar_member *member, int *on) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    hand_int(on, member->external);
+    return SPAR_OK;
+}
+
+int spar_member_get_effects(const spar_member *member, int *effects) {
+    SPARI_TRY(spari_need_committed(member, __func__));
+    hand_int(effects, member->effects);
+    return SPAR_OK;
+}
+
+int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *modes) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    hand_int(kind, member->fidelity);
+    if (modes) {
+        *modes = member->fidelity == SPAR_FIDELITY_MODAL ? member->modes : 0;
+    }
+    return SPAR_OK;
+}
+
+int spar_member_get_owner(const spar_member *member, int *rank) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    hand_int(rank, member->owner);
+    return SPAR_OK;
+}
+
 /* FNV-1a over what the ranks must agree on. */
 uint64_t spari_member_make(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;

@@ -28,7 +28,7 @@ void spari_coupling_free(spari_coupling **coupling) {
     *coupling = NULL;
 }
 
-static int wants_motion(const spar_session *s) {
+int spari_coupling_wants_motion(const spar_session *s) {
     return s->motion_atol > 0 || s->motion_rtol > 0;
 }
 
@@ -41,16 +41,10 @@ static int make_vectors(const spar_session *s, spari_coupling *c) {
     return (c->length = spari_zalloc(c->members, sizeof(double))) &&
            (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
            (c->g = spari_zalloc(n, sizeof(double))) && (c->predicted = spari_zalloc(n, sizeof(double))) &&
-           (c->motion = spari_zalloc(iterated && wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
+           (c->motion =
+                spari_zalloc(iterated && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
-}
-
-void spari_coupling_settings(const spar_session *s, double settings[SPARI_COUPLING_SETTINGS]) {
-    const double all[SPARI_COUPLING_SETTINGS] = {s->scheme,           s->relaxation,     s->coupling_max,
-                                                 s->coupling_columns, s->coupling_reuse, s->coupling_filter,
-                                                 wants_motion(s)};
-    memcpy(settings, all, sizeof all);
 }
 
 /* Six unknowns for every node of every member. */
@@ -208,7 +202,7 @@ static int not_converged(spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
     char motion[80] = "";
-    if (wants_motion(s)) {
+    if (spari_coupling_wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
     return spari_fail(
@@ -227,7 +221,7 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     SPARI_REQUIRE(s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
                   "the loads are too large to be squared (the iteration blows up); take a smaller relaxation or dt, or "
                   "reject the step");
-    int motion = c->accelerator && wants_motion(s);
+    int motion = c->accelerator && spari_coupling_wants_motion(s);
     if (motion) {
         motion_norms(s);
     }

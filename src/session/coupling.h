@@ -44,8 +44,7 @@ int spari_coupling_check(spar_session *session, int *done);
 void spari_coupling_accept(spar_session *session);
 void spari_coupling_reject(spar_session *session);
 
-/* The settings that a state depends on. */
-enum { SPARI_COUPLING_SETTINGS = 7 };
-void spari_coupling_settings(const spar_session *session, double settings[SPARI_COUPLING_SETTINGS]);
+/* Whether the motion is looked at too, for which it is kept. */
+int spari_coupling_wants_motion(const spar_session *session);
 
 #endif

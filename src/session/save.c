@@ -10,6 +10,7 @@
 #include "coupling.h"
 #include "exchange.h"
 #include "own.h"
+#include "settings.h"
 
 #include "../comm/enter.h"
 
@@ -155,23 +156,22 @@ static void put_accelerator(spari_image *image, const spari_coupling *c) {
     free(state);
 }
 
-static int64_t motion_words(const spari_coupling *c, const double *settings) {
-    return c->accelerator && settings[SPARI_COUPLING_SETTINGS - 1] != 0 ? 7 * (c->n / 6) : 0;
+static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
+    return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
 }
 
 /* The length of the coupling comes first: it may have to be passed over. */
 static void put_coupling(spari_image *image, spar_session *s) {
-    double settings[SPARI_COUPLING_SETTINGS];
+    double settings[SPARI_MOST_OF_COUPLING];
     int64_t at = image->count;
     spari_image_put_int(image, 0);
     if (spari_coupling_fits(s)) {
         passage t = {image, WRITE};
-        spari_coupling_settings(s, settings);
-        spari_image_put(image, settings, SPARI_COUPLING_SETTINGS);
+        spari_image_put(image, settings, spari_settings_of_coupling(s, settings));
         pass_coupling(&t, s->own->coupling);
         if (s->own->coupling->accelerator) {
             put_accelerator(image, s->own->coupling);
-            spari_image_put(image, s->own->coupling->motion, motion_words(s->own->coupling, settings));
+            spari_image_put(image, s->own->coupling->motion, motion_words(s, s->own->coupling));
         }
     }
     if (!image->failed) {
@@ -440,10 +440,10 @@ static int check_coupling(spar_session *s, reading *l) {
     if (!find_end(&l->image, count, &end)) {
         return broken(s);
     }
-    double settings[SPARI_COUPLING_SETTINGS];
-    const uint64_t *saved = spari_image_get(&l->image, SPARI_COUPLING_SETTINGS);
-    spari_coupling_settings(s, settings);
-    if (saved && memcmp(saved, settings, sizeof settings) == 0) {
+    double settings[SPARI_MOST_OF_COUPLING];
+    int own = spari_settings_of_coupling(s, settings);
+    const uint64_t *saved = spari_image_get(&l->image, own);
+    if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
         SPARI_TRY(spari_coupling_create(s, &l->coupling));
         passage t = {&l->image, READ};
         pass_coupling(&t, l->coupling);
@@ -454,7 +454,7 @@ static int check_coupling(spar_session *s, reading *l) {
                 return broken(s);
             }
             pass(&t, l->coupling->predicted, l->coupling->n);
-            pass(&t, l->coupling->motion, motion_words(l->coupling, settings));
+            pass(&t, l->coupling->motion, motion_words(s, l->coupling));
         }
         return l->image.failed || l->image.at != end ? broken(s) : SPAR_OK;
     }

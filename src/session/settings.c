@@ -1,4 +1,5 @@
-/* What is set for a session: the table that ranks are compared by, the setters, the options. */
+/* What is set for a session: one table, which the setters, the getters, the options, the comparison of ranks and the
+   files of saved runs read. A new setting is a field of the session and a row here, and what computes with it. */
 #include "settings.h"
 
 #include "../base/quiet.h"
@@ -8,72 +9,131 @@
 #include "../member/structure.h"
 #include "../solve/life.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What all ranks set alike. Not here: fluid.far and fluid.audit, which concern a rank's own nodes and nothing else. */
-static const spari_setting settings[] = {
-    {"gravity (x)", offsetof(spar_session, gravity), 0},
-    {"gravity (y)", offsetof(spar_session, gravity) + sizeof(double), 0},
-    {"gravity (z)", offsetof(spar_session, gravity) + 2 * sizeof(double), 0},
-    {"rho_inf of spar_session_set_integrator", offsetof(spar_session, rho_inf), 0},
-    {"substeps of spar_session_set_integrator", offsetof(spar_session, substeps), 1},
-    {"atol of spar_session_set_newton", offsetof(spar_session, newton_atol), 0},
-    {"rtol of spar_session_set_newton", offsetof(spar_session, newton_rtol), 0},
-    {"max_iterations of spar_session_set_newton", offsetof(spar_session, newton_max), 1},
-    {"order of spar_session_set_predictor", offsetof(spar_session, predictor), 1},
-    {"scheme of spar_session_set_coupling", offsetof(spar_session, scheme), 1},
-    {"atol of spar_session_set_coupling", offsetof(spar_session, coupling_atol), 0},
-    {"rtol of spar_session_set_coupling", offsetof(spar_session, coupling_rtol), 0},
-    {"max_iterations of spar_session_set_coupling", offsetof(spar_session, coupling_max), 1},
-    {"omega of spar_session_set_relaxation", offsetof(spar_session, relaxation), 0},
-    {"option coupling.unconverged (1: accept)", offsetof(spar_session, accept_unconverged), 1},
-    {"option coupling.columns", offsetof(spar_session, coupling_columns), 1},
-    {"option coupling.reuse", offsetof(spar_session, coupling_reuse), 1},
-    {"option coupling.filter", offsetof(spar_session, coupling_filter), 0},
-    {"option coupling.target", offsetof(spar_session, coupling_target), 0},
-    {"option coupling.motion_atol", offsetof(spar_session, motion_atol), 0},
-    {"option coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0},
-    {"option fluid.theta (1: group)", offsetof(spar_session, theta_on_group), 1},
-    {"option advise.dt (1: keep)", offsetof(spar_session, keep_dt), 1},
-    {"option advise.nodes (1: keep)", offsetof(spar_session, keep_nodes), 1},
-    {"option advise.fidelity (1: keep)", offsetof(spar_session, keep_fidelity), 1},
-    {"option advise.coupling (1: keep)", offsetof(spar_session, keep_coupling), 1},
-    {"option advise.horizon", offsetof(spar_session, horizon), 0},
-    {"option advise.fluid_cost", offsetof(spar_session, fluid_cost), 0},
-    {"numbers of members", offsetof(spar_session, member_count), 1},
-    /* what a setter has done, though the setting is as it was */
-    {"calls that set the coupling", offsetof(spar_session, coupling_stale), 1},
-    {"calls of spar_session_set_predictor", offsetof(spar_session, past), 1},
-};
+/* Calls that set, beside spar_session_set_option. */
+enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, OPTION };
 
-/* Default tolerances of Newton: what turning the axes or another number of ranks must not change (1e-11) stays below.
- */
-static const double default_atol = 1e-15, default_rtol = 1e-12;
+/* Rows: of an argument of a setter, in the order of its arguments; of an option that is a number, or one of two words,
+   for 0 and 1; and of what a setter has done though the setting may be as it was, which nobody sets. Each with field,
+   range, default and flags. */
+#define FIELD(field) offsetof(spar_session, field)
+#define REAL(by, setter, key, field, least, most, range, initial, flags)                                               \
+    {                                                                                                                  \
+        key " of spar_session_set_" setter, key, FIELD(field), SPARI_IS_REAL, by, least, most, range, {NULL, NULL},    \
+            initial, flags                                                                                             \
+    }
+#define ALONG(key, axis)                                                                                               \
+    {                                                                                                                  \
+        key, key, FIELD(gravity) + (axis) * sizeof(double), SPARI_IS_REAL, GRAVITY, -DBL_MAX, DBL_MAX,                 \
+            "a finite number", {NULL, NULL}, 0, SPARI_ALIKE                                                            \
+    }
+#define WHOLE(by, setter, key, field, least, most, range, initial, flags)                                              \
+    {                                                                                                                  \
+        key " of spar_session_set_" setter, key, FIELD(field), SPARI_IS_WHOLE, by, least, most, range, {NULL, NULL},   \
+            initial, flags                                                                                             \
+    }
+#define OPTION_REAL(key, field, least, most, range, initial, flags)                                                    \
+    { "option " key, key, FIELD(field), SPARI_IS_REAL, OPTION, least, most, range, {NULL, NULL}, initial, flags }
+#define OPTION_WHOLE(key, field, least, most, range, initial, flags)                                                   \
+    { "option " key, key, FIELD(field), SPARI_IS_WHOLE, OPTION, least, most, range, {NULL, NULL}, initial, flags }
+#define OPTION_WORD(key, field, zero, one, flags)                                                                      \
+    {                                                                                                                  \
+        "option " key " (1: " one ")", key, FIELD(field), SPARI_IS_WORD, OPTION, 0, 1, zero " or " one, {zero, one},   \
+            0, flags                                                                                                   \
+    }
+#define STATE(name, field)                                                                                             \
+    { name, NULL, FIELD(field), SPARI_IS_WHOLE, NOBODY, 0, 0, NULL, {NULL, NULL}, 0, SPARI_ALIKE }
+
+static const char not_negative[] = "a finite number >= 0", one_or_more[] = "at least 1";
+
+/* The options fluid.far and fluid.audit concern a rank's own nodes and nothing else: ranks may differ in them. The
+   defaults of Newton's tolerances: what turning the axes or another number of ranks must not change (1e-11) stays
+   below. */
+static const spari_setting settings[] = {
+    ALONG("gravity (x)", 0),
+    ALONG("gravity (y)", 1),
+    ALONG("gravity (z)", 2),
+    REAL(INTEGRATOR, "integrator", "rho_inf", rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9, SPARI_ALIKE),
+    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_ALIKE),
+    REAL(NEWTON, "newton", "atol", newton_atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_ALIKE),
+    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_ALIKE),
+    WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_ALIKE),
+    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_ALIKE),
+    WHOLE(COUPLING, "coupling", "scheme", scheme, SPAR_COUPLING_EXPLICIT, SPAR_COUPLING_IQN_ILS, "a SPAR_COUPLING_*",
+          SPAR_COUPLING_EXPLICIT, SPARI_ALIKE | SPARI_OF_COUPLING),
+    REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_ALIKE),
+    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_ALIKE),
+    WHOLE(COUPLING, "coupling", "max_iterations", coupling_max, 1, INT32_MAX, one_or_more, 50,
+          SPARI_ALIKE | SPARI_OF_COUPLING),
+    REAL(RELAXATION, "relaxation", "omega", relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
+         SPARI_ALIKE | SPARI_OF_COUPLING),
+    WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_ALIKE),
+    OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_ALIKE),
+    OPTION_WHOLE("coupling.columns", coupling_columns, 1, 10000, "a whole number from 1 to 10000", 30,
+                 SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_WHOLE("coupling.reuse", coupling_reuse, 0, 10000, "a whole number from 0 to 10000", 5,
+                 SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_REAL("coupling.filter", coupling_filter, 0, 0.5, "a number from 0 to 0.5", 1e-4,
+                SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_REAL("coupling.target", coupling_target, 1e-15, 1, "a number from 1e-15 to 1", 0.01, SPARI_ALIKE),
+    OPTION_REAL("coupling.motion_atol", motion_atol, 0, 1e300, "a number >= 0 (metres)", 0,
+                SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_REAL("coupling.motion_rtol", motion_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_ALIKE),
+    OPTION_WORD("fluid.far", far_refuse, "take", "refuse", 0),
+    OPTION_WORD("fluid.audit", audit_off, "on", "off", 0),
+    OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_ALIKE),
+    OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
+    OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),
+    OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_ALIKE),
+    OPTION_REAL("advise.horizon", horizon, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
+    OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
+    STATE("numbers of members", member_count),
+    STATE("calls that set the coupling", coupling_stale),
+    STATE("calls of spar_session_set_predictor", past),
+};
+enum { SETTINGS = sizeof settings / sizeof *settings };
+
+static void store(spar_session *s, const spari_setting *of, double x) {
+    void *field = (char *)s + of->field;
+    if (of->kind == SPARI_IS_REAL) {
+        *(double *)field = x;
+    } else {
+        *(int *)field = (int)x;
+    }
+    s->coupling_stale |= of->flags & SPARI_OF_COUPLING ? 1 : 0;
+}
+
+static int is_allowed(const spari_setting *of, double x) {
+    return x >= of->least && x <= of->most && (of->kind == SPARI_IS_REAL || x == floor(x));
+}
 
 void spari_settings_default(spar_session *s) {
     s->settings = settings;
-    s->setting_count = sizeof settings / sizeof *settings;
-    s->rho_inf = 0.9;
-    s->substeps = 1;
-    s->newton_atol = default_atol;
-    s->newton_rtol = default_rtol;
-    s->newton_max = 50;
-    s->predictor = 1;
-    s->scheme = SPAR_COUPLING_EXPLICIT;
-    s->coupling_atol = 1e-9;
-    s->coupling_rtol = 1e-6;
-    s->coupling_max = 50;
-    s->relaxation = 1;
-    s->coupling_columns = 30;
-    s->coupling_reuse = 5;
-    s->coupling_filter = 1e-4;
-    s->coupling_target = 0.01;
-    s->coupling_stale = 1;
+    s->setting_count = SETTINGS;
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].key) {
+            store(s, settings + i, settings[i].initial);
+        }
+    }
 }
 
-/* ---- setters ---- */
+int spari_settings_of_coupling(const spar_session *s, double *values) {
+    int n = 0;
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].flags & SPARI_OF_COUPLING) {
+            values[n++] = spari_setting_value(s, settings + i);
+        }
+    }
+    return n;
+}
+
+/* ---- setters and getters ---- */
 
 static int settable(spar_session *session, const char *call) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
@@ -82,12 +142,55 @@ static int settable(spar_session *session, const char *call) {
     return SPAR_OK;
 }
 
+/* The arguments of a setter, in their order, within their ranges. */
+static int check_given(spar_session *session, const char *call, int by, const double *given) {
+    SPARI_TRY(settable(session, call));
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].by == by) {
+            SPARI_REQUIRE(session, is_allowed(settings + i, *given), SPAR_ERR_ARGUMENT, "%s: %s is %.15g; give %s",
+                          call, settings[i].key, *given, settings[i].range);
+            given++;
+        }
+    }
+    return SPAR_OK;
+}
+
+static void store_given(spar_session *session, int by, const double *given) {
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].by == by) {
+            store(session, settings + i, *given++);
+        }
+    }
+}
+
+static int set(spar_session *session, const char *call, int by, const double *given) {
+    SPARI_QUIET;
+    SPARI_TRY(check_given(session, call, by, given));
+    store_given(session, by, given);
+    return SPAR_OK;
+}
+
+/* into: double or int as the row is, NULL: not wanted */
+static int get(const spar_session *session, const char *call, int by, void *const *into) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].by == by) {
+            if (*into && settings[i].kind == SPARI_IS_REAL) {
+                *(double *)*into = spari_setting_value(session, settings + i);
+            } else if (*into) {
+                *(int *)*into = (int)spari_setting_value(session, settings + i);
+            }
+            into++;
+        }
+    }
+    return SPAR_OK;
+}
+
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
     SPARI_QUIET;
     SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, g && spari_first_nonfinite(g, 3) < 0, SPAR_ERR_ARGUMENT,
-                  "%s: gravity must be three finite numbers", __func__);
-    memcpy(session->gravity, g, sizeof session->gravity);
+    SPARI_REQUIRE(session, g, SPAR_ERR_ARGUMENT, "%s: the vector of gravity is NULL", __func__);
+    SPARI_TRY(set(session, __func__, GRAVITY, g));
     for (spar_member *m = session->members; m; m = m->next) {
         if (m->committed) {
             spari_member_gravity(m);
@@ -96,41 +199,28 @@ int spar_session_set_gravity(spar_session *session, const double g[3]) {
     return SPAR_OK;
 }
 
-int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
-    SPARI_QUIET;
-    SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, rho_inf >= 0 && rho_inf <= 1, SPAR_ERR_ARGUMENT,
-                  "%s: rho_inf is %g; give 0 (most damping) to 1 (none)", __func__, rho_inf);
-    SPARI_REQUIRE(session, substeps >= 1, SPAR_ERR_ARGUMENT, "%s: %d substeps; give at least 1", __func__, substeps);
-    session->rho_inf = rho_inf;
-    session->substeps = substeps;
-    return SPAR_OK;
+int spar_session_get_gravity(const spar_session *session, double g[3]) {
+    return get(session, __func__, GRAVITY, (void *const[]){g, g ? g + 1 : NULL, g ? g + 2 : NULL});
 }
 
-/* tolerances and iteration limits, wherever they are set */
-static int check_limits(spar_session *session, const char *call, double atol, double rtol, int max_iterations) {
-    SPARI_REQUIRE(session, isfinite(atol) && isfinite(rtol) && atol >= 0 && rtol >= 0, SPAR_ERR_ARGUMENT,
-                  "%s: tolerances %g and %g; give finite numbers >= 0", call, atol, rtol);
-    SPARI_REQUIRE(session, max_iterations >= 1, SPAR_ERR_ARGUMENT, "%s: %d iterations; give at least 1", call,
-                  max_iterations);
-    return SPAR_OK;
+int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
+    return set(session, __func__, INTEGRATOR, (const double[]){rho_inf, substeps});
+}
+
+int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps) {
+    return get(session, __func__, INTEGRATOR, (void *const[]){rho_inf, substeps});
 }
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
-    SPARI_QUIET;
-    SPARI_TRY(settable(session, __func__));
-    SPARI_TRY(check_limits(session, __func__, atol, rtol, max_iterations));
-    session->newton_atol = atol;
-    session->newton_rtol = rtol;
-    session->newton_max = max_iterations;
-    return SPAR_OK;
+    return set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations});
 }
 
-int spar_session_set_predictor(spar_session *session, int order) {
-    SPARI_QUIET;
-    SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, order >= 0 && order <= 2, SPAR_ERR_ARGUMENT, "%s: order %d; give 0, 1 or 2", __func__,
-                  order);
+int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations) {
+    return get(session, __func__, NEWTON, (void *const[]){atol, rtol, max_iterations});
+}
+
+/* Room for the past loads that the order looks back on. */
+static int keep_history(spar_session *session, int order) {
     int status = SPAR_OK;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
         status = m->committed ? spari_history_keep(m->load_history, 6 * m->nodes, order) : SPAR_OK;
@@ -138,126 +228,113 @@ int spar_session_set_predictor(spar_session *session, int order) {
     for (spar_fluid *f = session->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = spari_fluid_keep(f, order);
     }
+    return status;
+}
+
+int spar_session_set_predictor(spar_session *session, int order) {
+    SPARI_QUIET;
+    SPARI_TRY(check_given(session, __func__, PREDICTOR, (const double[]){order}));
+    int status = keep_history(session, order);
     SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", __func__, order);
-    session->predictor = order;
+    store_given(session, PREDICTOR, (const double[]){order});
     session->past = session->past < order ? session->past : order;
     return SPAR_OK;
 }
 
+int spar_session_get_predictor(const spar_session *session, int *order) {
+    return get(session, __func__, PREDICTOR, (void *const[]){order});
+}
+
 int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
-    SPARI_QUIET;
-    SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, scheme >= SPAR_COUPLING_EXPLICIT && scheme <= SPAR_COUPLING_IQN_ILS, SPAR_ERR_ARGUMENT,
-                  "%s: there is no scheme %d; see SPAR_COUPLING_*", __func__, scheme);
-    SPARI_TRY(check_limits(session, __func__, atol, rtol, max_iterations));
-    session->scheme = scheme;
-    session->coupling_atol = atol;
-    session->coupling_rtol = rtol;
-    session->coupling_max = max_iterations;
-    session->coupling_stale = 1;
-    return SPAR_OK;
+    return set(session, __func__, COUPLING, (const double[]){scheme, atol, rtol, max_iterations});
+}
+
+int spar_session_get_coupling(const spar_session *session, int *scheme, double *atol, double *rtol,
+                              int *max_iterations) {
+    return get(session, __func__, COUPLING, (void *const[]){scheme, atol, rtol, max_iterations});
 }
 
 int spar_session_set_relaxation(spar_session *session, double omega) {
-    SPARI_QUIET;
-    SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, omega > 0 && omega <= 2, SPAR_ERR_ARGUMENT, "%s: omega is %g; give a number in (0, 2]",
-                  __func__, omega);
-    session->relaxation = omega;
-    session->coupling_stale = 1;
-    return SPAR_OK;
+    return set(session, __func__, RELAXATION, (const double[]){omega});
+}
+
+int spar_session_get_relaxation(const spar_session *session, double *omega) {
+    return get(session, __func__, RELAXATION, (void *const[]){omega});
 }
 
 int spar_session_set_reproducible(spar_session *session, int on) {
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, !on || spari_comm_size(session->comm) == 1, SPAR_ERR_UNSUPPORTED,
                   "%s: sums over several ranks are not yet independent of how nodes are spread over them", __func__);
-    return SPAR_OK;
+    return set(session, __func__, REPRODUCIBLE, (const double[]){on != 0});
 }
 
-/* The long tail: words that set one number. */
-typedef struct option {
-    const char *key, *value;
-    size_t field;
-    int to;
-} option;
+int spar_session_get_reproducible(const spar_session *session, int *on) {
+    return get(session, __func__, REPRODUCIBLE, (void *const[]){on});
+}
 
-static const option options[] = {
-    {"coupling.unconverged", "error", offsetof(spar_session, accept_unconverged), 0},
-    {"coupling.unconverged", "accept", offsetof(spar_session, accept_unconverged), 1},
-    {"fluid.theta", "average", offsetof(spar_session, theta_on_group), 0},
-    {"fluid.theta", "group", offsetof(spar_session, theta_on_group), 1},
-    {"fluid.far", "take", offsetof(spar_session, far_refuse), 0},
-    {"fluid.far", "refuse", offsetof(spar_session, far_refuse), 1},
-    {"advise.dt", "vary", offsetof(spar_session, keep_dt), 0},
-    {"advise.dt", "keep", offsetof(spar_session, keep_dt), 1},
-    {"advise.nodes", "vary", offsetof(spar_session, keep_nodes), 0},
-    {"advise.nodes", "keep", offsetof(spar_session, keep_nodes), 1},
-    {"advise.fidelity", "vary", offsetof(spar_session, keep_fidelity), 0},
-    {"advise.fidelity", "keep", offsetof(spar_session, keep_fidelity), 1},
-    {"advise.coupling", "vary", offsetof(spar_session, keep_coupling), 0},
-    {"advise.coupling", "keep", offsetof(spar_session, keep_coupling), 1},
-    {"fluid.audit", "on", offsetof(spar_session, audit_off), 0},
-    {"fluid.audit", "off", offsetof(spar_session, audit_off), 1},
-};
+/* ---- options ---- */
 
-/* Numbers, with the range they may have. */
-typedef struct number_option {
-    const char *key;
-    size_t field;
-    int whole; /* an int, else a double */
-    double least, most;
-    const char *range;
-} number_option;
-
-static const number_option number_options[] = {
-    {"coupling.columns", offsetof(spar_session, coupling_columns), 1, 1, 10000, "a whole number from 1 to 10000"},
-    {"coupling.reuse", offsetof(spar_session, coupling_reuse), 1, 0, 10000, "a whole number from 0 to 10000"},
-    {"coupling.filter", offsetof(spar_session, coupling_filter), 0, 0, 0.5, "a number from 0 to 0.5"},
-    {"coupling.target", offsetof(spar_session, coupling_target), 0, 1e-15, 1, "a number from 1e-15 to 1"},
-    {"advise.horizon", offsetof(spar_session, horizon), 0, 0, 1e300, "a number >= 0 (seconds)"},
-    {"advise.fluid_cost", offsetof(spar_session, fluid_cost), 0, 0, 1e300, "a number >= 0 (seconds)"},
-    {"coupling.motion_atol", offsetof(spar_session, motion_atol), 0, 0, 1e300, "a number >= 0 (metres)"},
-    {"coupling.motion_rtol", offsetof(spar_session, motion_rtol), 0, 0, 1, "a number from 0 to 1"},
-};
-
-static int set_number(spar_session *session, const number_option *o, const char *value) {
-    char *end;
-    double x = strtod(value, &end);
-    SPARI_REQUIRE(
-        session, end != value && *end == '\0' && x >= o->least && x <= o->most && (!o->whole || x == floor(x)),
-        SPAR_ERR_ARGUMENT, "spar_session_set_option: option '%s' cannot be '%s'; give %s", o->key, value, o->range);
-    char *field = (char *)session + o->field;
-    if (o->whole) {
-        *(int *)(void *)field = (int)x;
-    } else {
-        *(double *)(void *)field = x;
+static const spari_setting *find_option(const char *key) {
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].by == OPTION && strcmp(settings[i].key, key) == 0) {
+            return settings + i;
+        }
     }
-    return SPAR_OK;
+    return NULL;
+}
+
+/* Whether the text is a value of the option. */
+static int read_value(const spari_setting *of, const char *text, double *x) {
+    if (of->kind == SPARI_IS_WORD) {
+        *x = strcmp(text, of->words[1]) == 0;
+        return *x > 0 || strcmp(text, of->words[0]) == 0;
+    }
+    char *end;
+    *x = strtod(text, &end);
+    return end != text && *end == '\0' && is_allowed(of, *x);
 }
 
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     SPARI_QUIET;
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
-    int known = 0;
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        if (strcmp(options[i].key, key) == 0) {
-            known = 1;
-            if (strcmp(options[i].value, value) == 0) {
-                *(int *)(void *)((char *)session + options[i].field) = options[i].to;
-                return SPAR_OK;
-            }
+    const spari_setting *of = find_option(key);
+    SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    double x;
+    SPARI_REQUIRE(session, read_value(of, value, &x), SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; give %s",
+                  __func__, key, value, of->range);
+    store(session, of, x);
+    return SPAR_OK;
+}
+
+/* The shortest text that is read as the same number. */
+static void write_number(double x, char *text, size_t size) {
+    for (int digits = 15; digits <= 17; digits++) {
+        (void)snprintf(text, size, "%.*g", digits, x);
+        if (strtod(text, NULL) == x) {
+            return;
         }
     }
-    for (size_t i = 0; i < sizeof number_options / sizeof *number_options; i++) {
-        if (strcmp(number_options[i].key, key) == 0) {
-            SPARI_TRY(set_number(session, number_options + i, value));
-            session->coupling_stale = 1;
-            return SPAR_OK;
-        }
+}
+
+int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = (spar_session *)session;
+    SPARI_REQUIRE(s, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
+    const spari_setting *of = find_option(key);
+    SPARI_REQUIRE(s, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    char value[40];
+    double x = spari_setting_value(session, of);
+    if (of->kind == SPARI_IS_WORD) {
+        (void)snprintf(value, sizeof value, "%s", of->words[x > 0]);
+    } else {
+        write_number(x, value, sizeof value);
     }
-    SPARI_REQUIRE(session, known, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
-    return spari_fail(session, SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; spar.h lists its values", __func__,
-                      key, value);
+    int64_t needed = (int64_t)strlen(value) + 1;
+    SPARI_REQUIRE(s, capacity >= needed, SPAR_ERR_ARGUMENT, "%s: the value of '%s' takes %lld characters, not %lld",
+                  __func__, key, (long long)needed, (long long)capacity);
+    memcpy(text, value, (size_t)needed);
+    return SPAR_OK;
 }

@@ -239,6 +239,19 @@ void do_spar_fluid_push_forces_f32(call *c) {
     RUN(c, spar_fluid_push_forces_f32(f->f, force, moment));
 }
 
+void do_spar_fluid_get_projection(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int *method = arg_out(c, (int64_t)sizeof *method, 1);
+    double *max_distance = arg_out(c, (int64_t)sizeof *max_distance, 1);
+    RUN(c, spar_fluid_get_projection(f->f, method, max_distance));
+}
+
+void do_spar_fluid_get_interpolation(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int *kind = arg_out(c, (int64_t)sizeof *kind, 1);
+    RUN(c, spar_fluid_get_interpolation(f->f, kind));
+}
+
 void do_spar_fluid_get_audit(call *c) {
     live_fluid *f = arg_fluid(c);
     int64_t n = arg_count(c, 0, SPAR_AUDIT_COUNT + 2);

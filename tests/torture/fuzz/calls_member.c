@@ -290,6 +290,64 @@ void do_spar_beam_set_modal_damping(call *c) {
     RUN(c, spar_beam_set_modal_damping(b->m, mode, ratio, mu));
 }
 
+void do_spar_member_get_placement(call *c) {
+    live_member *m = arg_member(c, -1);
+    double *x = arg_out(c, 3 * (int64_t)sizeof *x, 1);
+    double *q = arg_out(c, 4 * (int64_t)sizeof *q, 1);
+    RUN(c, spar_member_get_placement(m->m, x, q));
+}
+
+void do_spar_member_get_root(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *kind = arg_out(c, (int64_t)sizeof *kind, 1);
+    RUN(c, spar_member_get_root(m->m, kind));
+}
+
+void do_spar_member_get_external(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *on = arg_out(c, (int64_t)sizeof *on, 1);
+    RUN(c, spar_member_get_external(m->m, on));
+}
+
+void do_spar_member_get_effects(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *effects = arg_out(c, (int64_t)sizeof *effects, 1);
+    RUN(c, spar_member_get_effects(m->m, effects));
+}
+
+void do_spar_member_get_fidelity(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *kind = arg_out(c, (int64_t)sizeof *kind, 1);
+    int64_t *modes = arg_out(c, (int64_t)sizeof *modes, 1);
+    RUN(c, spar_member_get_fidelity(m->m, kind, modes));
+}
+
+void do_spar_member_get_owner(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *rank = arg_out(c, (int64_t)sizeof *rank, 1);
+    RUN(c, spar_member_get_owner(m->m, rank));
+}
+
+void do_spar_beam_get_elements(call *c) {
+    live_member *m = arg_member(c, KIND_BEAM);
+    int *elements = arg_out(c, (int64_t)sizeof *elements, 1);
+    int *nodes_per_element = arg_out(c, (int64_t)sizeof *nodes_per_element, 1);
+    RUN(c, spar_beam_get_elements(m->m, elements, nodes_per_element));
+}
+
+void do_spar_beam_get_quadrature(call *c) {
+    live_member *m = arg_member(c, KIND_BEAM);
+    int *rule = arg_out(c, (int64_t)sizeof *rule, 1);
+    int *points = arg_out(c, (int64_t)sizeof *points, 1);
+    RUN(c, spar_beam_get_quadrature(m->m, rule, points));
+}
+
+void do_spar_beam_get_damping(call *c) {
+    live_member *m = arg_member(c, KIND_BEAM);
+    double *mu = arg_out(c, 6 * (int64_t)sizeof *mu, 1);
+    RUN(c, spar_beam_get_damping(m->m, mu));
+}
+
 void do_spar_member_get_loads(call *c) {
     live_member *m = arg_member(c, -1);
     double *load = OUT(c, 6 * nodes_of(m));

@@ -206,6 +206,70 @@ void do_spar_session_set_option(call *c) {
     RUN(c, spar_session_set_option(l->s, key, value));
 }
 
+void do_spar_session_get_gravity(call *c) {
+    live_session *l = arg_session(c);
+    double *g = arg_out(c, 3 * (int64_t)sizeof *g, 1);
+    RUN(c, spar_session_get_gravity(l->s, g));
+}
+
+void do_spar_session_get_integrator(call *c) {
+    live_session *l = arg_session(c);
+    double *rho_inf = arg_out(c, (int64_t)sizeof *rho_inf, 1);
+    int *substeps = arg_out(c, (int64_t)sizeof *substeps, 1);
+    RUN(c, spar_session_get_integrator(l->s, rho_inf, substeps));
+}
+
+void do_spar_session_get_newton(call *c) {
+    live_session *l = arg_session(c);
+    double *atol = arg_out(c, (int64_t)sizeof *atol, 1);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 1);
+    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 1);
+    RUN(c, spar_session_get_newton(l->s, atol, rtol, max_iterations));
+}
+
+void do_spar_session_get_predictor(call *c) {
+    live_session *l = arg_session(c);
+    int *order = arg_out(c, (int64_t)sizeof *order, 1);
+    RUN(c, spar_session_get_predictor(l->s, order));
+}
+
+void do_spar_session_get_coupling(call *c) {
+    live_session *l = arg_session(c);
+    int *scheme = arg_out(c, (int64_t)sizeof *scheme, 1);
+    double *atol = arg_out(c, (int64_t)sizeof *atol, 1);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 1);
+    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 1);
+    RUN(c, spar_session_get_coupling(l->s, scheme, atol, rtol, max_iterations));
+}
+
+void do_spar_session_get_relaxation(call *c) {
+    live_session *l = arg_session(c);
+    double *omega = arg_out(c, (int64_t)sizeof *omega, 1);
+    RUN(c, spar_session_get_relaxation(l->s, omega));
+}
+
+void do_spar_session_get_reproducible(call *c) {
+    live_session *l = arg_session(c);
+    int *on = arg_out(c, (int64_t)sizeof *on, 1);
+    RUN(c, spar_session_get_reproducible(l->s, on));
+}
+
+void do_spar_session_get_option(call *c) {
+    static const char *const keys[] = {"coupling.unconverged",
+                                       "fluid.audit",
+                                       "coupling.columns",
+                                       "coupling.filter",
+                                       "advise.horizon",
+                                       "no.option",
+                                       "spar%n"};
+    live_session *l = arg_session(c);
+    const char *key = odd(c) ? NULL : keys[below(c, 7)];
+    int64_t n = arg_count(c, 0, 30);
+    char *into = arg_out(c, length(n), 1);
+    text(c, ", \"%s\"", key ? key : "NULL");
+    RUN(c, spar_session_get_option(l->s, key, n, into));
+}
+
 void do_spar_session_get_iterations(call *c) {
     live_session *l = arg_session(c);
     int *iterations = arg_out(c, sizeof(int), 1);

@@ -46,6 +46,25 @@ enum {
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
+    CALL(spar_session_get_gravity, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_session_get_integrator, 20, FUZZ_PURE)                                                                   \
+    CALL(spar_session_get_newton, 20, FUZZ_PURE)                                                                       \
+    CALL(spar_session_get_predictor, 20, FUZZ_PURE)                                                                    \
+    CALL(spar_session_get_coupling, 20, FUZZ_PURE)                                                                     \
+    CALL(spar_session_get_relaxation, 20, FUZZ_PURE)                                                                   \
+    CALL(spar_session_get_reproducible, 20, FUZZ_PURE)                                                                 \
+    CALL(spar_member_get_placement, 20, FUZZ_PURE)                                                                     \
+    CALL(spar_member_get_root, 20, FUZZ_PURE)                                                                          \
+    CALL(spar_member_get_external, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_member_get_effects, 20, FUZZ_PURE)                                                                       \
+    CALL(spar_member_get_fidelity, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_member_get_owner, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_beam_get_elements, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_beam_get_quadrature, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_beam_get_damping, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_get_projection, 20, FUZZ_PURE)                                                                     \
+    CALL(spar_fluid_get_interpolation, 20, FUZZ_PURE)                                                                  \
+    CALL(spar_session_get_option, 40, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_time, 40, FUZZ_PURE)                                                                         \

@@ -332,6 +332,33 @@ static void quiet(const spar_session *s, int level, const char *text, void *cont
     (void)s, (void)level, (void)text, (void)context;
 }
 
+/* What has been set is read. */
+static void read_back(const spar_session *s, const spar_member *b, const spar_fluid *f) {
+    double number[32];
+    int whole[32];
+    int64_t many;
+    char word[32];
+    CALL(spar_session_get_gravity, s, number + 0);
+    CALL(spar_session_get_integrator, s, number + 0, whole + 8);
+    CALL(spar_session_get_newton, s, number + 0, number + 8, whole + 16);
+    CALL(spar_session_get_predictor, s, whole + 0);
+    CALL(spar_session_get_coupling, s, whole + 0, number + 8, number + 16, whole + 24);
+    CALL(spar_session_get_relaxation, s, number + 0);
+    CALL(spar_session_get_reproducible, s, whole + 0);
+    CALL(spar_member_get_placement, b, number + 0, number + 8);
+    CALL(spar_member_get_root, b, whole + 0);
+    CALL(spar_member_get_external, b, whole + 0);
+    CALL(spar_member_get_effects, b, whole + 0);
+    CALL(spar_member_get_fidelity, b, whole + 0, &many);
+    CALL(spar_member_get_owner, b, whole + 0);
+    CALL(spar_beam_get_elements, b, whole + 0, whole + 8);
+    CALL(spar_beam_get_quadrature, b, whole + 0, whole + 8);
+    CALL(spar_beam_get_damping, b, number + 0);
+    CALL(spar_fluid_get_projection, f, whole + 0, number + 8);
+    CALL(spar_fluid_get_interpolation, f, whole + 0);
+    CALL(spar_session_get_option, s, "coupling.columns", (int64_t)sizeof word, word);
+}
+
 /* An exact beam with all its loads under the calls of one step, and what a step can be asked. */
 static void act_step(void) {
     host h = {.fluids = 1, .members = 1, .at = 1};
@@ -379,6 +406,7 @@ static void act_step(void) {
     NOTE(report);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
+    read_back(s, b, h.fluid[0]);
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);
     note(all, 36 * sizeof *all);
