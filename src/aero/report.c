@@ -56,7 +56,8 @@ static int find_rows(spar_session *s, const spar_aero *aero, double in_force[SPA
     return spari_comm_sum(s->comm, in_force, SPAR_AERO_ROW_COUNT, SPAR_OK, s->message, sizeof s->message);
 }
 
-/* A run that begins beside its own balance iterates more, which is no price of the effect: the time of one solution. */
+/* A run that begins out of its own balance iterates more, and that is not what the effect costs: so the time of one
+   solution is compared. */
 static double cost_of_try(const double report[SPAR_TRY_COUNT]) {
     return report[SPAR_TRY_SECONDS] / fmax(report[SPAR_TRY_SOLUTIONS], 1);
 }

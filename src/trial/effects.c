@@ -231,8 +231,8 @@ static int is_of_the_run(int status) {
            status == SPAR_ERR_UNSUPPORTED;
 }
 
-/* A run that begins beside its own balance iterates more, which is no price of what it computes: of such rows the time
-   of one solution counts. */
+/* A run that begins out of its own balance iterates more, and that is not what the effect costs: so the time of one
+   solution is compared, but for the rows that change how many there are. */
 static double cost_of_row(const spari_record *record, int r) {
     int of_coupling = r == SPAR_ROW_PREDICTOR || r == SPAR_ROW_ITERATION;
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
