@@ -5,7 +5,7 @@
          (the least of several runs) over that of the scene's default
      valgrind --tool=callgrind accuracy --count [--full] [--scene name]
          plays them once and dumps the instructions of the steps of each, labelled with its number; without --full only
-         those of knobs default, rung and together (at the default's dt)
+         those of knobs default, fidelity and together (at the default's dt)
 
    Settings are numbered from 0 through all scenes. benchmarks/run joins the two. Progress on stderr. */
 #include "scenes.h"
@@ -157,19 +157,19 @@ static void effects(const scene *s) {
     }
 }
 
-static void rungs(const scene *s) {
+static void fidelities(const scene *s) {
     static const char *const names[] = {"prescribed", "rigid", "linear"};
-    for (int rung = s->floats; rung < 3; rung++) {
+    for (int fidelity = s->floats; fidelity < 3; fidelity++) {
         knobs k = s->standard;
-        k.rung = rung;
-        add(s, "rung", names[rung], k);
+        k.fidelity = fidelity;
+        add(s, "fidelity", names[fidelity], k);
     }
     for (int64_t modes = 2; modes <= 16 && !s->floats; modes *= 2) {
         knobs k = s->standard;
         char text[40];
-        k.rung = SPAR_FIDELITY_MODAL, k.modes = modes;
+        k.fidelity = SPAR_FIDELITY_MODAL, k.modes = modes;
         snprintf(text, sizeof text, "%d modes", (int)modes);
-        add(s, "rung", text, k);
+        add(s, "fidelity", text, k);
     }
 }
 
@@ -194,13 +194,13 @@ static void together(const scene *s) {
                 k.tolerance = 1e-2;
             }
             if (kind == LEAN_MODAL) {
-                k.rung = SPAR_FIDELITY_MODAL, k.modes = 8;
+                k.fidelity = SPAR_FIDELITY_MODAL, k.modes = 8;
             }
             if (kind == RIGID || (kind == PREDICTOR && s->floats)) {
-                k.rung = SPAR_FIDELITY_RIGID;
+                k.fidelity = SPAR_FIDELITY_RIGID;
             }
-            snprintf(text, sizeof text, "%s%s dt %g", k.rung == SPAR_FIDELITY_RIGID && kind != RIGID ? "rigid " : "",
-                     names[kind], k.dt);
+            snprintf(text, sizeof text, "%s%s dt %g",
+                     k.fidelity == SPAR_FIDELITY_RIGID && kind != RIGID ? "rigid " : "", names[kind], k.dt);
             add(s, "together", text, k);
         }
     }
@@ -228,7 +228,7 @@ static void settings_of(const scene *s) {
     singles(s);
     couplings(s);
     effects(s);
-    rungs(s);
+    fidelities(s);
     together(s);
 }
 
@@ -325,7 +325,7 @@ static void count_steps(int i) {
 }
 
 static int counted(const setting *at, int full) {
-    static const char *const some[] = {"default", "rung", "together"};
+    static const char *const some[] = {"default", "fidelity", "together"};
     int among = 0;
     for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
         among |= strcmp(at->knob, some[i]) == 0;

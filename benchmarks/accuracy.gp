@@ -15,7 +15,7 @@ set ylabel (cost == 7 ? "instructions" : "processor time")." of the run over the
 set xrange [own / 1.6:1.6]
 set yrange [0.03:10]
 set title "What accuracy costs: ".scene
-knobs = "dt nodes elements quadrature rho substeps newton predictor theta start consistent projection acceleration f32 coupling effects rung together"
+knobs = "dt nodes elements quadrature rho substeps newton predictor theta start consistent projection acceleration f32 coupling effects fidelity together"
 array colour[18] = ["#1b6ca8", "#d1495b", "#e08e45", "#3a8f4e", "#8a5fbf", "#6b6b6b", "#00a3a3", "#b8860b", "#c71585", \
                     "#1f9e9e", "#556b2f", "#87ceeb", "#ff7f50", "#2f4f9f", "#a0522d", "#20a020", "#9acd32", "#000000"]
 array mark[18] = [7, 5, 9, 11, 13, 7, 5, 9, 11, 13, 7, 5, 9, 11, 13, 7, 5, 9]

@@ -55,7 +55,7 @@ static const struct {
                  {SPAR_COUPLING_FIXED_POINT, 1},
                  {SPAR_COUPLING_IQN_ILS, 1}};
 static const struct {
-    int rung, modes, nodes;
+    int fidelity, modes, nodes;
 } shapes[] = {{SPAR_FIDELITY_EXACT, 0, 8},
               {SPAR_FIDELITY_EXACT, 0, 6},
               {SPAR_FIDELITY_EXACT, 0, 5},
@@ -74,7 +74,7 @@ static void choose_by_hand(const scene *s, const scene_reference *reference, cho
         t->k.newton = 1e-6;
         t->k.scheme = couplings[c].scheme, t->k.predictor = couplings[c].predictor;
         t->k.tolerance = t->k.scheme ? 1e-2 : t->k.tolerance;
-        t->k.rung = shapes[b].rung, t->k.modes = shapes[b].modes, t->k.nodes = shapes[b].nodes;
+        t->k.fidelity = shapes[b].fidelity, t->k.modes = shapes[b].modes, t->k.nodes = shapes[b].nodes;
         play(s, reference, 3, t);
     }
 }
@@ -103,7 +103,7 @@ static knobs advised(const scene *s, const scene_run *run, const double *advice)
     k.tolerance = advice[SPAR_ADVICE_COUPLING_RTOL];
     k.predictor = (int)advice[SPAR_ADVICE_PREDICTOR];
     k.newton = advice[SPAR_ADVICE_NEWTON_RTOL];
-    k.rung = fidelity, k.modes = modes, k.nodes = nodes;
+    k.fidelity = fidelity, k.modes = modes, k.nodes = nodes;
     k.rule = points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     k.points = points;
     return k;
@@ -132,11 +132,11 @@ static int ask(const scene *s, double tolerance, double part, double *advice, kn
 }
 
 static const char *words(const knobs *k, char *text, size_t size) {
-    static const char *const scheme[] = {"explicit", "fixed", "aitken", "iqn"}, *const rung[] = {"prescribed", "rigid",
-                                                                                                 "linear", "modal",
-                                                                                                 "exact"};
+    static const char *const scheme[] = {"explicit", "fixed", "aitken", "iqn"}, *const fidelity[] = {"prescribed",
+                                                                                                     "rigid", "linear",
+                                                                                                     "modal", "exact"};
     char modes[16] = "", tolerance[16] = "", points[16] = "", substeps[24] = "";
-    if (k->rung == SPAR_FIDELITY_MODAL) {
+    if (k->fidelity == SPAR_FIDELITY_MODAL) {
         snprintf(modes, sizeof modes, " %d", (int)k->modes);
     }
     if (k->scheme) {
@@ -149,7 +149,7 @@ static const char *words(const knobs *k, char *text, size_t size) {
         snprintf(substeps, sizeof substeps, " in %d", k->substeps);
     }
     snprintf(text, size, "dt %.4g%s, %s%s, predictor %d, Newton %.0e, %s%s, %d%s nodes", k->dt, substeps,
-             scheme[k->scheme], tolerance, k->predictor, k->newton, rung[k->rung], modes, k->nodes, points);
+             scheme[k->scheme], tolerance, k->predictor, k->newton, fidelity[k->fidelity], modes, k->nodes, points);
     return text;
 }
 

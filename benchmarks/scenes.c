@@ -34,7 +34,7 @@ static int commit(spar_member *b, const knobs *k) {
     if (k->effects >= 0) {
         TRY(spar_member_set_effects(b, k->effects));
     }
-    TRY(spar_member_set_fidelity(b, k->rung, k->modes));
+    TRY(spar_member_set_fidelity(b, k->fidelity, k->modes));
     return spar_member_commit(b);
 }
 
@@ -287,7 +287,7 @@ static int build_body(scene_run *r) {
     {                                                                                                                  \
         .elements = 1, .nodes = 8, .rule = -1, .dt = (dt_), .rho = 0.9, .substeps = 1, .predictor = 1,                 \
         .scheme = (scheme_), .tolerance = 1e-6, .theta = 1, .acceleration = 1, .start = 1, .effects = -1, .aero = -1,  \
-        .rung = SPAR_FIDELITY_EXACT                                                                                    \
+        .fidelity = SPAR_FIDELITY_EXACT                                                                                \
     }
 
 const scene scenes[SCENE_COUNT] = {
@@ -409,7 +409,7 @@ int scene_converge(const scene *s, double refine, int elements, int nodes, scene
     reference->scale = scene_distance(result.history, NULL);
     if (s->spins) {
         still = s->standard;
-        still.rung = SPAR_FIDELITY_PRESCRIBED, still.nodes = nodes;
+        still.fidelity = SPAR_FIDELITY_PRESCRIBED, still.nodes = nodes;
         TRY(play(s, &still, &result));
         reference->scale = scene_distance(reference->history, result.history);
     }

@@ -45,7 +45,7 @@ typedef struct knobs {
     int start;        /* loads at t = 0 are given before the first step, by scene_build; else they count as zero */
     int effects;      /* SPAR_EFFECT_* or-ed; -1: default */
     int aero;         /* SPAR_AERO_* or-ed; -1: default */
-    int rung;         /* SPAR_FIDELITY_* */
+    int fidelity;     /* SPAR_FIDELITY_* */
     int64_t modes;
 } knobs;
 

@@ -1,4 +1,4 @@
-/* The rungs below the exact beam: each is the exact one's limit for small deformation, and skips its work. */
+/* Fidelities below the exact beam: each is the exact one's limit for small deformation, and skips its work. */
 #include "scene.h"
 
 #include <stdio.h>
@@ -297,15 +297,15 @@ static void test_rigid_free_centre(void **state) {
 }
 
 /* The support bears what is left: with all loads and the inertia of the turning mass. At rest the reaction of every
-   rung is minus the loads and the weight; on a turning root the rigid one needs m omega^2 r_c towards the axis. */
+   fidelity is minus the loads and the weight; on a turning root the rigid one needs m omega^2 r_c towards the axis. */
 static void test_reactions(void **state) {
     (void)state;
     const double g[3] = {0, 0, -9.81};
-    const int rungs[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const int fidelities[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
     double m = 10 * M[0], r[6], q[7];
     for (int k = 0; k < 3; k++) {
         spar_member *b;
-        spar_session *s = turning(rungs[k], 6, SPAR_ROOT_FIXED, 2, g, &b);
+        spar_session *s = turning(fidelities[k], 6, SPAR_ROOT_FIXED, 2, g, &b);
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_member_get_reaction(b, r));
         NEAR(r[1], -0.6, 1e-9);
@@ -356,13 +356,13 @@ static void test_skipped_work(void **state) {
    stands. */
 static void test_reject_and_substeps(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const int fidelities[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
     for (int k = 0; k < 3; k++) {
         double q[2][7];
         for (int way = 0; way < 2; way++) {
             spar_member *b;
-            int root = rungs[k] == SPAR_FIDELITY_RIGID ? SPAR_ROOT_PINNED : SPAR_ROOT_FIXED;
-            spar_session *s = turning(rungs[k], 6, root, 2, NULL, &b);
+            int root = fidelities[k] == SPAR_FIDELITY_RIGID ? SPAR_ROOT_PINNED : SPAR_ROOT_FIXED;
+            spar_session *s = turning(fidelities[k], 6, root, 2, NULL, &b);
             if (way) {
                 OK(s, spar_session_set_integrator(s, 0.9, 2));
             }
@@ -409,15 +409,15 @@ static void test_energy(void **state) {
     }
 }
 
-/* A root that starts suddenly, its accelerations not given: the nodes keep the velocity they have, in every rung that
-   bends. Without that the frame would take the whole beam along at once, and its tip be off by a third. */
+/* A root that starts suddenly, its accelerations not given: the nodes keep the velocity they have, in every fidelity
+   that bends. Without that the frame would take the whole beam along at once, and its tip be off by a third. */
 static void test_sudden_start(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
     double tip[3][7];
     for (int k = 0; k < 3; k++) {
         spar_member *b;
-        spar_session *s = turning(rungs[k], 12, SPAR_ROOT_DRIVEN, 0.1, NULL, &b);
+        spar_session *s = turning(fidelities[k], 12, SPAR_ROOT_DRIVEN, 0.1, NULL, &b);
         const double none[3] = {0};
         OK(s, spar_member_set_initial_velocity(b, none, none, none));
         for (int i = 1; i <= 50; i++) {
@@ -434,17 +434,18 @@ static void test_sudden_start(void **state) {
     NEAR(tip[2][2], tip[0][2], 0.1 * off);
 }
 
-/* Saved and loaded in the middle of a run, each rung goes on with the same bits. */
+/* Saved and loaded in the middle of a run, each fidelity goes on with the same bits. */
 static void test_saved(void **state) {
     (void)state;
     const char *path = "test_fidelity.state";
     for (int root = SPAR_ROOT_FREE; root <= SPAR_ROOT_DRIVEN; root++) {
         int given = root == SPAR_ROOT_DRIVEN || root == SPAR_ROOT_FIXED;
-        for (int rung = given ? SPAR_FIDELITY_PRESCRIBED : SPAR_FIDELITY_RIGID; rung <= SPAR_FIDELITY_EXACT; rung++) {
+        for (int fidelity = given ? SPAR_FIDELITY_PRESCRIBED : SPAR_FIDELITY_RIGID; fidelity <= SPAR_FIDELITY_EXACT;
+             fidelity++) {
             double q[2][7];
             for (int way = 0; way < 2; way++) {
                 spar_member *b;
-                spar_session *s = turning(rung, 9, root, 2, NULL, &b);
+                spar_session *s = turning(fidelity, 9, root, 2, NULL, &b);
                 if (way == 0) {
                     run(s, b, root, 20);
                     OK(s, spar_session_save(s, path));

@@ -24,12 +24,12 @@ static spar_member *beam_of(spar_session *s, int fidelity, int64_t modes, int ro
    undeformed line, the reaction is theirs at the root, and their work on the strains is the strain energy. */
 static void test_sections_are_linear(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, OFF};
+    const int fidelities[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, OFF};
     const double load[6] = {2e5, 1200, -2000, 700, -900, 400};
     gsl_integration_glfixed_table *gauss = gsl_integration_glfixed_table_alloc(8);
     for (int k = 0; k < 3; k++) {
         spar_session *s = scene_session();
-        spar_member *b = beam_of(s, rungs[k], UNKNOWNS - 6, SPAR_ROOT_FIXED);
+        spar_member *b = beam_of(s, fidelities[k], UNKNOWNS - 6, SPAR_ROOT_FIXED);
         double tip[7], r[6], strain[6], force[6], energy[4], work = 0;
         OK(s, spar_member_commit(b));
         OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
@@ -163,14 +163,14 @@ static double apart(const double *a, const double *b, int n) {
    as small as rounding. */
 static void test_small_motion(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, OFF};
+    const int fidelities[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, OFF};
     for (int root = SPAR_ROOT_FREE; root <= SPAR_ROOT_DRIVEN; root++) {
         int held = root == SPAR_ROOT_FREE ? 0 : root == SPAR_ROOT_PINNED ? 3 : 6;
         for (int k = 0; k < 3; k++) {
             double error[2][8];
             for (int fine = 0; fine < 2; fine++) {
                 double A = fine ? 0.01 : 0.1, dt = 2e-3, *e = error[fine];
-                account is = run(rungs[k], UNKNOWNS - held, root, A, dt, 0.4),
+                account is = run(fidelities[k], UNKNOWNS - held, root, A, dt, 0.4),
                         exact = run(SPAR_FIDELITY_EXACT, 0, root, A, dt, 0.4);
                 e[0] = apart(is.tip, exact.tip, 3);
                 for (int i = 0; i < 4; i++) {
@@ -185,31 +185,31 @@ static void test_small_motion(void **state) {
                 /* work and loss on a root that starts: its first acceleration is not known before */
                 double floor = i >= 4 && root == SPAR_ROOT_DRIVEN ? 2e-5 : 3e-7;
                 if (!(error[1][i] < 0.15 * error[0][i] || error[1][i] < floor)) {
-                    fail_msg("%s root, rung %d, figure %d: %g, then %g", root_name[root], rungs[k], i, error[0][i],
-                             error[1][i]);
+                    fail_msg("%s root, fidelity %d, figure %d: %g, then %g", root_name[root], fidelities[k], i,
+                             error[0][i], error[1][i]);
                 }
             }
         }
     }
 }
 
-/* The energy balance closes to the second order in dt on every rung, however large the motion; 10 modes resolve what
-   the nodes do not. */
+/* The energy balance closes to the second order in dt on every fidelity, however large the motion; 10 modes resolve
+   what the nodes do not. */
 static void test_energy_accounts(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_MODAL, SPAR_FIDELITY_LINEAR};
+    const int fidelities[] = {SPAR_FIDELITY_RIGID, SPAR_FIDELITY_MODAL, SPAR_FIDELITY_LINEAR};
     for (int root = SPAR_ROOT_FREE; root <= SPAR_ROOT_DRIVEN; root++) {
         for (int k = 0; k < 3; k++) {
-            if (rungs[k] == SPAR_FIDELITY_RIGID && root == SPAR_ROOT_FIXED) {
+            if (fidelities[k] == SPAR_FIDELITY_RIGID && root == SPAR_ROOT_FIXED) {
                 continue; /* nothing moves */
             }
-            double A = root == SPAR_ROOT_DRIVEN && rungs[k] != SPAR_FIDELITY_RIGID ? 0.1 : 1, drift[2];
+            double A = root == SPAR_ROOT_DRIVEN && fidelities[k] != SPAR_FIDELITY_RIGID ? 0.1 : 1, drift[2];
             for (int fine = 0; fine < 2; fine++) {
-                drift[fine] = run(rungs[k], 10, root, A, fine ? 1e-3 : 2e-3, 0.8).drift;
+                drift[fine] = run(fidelities[k], 10, root, A, fine ? 1e-3 : 2e-3, 0.8).drift;
             }
             /* linear: the step does not resolve all that the load strikes; damping has to take it first */
-            if (!(drift[1] < (rungs[k] == SPAR_FIDELITY_LINEAR ? 0.4 : 0.27) * drift[0] && drift[0] < 1e-3)) {
-                fail_msg("%s root, rung %d: %g, then %g", root_name[root], rungs[k], drift[0], drift[1]);
+            if (!(drift[1] < (fidelities[k] == SPAR_FIDELITY_LINEAR ? 0.4 : 0.27) * drift[0] && drift[0] < 1e-3)) {
+                fail_msg("%s root, fidelity %d: %g, then %g", root_name[root], fidelities[k], drift[0], drift[1]);
             }
         }
     }
@@ -220,12 +220,12 @@ static void test_energy_accounts(void **state) {
    stretch itself, the tip would be off by 2 %; at rest the first frequency is off by 1.6 %. */
 static void test_static_turning(void **state) {
     (void)state;
-    const int rungs[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
     const double x0[3] = {0}, omega[3] = {0, 1, 4}, load[6] = {0, 0, 0.02, 0, 0, 0};
     double tip[3][7], f[3][6], v[3][6 * NODES], reaction[3][6], rest[6];
     for (int k = 0; k < 3; k++) {
         spar_session *s = scene_session();
-        spar_member *b = beam_of(s, rungs[k], UNKNOWNS - 6, SPAR_ROOT_DRIVEN);
+        spar_member *b = beam_of(s, fidelities[k], UNKNOWNS - 6, SPAR_ROOT_DRIVEN);
         OK(s, spar_member_commit(b));
         OK(s, spar_member_solve_modes(b, 6, rest, NULL));
         OK(s, spar_member_set_initial_velocity(b, x0, x0, omega));

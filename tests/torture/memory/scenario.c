@@ -418,7 +418,7 @@ static void act_step(void) {
 }
 
 /* Members below the exact ones, some driven, with loads that they carry to their root, and the other couplings. */
-static void act_rungs(void) {
+static void act_fidelities(void) {
     static const struct {
         int kind, modes, root, elements, nodes;
     } what[4] = {{SPAR_FIDELITY_RIGID, 0, SPAR_ROOT_FREE, 2, 3},
@@ -763,7 +763,7 @@ static void act_aero(void) {
     end_session(&s);
 }
 
-const act acts[] = {{"describe", act_describe, 1},      {"step", act_step, 1},     {"rungs", act_rungs, 1},
+const act acts[] = {{"describe", act_describe, 1},      {"step", act_step, 1},     {"fidelities", act_fidelities, 1},
                     {"fluids", act_fluids, 1},          {"static", act_static, 1}, {"save", act_save, 1},
                     {"output", act_output, 1},          {"try", act_try, 1},       {"effects", act_effects, 1},
                     {"beamdyn", act_beamdyn, 1},        {"aero", act_aero, 1},     {"advise", act_advise, 0},
