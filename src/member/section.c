@@ -84,14 +84,14 @@ static int is_linear(const spar_member *m) {
 
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
     int P = m->per_element;
-    double pose[13], theta[3] = {0}, omega[3] = {0}, c[3];
-    spari_member_pose(m, &m->after, pose);
+    double theta[3] = {0}, omega[3] = {0}, c[3];
+    const spari_pose pose = spari_member_pose(m, &m->after);
     memset(e, 0, 6 * sizeof *e);
     memset(ed, 0, 6 * sizeof *ed);
     for (int l = 0; l < P; l++) {
         int64_t node = (int64_t)s->element * P + l;
         double x[6], rate[6];
-        spari_member_deformation(m, pose, &m->after, node, x, rate);
+        spari_member_deformation(m, &pose, &m->after, node, x, rate);
         if (m->seen == SPARI_SEEN_FIXED) { /* the equations of LARGE_ROTATION off take velocities for rates */
             memcpy(rate, m->after.v + 6 * node, sizeof rate);
         }

@@ -5,7 +5,14 @@
 
 #include "../base/scene.h"
 
+#include <string.h>
+
 enum { SPARI_POINT, SPARI_RIGID, SPARI_BEAM };
+
+/* Motion of one node, or of a frame: u and quaternion, velocity, acceleration. */
+typedef struct spari_pose {
+    double q[7], v[6], a[6];
+} spari_pose;
 
 /* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega), a
  * [n][6]. */
@@ -51,7 +58,7 @@ struct spar_member {
     spari_body *body; /* of members that are solved for */
 
     spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
-    double drive[2][19];     /* root q, v, a at t^n and t^{n+1} */
+    spari_pose drive[2];     /* root at t^n and t^{n+1} */
 
     /* nodal loads [n][6], global axes */
     double *dead;                /* spar_member_set_load, SPAR_LOAD_DEAD */
@@ -69,6 +76,14 @@ struct spar_member {
     spari_remake *advice;               /* of spar_session_advise; NULL: none */
 };
 
+/* Of the first node of arrays q, v, a. */
+static inline spari_pose spari_pose_of(const double *q, const double *v, const double *a) {
+    spari_pose pose;
+    memcpy(pose.q, q, sizeof pose.q);
+    memcpy(pose.v, v, sizeof pose.v);
+    memcpy(pose.a, a, sizeof pose.a);
+    return pose;
+}
 /* The description as one number: all but the owner. */
 uint64_t spari_member_hash(const spar_member *member);
 /* The same but for its name, placement and initial velocity: members of one make are copies of each other. */

@@ -114,7 +114,7 @@ static void pass_member(passage *t, spar_member *m) {
     for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
         pass_kept(t, loads[k], 6 * n);
     }
-    pass(t, m->drive, 2 * 19);
+    pass(t, m->drive, 2 * (int64_t)(sizeof *m->drive / sizeof(double)));
     pass(t, &m->dissipated, 1);
     pass(t, &m->dissipated_step, 1);
     pass_int(t, &m->motion_given);

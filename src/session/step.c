@@ -58,8 +58,8 @@ static void predict_loads(spar_member *m, int order, double dt, const double las
 /* A driven root that was not driven for this step stays where it is. */
 static void hold_root(spar_member *m) {
     if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) && !m->drive_given) {
-        memcpy(m->drive[1], m->drive[0], 7 * sizeof(double));
-        memset(m->drive[1] + 7, 0, 12 * sizeof(double));
+        const double rest[6] = {0};
+        m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
     }
 }
 

@@ -66,7 +66,7 @@ static void predict(const spari_solver *s, const spar_member *member, const spar
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
-static void carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+static void carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                   const double turn[4], const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int driven = member->root == SPAR_ROOT_DRIVEN;
@@ -80,7 +80,7 @@ static void carry(const spari_solver *s, const spar_member *member, const spari_
         }
         spari_rotate(turn, arm, turned);
         for (int k = 0; k < 3; k++) {
-            x[6 * i + k] = driven ? root[k] - from->q[k] + turned[k] - arm[k] : 0;
+            x[6 * i + k] = driven ? root->q[k] - from->q[k] + turned[k] - arm[k] : 0;
             x[6 * i + 3 + k] = driven ? psi[k] : 0;
         }
         place_node(c, from, to, x, i);
@@ -88,7 +88,7 @@ static void carry(const spari_solver *s, const spar_member *member, const spari_
 }
 
 /* A driven root goes where it is told. */
-static void impose_root(const spar_member *member, const double *root, const spari_ends *e, double *x) {
+static void impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int end = spari_member_held(member);
     if (end == 0 || e->root) { /* seen from itself a root does not move */
@@ -96,10 +96,10 @@ static void impose_root(const spar_member *member, const double *root, const spa
     }
     double c[4], p[4];
     if (member->root == SPAR_ROOT_DRIVEN) {
-        memcpy(to->q, root, 7 * sizeof *root);
-        memcpy(to->v, root + 7, 6 * sizeof *root);
-        memcpy(to->a, root + 13, 6 * sizeof *root);
-        memcpy(to->b, root + 13, 6 * sizeof *root);
+        memcpy(to->q, root->q, sizeof root->q);
+        memcpy(to->v, root->v, sizeof root->v);
+        memcpy(to->a, root->a, sizeof root->a);
+        memcpy(to->b, root->a, sizeof root->a);
     } else { /* held where it is */
         memcpy(to->q, from->q, (size_t)(end == 6 ? 7 : 3) * sizeof *to->q);
         memset(to->v, 0, (size_t)end * sizeof *to->v);
@@ -200,7 +200,7 @@ static void update_tangent_operators(const spari_solver *s, const spari_scheme *
             }
         }
         if (e->root) {
-            turn_matrix(e->root + 3, out);
+            turn_matrix(e->root->q + 3, out);
         }
     }
 }
@@ -219,7 +219,7 @@ static double apply_correction(const spari_solver *s, const spar_member *member,
         }
         memcpy(d + 3, turn, sizeof turn);
         for (int k = 0; k < 6 && e->root; k += 3) {
-            spari_rotate_back(e->root + 3, d + k, d + k);
+            spari_rotate_back(e->root->q + 3, d + k, d + k);
         }
         largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
     }
@@ -274,7 +274,7 @@ static int close_to(double x, double kept) {
 /* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
    what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
    that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+static const char *attempt(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                            effort how, spari_ends *e, double *x, int *iterations) {
     const spar_session *session = member->session;
     double last = 0, longest = how == FULL ? 0.5 : INFINITY;
@@ -318,7 +318,7 @@ static const char *attempt(spari_solver *s, const spar_member *member, const spa
 }
 
 /* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spari_solver *s, const spar_member *member, const spari_scheme *c, const double *root,
+static int newton(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                   const double turn[4], spari_ends *e, double *x) {
     const char *wrong = NULL;
     int iterations = 0;
@@ -384,9 +384,8 @@ static int start(spari_solver *s, const spar_member *member, const spari_scheme 
         member->name);
     const double *a = b->a;
     if (s->own[0].q) {
-        double root[19];
-        spari_root_of(b, root);
-        spari_root_look_from(s, member, root, b, &s->own[0]);
+        const spari_pose root = spari_pose_of(b->q, b->v, b->a);
+        spari_root_look_from(s, member, &root, b, &s->own[0]);
         a = s->own[0].a;
     }
     memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
@@ -404,19 +403,19 @@ static void swap(spari_state *a, spari_state *b) {
    stands in the root's axes. */
 static int begin_leap(spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
                       const spari_state *from) {
-    double *b = e->from.b, root[19];
+    const spari_pose root = spari_pose_of(from->q, from->v, from->a);
+    double *b = e->from.b;
     int n6 = 6 * s->n, turned = e->root != NULL;
     if (s->h_leapt == c->h) { /* the coupling's next iteration begins where the last one did */
         memcpy(b, s->leapt, (size_t)n6 * sizeof *b);
         return SPAR_OK;
     }
-    spari_root_of(from, root);
     for (int i = 0; i < n6 && turned; i += 3) {
-        spari_rotate(root + 3, b + i, b + i);
+        spari_rotate(root.q + 3, b + i, b + i);
     }
     int singular = spari_leap(s, member, from, c->cm, c->cv, b);
     for (int i = 0; i < n6 && turned; i += 3) {
-        spari_rotate_back(root + 3, b + i, b + i);
+        spari_rotate_back(root.q + 3, b + i, b + i);
     }
     SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
                   "member '%s': found a singular tangent at t = %g, the beginning of a longer step; take a smaller dt",
@@ -428,7 +427,7 @@ static int begin_leap(spari_solver *s, const spar_member *member, const spari_sc
 
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
     int A = member->session->substeps;
-    double root[19], before[19];
+    spari_pose before = member->drive[0];
     spari_scheme c = spari_scheme_of(member, dt / A);
     if (!s->started && !c.still) {
         SPARI_TRY(start(s, member, &c));
@@ -437,7 +436,6 @@ int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
     double ratio = spari_scheme_stretch(s->h_begin, c.h);
     int leaps = !c.still && spari_is_leap(s->h_begin, c.h);
     s->h_solved = c.h;
-    memcpy(before, member->drive[0], sizeof before);
     double power = s->power_begin;
     member->dissipated_step = 0;
     for (int k = 1; k <= A; k++) {
@@ -447,21 +445,21 @@ int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
         if (s->arms) {
             spari_arms_at(s->arms, f);
         }
-        spari_root_at(member, f, dt, root);
+        const spari_pose root = spari_root_at(member, f, dt);
         if (member->root == SPAR_ROOT_DRIVEN) {
-            spari_quat_conj(before + 3, conj);
-            spari_quat_mul(root + 3, conj, turn);
+            spari_quat_conj(before.q + 3, conj);
+            spari_quat_mul(root.q + 3, conj, turn);
         }
-        spari_ends e = spari_root_ends(s, member, &c, root, k == 1 ? ratio : 1, &s->from, &s->to);
+        spari_ends e = spari_root_ends(s, member, &c, &root, k == 1 ? ratio : 1, &s->from, &s->to);
         if (k == 1 && leaps) {
             SPARI_TRY(begin_leap(s, member, &c, &e, &s->from));
         }
-        int status = newton(s, member, &c, root, turn, &e, s->increment);
+        int status = newton(s, member, &c, &root, turn, &e, s->increment);
         if (status != SPAR_OK) {
             s->factored = 0;
             return status;
         }
-        memcpy(before, root, sizeof before);
+        before = root;
         member->dissipated_step += 0.5 * c.h * (power + s->power);
         power = s->power;
     }

@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-void spari_carried_move(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to) {
+void spari_carried_move(const spar_member *m, const spari_pose *root, spari_motion *to) {
+    const double *q = root->q, *v = root->v, *a = root->a;
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], r[3], c1[3], c2[3], c3[3];
         for (int k = 0; k < 3; k++) {
@@ -41,12 +42,13 @@ void spari_carried_displace(const spar_member *m, const double root[6], double *
 }
 
 int spari_carried_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
-    double v[6] = {0}, a[6] = {0};
+    const double none[6] = {0};
+    spari_pose root = spari_pose_of(m->now.q, none, none);
     (void)fluid, (void)load_steps, (void)onward; /* whatever the loads, the root does not yield */
     if (m->root == SPAR_ROOT_DRIVEN && (spari_norm(m->now.v + 3) > 0 || spari_norm(m->now.a) > 0)) {
-        memcpy(v, m->now.v, sizeof v); /* turning steadily, as the members that are solved for */
-        memcpy(a, m->now.a, 3 * sizeof *a);
+        memcpy(root.v, m->now.v, sizeof root.v); /* turning steadily, as the members that are solved for */
+        memcpy(root.a, m->now.a, 3 * sizeof *root.a);
     }
-    spari_carried_move(m, m->now.q, v, a, &m->after);
+    spari_carried_move(m, &root, &m->after);
     return SPAR_OK;
 }

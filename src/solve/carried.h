@@ -4,8 +4,8 @@
 
 #include "../member/structure.h"
 
-/* The nodes where the motion q [7], v [6], a [6] of the root takes them. */
-void spari_carried_move(const spar_member *member, const double *q, const double *v, const double *a, spari_motion *to);
+/* The nodes where the motion of the root takes them. */
+void spari_carried_move(const spar_member *member, const spari_pose *root, spari_motion *to);
 /* A small motion of the root, displacement and rotation, carried to all nodes [nodes][6] of the latest iterate. */
 void spari_carried_displace(const spar_member *member, const double root[6], double *nodes);
 /* The operation `rest` of their rows: where the motion now is, at rest or turning steadily with a driven root. */

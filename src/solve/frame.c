@@ -19,7 +19,7 @@ static int carve_states(spari_frame *f) {
         }
         states[k]->y = block, states[k]->v = block + f->n;
         states[k]->a = block + 2 * f->n, states[k]->b = block + 3 * f->n;
-        states[k]->root[3] = 1;
+        states[k]->root.q[3] = 1;
     }
     return 0;
 }

@@ -24,9 +24,10 @@
 
 enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */
 
-/* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root's q, v, a. */
+/* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root. */
 typedef struct spari_frame_state {
-    double *y, *v, *a, *b, root[19];
+    double *y, *v, *a, *b;
+    spari_pose root;
 } spari_frame_state;
 
 typedef struct spari_frame {

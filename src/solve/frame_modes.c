@@ -182,9 +182,9 @@ int spari_frame_project(spari_frame *f, int cols) {
 /* ---- about a state ---- */
 
 void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
-    double pose[13], omega[3];
-    spari_member_pose(m, &m->after, pose);
-    spari_rotate_back(pose + 3, pose + 10, omega);
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    double omega[3];
+    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
     assemble_dense(f, f->K, 1, f->held, K);
     assemble_dense(f, f->M, 1, f->held, M);
     for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
@@ -193,8 +193,7 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
 }
 
 void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
-    double pose[13];
-    spari_member_pose(m, &m->after, pose);
+    const spari_pose pose = spari_member_pose(m, &m->after);
     memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
     if (f->basis) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n,
@@ -203,6 +202,6 @@ void spari_frame_shape(const spari_frame *f, const spar_member *m, const double 
         memcpy(nodes + f->held, x, (size_t)(f->n - f->held) * sizeof *nodes);
     }
     for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate(pose + 3, nodes + i, nodes + i);
+        spari_rotate(pose.q + 3, nodes + i, nodes + i);
     }
 }

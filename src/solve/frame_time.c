@@ -28,11 +28,11 @@ static void matvec3(const double T[9], const double x[3], double y[3]) {
 
 /* Deformation and rates of the nodes' motion, seen from the frame, as unknowns. */
 static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion *nodes, double *y, double *rate) {
-    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes, pose[13];
-    spari_member_pose(m, nodes, pose);
+    double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes;
+    const spari_pose pose = spari_member_pose(m, nodes);
     for (int64_t i = 0; i < m->nodes; i++) {
         int64_t u = m->elements == 1 ? i : i - i / m->per_element;
-        spari_member_deformation(m, pose, nodes, i, x + 6 * u, xd + 6 * u);
+        spari_member_deformation(m, &pose, nodes, i, x + 6 * u, xd + 6 * u);
     }
     if (!f->basis) {
         memcpy(y, x, (size_t)f->n * sizeof *y);
@@ -67,10 +67,10 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
                                f->nodal + k * n6, 1));
         x[k] = f->nodal + k * n6;
     }
-    const double *root = s->root;
+    const spari_pose *root = &s->root;
     double omega[3], alpha[3];
-    spari_rotate_back(root + 3, root + 10, omega);
-    spari_rotate_back(root + 3, root + 16, alpha);
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
     for (int i = 0; i < f->nodes; i++) {
         const double *w = x[0] + 6 * i, *wd = x[1] + 6 * i, *wdd = x[2] + 6 * i;
         double arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
@@ -80,7 +80,7 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
             d[k] = arm[k] + w[k];
         }
         spari_quat_exp(w + 3, p);
-        spari_quat_mul(root + 3, p, qn + 3);
+        spari_quat_mul(root->q + 3, p, qn + 3);
         spari_quat_normalise(qn + 3);
         spari_tangent(w + 3, T);
         matvec3(T, wd + 3, spin);
@@ -100,15 +100,15 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
         for (int k = 0; k < 3; k++) {
             an[3 + k] = alpha[k] + twice[k] + c1[k];
         }
-        spari_rotate(root + 3, d, d);
+        spari_rotate(root->q + 3, d, d);
         for (int k = 0; k < 6; k += 3) {
-            spari_rotate(root + 3, vn + k, vn + k);
-            spari_rotate(root + 3, an + k, an + k);
+            spari_rotate(root->q + 3, vn + k, vn + k);
+            spari_rotate(root->q + 3, an + k, an + k);
         }
         for (int k = 0; k < 3; k++) {
-            qn[k] = d[k] - arm[k] + root[k];
-            vn[k] += root[7 + k];
-            an[k] += root[13 + k];
+            qn[k] = d[k] - arm[k] + root->q[k];
+            vn[k] += root->v[k];
+            an[k] += root->a[k];
         }
     }
 }
@@ -188,16 +188,16 @@ static void forcing(spari_frame *f, const spar_member *m, const spari_frame_stat
             x[i] = -x[i];
         }
     }
-    turn_loads(f, s->root + 3, x, out);
+    turn_loads(f, s->root.q + 3, x, out);
     for (int i = 0; i < f->n; i++) {
         out[i] = (still || !f->sumf ? 0 : f->sumf[i]) - out[i];
     }
     if (f->rigid[0]) {
         double rate[6] = {0};
-        spari_rotate_back(s->root + 3, m->body->gravity, weight);
+        spari_rotate_back(s->root.q + 3, m->body->gravity, weight);
         if (!still) {
-            spari_rotate_back(s->root + 3, s->root + 13, rate);
-            spari_rotate_back(s->root + 3, s->root + 16, rate + 3);
+            spari_rotate_back(s->root.q + 3, s->root.a, rate);
+            spari_rotate_back(s->root.q + 3, s->root.a + 3, rate + 3);
         }
         for (int k = 0; k < 3; k++) {
             rate[k] -= weight[k];
@@ -263,7 +263,7 @@ static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const 
 static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
-    spari_root_jump(from->root, to->root, h, jump[0], jump[1]);
+    spari_root_jump(&from->root, &to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
         double *x = rows[s];
@@ -310,7 +310,7 @@ enum { MOST_ITERATIONS = 30 };
 static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int leaps, spari_frame_state *from,
                    spari_frame_state *to) {
     double omega[3], last = 0;
-    spari_rotate_back(to->root + 3, to->root + 10, omega);
+    spari_rotate_back(to->root.q + 3, to->root.v + 3, omega);
     combine(f, omega);
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     f->factored = same;
@@ -360,7 +360,7 @@ static int start_accelerations(spari_frame *f, spar_member *m, const spari_schem
     spari_frame_state *b = &f->begin;
     double omega[3];
     int singular;
-    spari_rotate_back(b->root + 3, b->root + 10, omega);
+    spari_rotate_back(b->root.q + 3, b->root.v + 3, omega);
     combine(f, omega);
     spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, c->cm, f->element, &singular);
     f->factored = 0;
@@ -380,7 +380,7 @@ static int start_accelerations(spari_frame *f, spar_member *m, const spari_schem
 
 static void copy_state(const spari_frame *f, const spari_frame_state *from, spari_frame_state *to) {
     memcpy(to->y, from->y, (size_t)(4 * f->n) * sizeof *to->y);
-    memcpy(to->root, from->root, sizeof to->root);
+    to->root = from->root;
 }
 
 static void swap_states(spari_frame_state *a, spari_frame_state *b) {
@@ -401,10 +401,7 @@ static double damped_power(spari_frame *f, const spari_frame_state *s) {
 
 /* A root that is not driven stays where it is. */
 static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
-    memcpy(f->to.root, f->begin.root, sizeof f->to.root);
-    if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_root_at(m, s, dt, f->to.root);
-    }
+    f->to.root = m->root == SPAR_ROOT_DRIVEN ? spari_root_at(m, s, dt) : f->begin.root;
 }
 
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
@@ -445,10 +442,9 @@ void spari_frame_accept(spari_frame *f) {
 }
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
-    memset(f->begin.root, 0, sizeof f->begin.root);
-    spari_member_pose(m, &m->now, f->begin.root);
+    f->begin.root = spari_member_pose(m, &m->now);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        memcpy(f->begin.root + 13, m->now.a, 6 * sizeof(double));
+        memcpy(f->begin.root.a, m->now.a, sizeof f->begin.root.a);
     }
     memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
     from_nodes(f, m, &m->now, f->begin.y, f->begin.v);
@@ -464,7 +460,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
                   "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
                   m->name);
-    int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root + 7, f->begin.root + 13, &turn);
+    int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root.v, f->begin.root.a, &turn);
     spari_member_gather(m, m->dead, f->load);
     spari_member_gather(m, fluid, f->load1);
     for (int i = 0; i < 6 * f->nodes; i++) {
@@ -472,8 +468,12 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     }
     spari_scheme c = {.cm = 0, .cv = 0};
     copy_state(f, &f->begin, &f->to);
-    memset(f->to.root + (turning ? 16 : 7), 0, (turning ? 3 : 12) * sizeof(double)); /* steady, or at rest */
-    spari_rotate_back(f->to.root + 3, f->to.root + 10, omega);
+    memset(f->to.root.a + 3, 0, 3 * sizeof(double)); /* steady, or at rest */
+    if (!turning) {
+        memset(f->to.root.a, 0, sizeof f->to.root.a);
+        memset(f->to.root.v, 0, sizeof f->to.root.v);
+    }
+    spari_rotate_back(f->to.root.q + 3, f->to.root.v + 3, omega);
     combine(f, omega);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
     int singular = factor_step(f, &c);
@@ -503,10 +503,10 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     return SPAR_OK;
 }
 
-enum { STATE_HEAD = 14 };
+enum { STATE_HEAD = 14, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
 int64_t spari_frame_state_size(const spari_frame *f) {
-    return STATE_HEAD + 19 + 4 * (int64_t)f->n;
+    return STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n;
 }
 
 void spari_frame_save(const spari_frame *f, double *state) {
@@ -514,8 +514,8 @@ void spari_frame_save(const spari_frame *f, double *state) {
                                      f->h_solved, f->started,       f->combined,      f->omega[0],     f->omega[1],
                                      f->omega[2], f->kept_omega[0], f->kept_omega[1], f->kept_omega[2]};
     memcpy(state, head, sizeof head);
-    memcpy(state + STATE_HEAD, f->begin.root, sizeof f->begin.root);
-    memcpy(state + STATE_HEAD + 19, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
+    memcpy(state + STATE_HEAD, &f->begin.root, sizeof f->begin.root);
+    memcpy(state + STATE_HEAD + STATE_ROOT, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
 }
 
 int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
@@ -537,8 +537,8 @@ void spari_frame_load(spari_frame *f, const double *state) {
     }
     f->h_begin = state[4], f->h_solved = state[5];
     f->started = state[6] != 0;
-    memcpy(f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
-    memcpy(f->begin.y, state + STATE_HEAD + 19, (size_t)(4 * f->n) * sizeof *state);
+    memcpy(&f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
+    memcpy(f->begin.y, state + STATE_HEAD + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
     copy_state(f, &f->begin, &f->to);
 }
 

@@ -4,12 +4,12 @@
 #include <string.h>
 
 static int given_advance(spar_member *m, double dt) {
-    const double *to = m->drive[1];
+    const spari_pose *to = &m->drive[1];
     (void)dt; /* where it goes is given */
     if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
-        memcpy(m->after.q, to, 7 * sizeof *to);
-        memcpy(m->after.v, to + 7, 6 * sizeof *to);
-        memcpy(m->after.a, to + 13, 6 * sizeof *to);
+        memcpy(m->after.q, to->q, sizeof to->q);
+        memcpy(m->after.v, to->v, sizeof to->v);
+        memcpy(m->after.a, to->a, sizeof to->a);
     }
     return SPAR_OK;
 }

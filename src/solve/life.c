@@ -58,9 +58,7 @@ static void restart_solution(spar_member *m) {
 void spari_member_restart(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
-        memcpy(m->drive[k], m->now.q, 7 * sizeof(double));
-        memcpy(m->drive[k] + 7, m->now.v, 6 * sizeof(double));
-        memcpy(m->drive[k] + 13, m->now.a, 6 * sizeof(double));
+        m->drive[k] = spari_pose_of(m->now.q, m->now.v, m->now.a);
     }
     restart_solution(m);
     if (m->work) {
@@ -91,7 +89,7 @@ void spari_member_accept(spar_member *m) {
     }
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
-    memcpy(m->drive[0], m->drive[1], sizeof m->drive[0]);
+    m->drive[0] = m->drive[1];
     m->drive_given = m->motion_given = 0;
     m->dissipated += m->dissipated_step;
     m->dissipated_step = 0;
@@ -396,11 +394,8 @@ int spar_member_drive_root(spar_member *member, const double q[7], const double 
     const double *in[2] = {v ? v : rest, a ? a : rest};
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "v", 6, in[0]));
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6, in[1]));
-    double *to = member->drive[1];
-    memcpy(to, q, 7 * sizeof *q);
-    memcpy(to + 7, in[0], 6 * sizeof *to);
-    memcpy(to + 13, in[1], 6 * sizeof *to);
-    spari_quat_normalise(to + 3);
+    member->drive[1] = spari_pose_of(q, in[0], in[1]);
+    spari_quat_normalise(member->drive[1].q + 3);
     member->drive_given = 1;
     return SPAR_OK;
 }

@@ -4,8 +4,6 @@
 #include "fidelity.h"
 #include "reaction.h"
 
-#include <string.h>
-
 static int prescribed_check(const spar_member *m) {
     SPARI_REQUIRE(m->session, spari_member_root_is_given(m), SPAR_ERR_STATE,
                   "member '%s' is prescribed and its root is free or pinned: nothing says where it goes; fix or drive "
@@ -15,13 +13,10 @@ static int prescribed_check(const spar_member *m) {
 }
 
 static int prescribed_advance(spar_member *m, double dt) {
-    const double rest[6] = {0}, *to = m->drive[1];
+    const double rest[6] = {0};
+    const spari_pose held = spari_pose_of(m->now.q, rest, rest);
     (void)dt; /* where it goes is given */
-    if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_carried_move(m, to, to + 7, to + 13, &m->after);
-    } else {
-        spari_carried_move(m, m->now.q, rest, rest, &m->after);
-    }
+    spari_carried_move(m, m->root == SPAR_ROOT_DRIVEN ? &m->drive[1] : &held, &m->after);
     return SPAR_OK;
 }
 

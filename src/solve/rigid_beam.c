@@ -140,7 +140,8 @@ static int rigid_advance(spar_member *m, double dt) {
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
         if (m->applied) {
-            spari_carried_move(m, q, s->to.v, s->to.a, &m->after);
+            const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
+            spari_carried_move(m, &last, &m->after);
         }
         loads_on_root(m, m->load_used, m->after.q, s->load1, b->arms.end);
         SPARI_TRY(spari_solver_advance(s, m, dt));
@@ -150,7 +151,8 @@ static int rigid_advance(spar_member *m, double dt) {
             change = fmax(change, fabs(q[k] - before[k]));
         }
     }
-    spari_carried_move(m, q, s->to.v, s->to.a, &m->after);
+    const spari_pose root = spari_pose_of(q, s->to.v, s->to.a);
+    spari_carried_move(m, &root, &m->after);
     return SPAR_OK;
 }
 

@@ -1,5 +1,5 @@
 /* A driven root: its motion within a step, its jumps, and the motion of the nodes as seen from it in its axes, in which
-   steady turning is rest and stiff directions stay (docs/beam.md). Its motion is q, v, a: double[19]. */
+   steady turning is rest and stiff directions stay (docs/beam.md). */
 #ifndef SPARI_ROOT_H
 #define SPARI_ROOT_H
 
@@ -10,26 +10,24 @@
    takes it. */
 typedef struct spari_ends {
     spari_state from, to, seen;
-    const double *root; /* q, v, a of a driven root at the end; NULL: as they are */
-    double carried;     /* how far the root takes the member along: turns, and ways by its length */
+    const spari_pose *root; /* a driven root at the end; NULL: as they are */
+    double carried;         /* how far the root takes the member along: turns, and ways by its length */
 } spari_ends;
 
 /* The ends [from, to] of a substep that a root goes through; `ratio` of the algorithmic accelerations: see
    spari_scheme_stretch. */
 spari_ends spari_root_ends(const spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
-                           const double *root, double ratio, spari_state *from, spari_state *to);
-/* Motion of all nodes as seen from a root with q, v, a; b is so already. */
-void spari_root_look_from(const spari_solver *solver, const spar_member *member, const double *root,
+                           const spari_pose *root, double ratio, spari_state *from, spari_state *to);
+/* Motion of all nodes as seen from a root; b is so already. */
+void spari_root_look_from(const spari_solver *solver, const spar_member *member, const spari_pose *root,
                           const spari_state *state, spari_state *own);
 /* And back, into what the body takes. */
 void spari_root_show(const spari_solver *solver, const spar_member *member, spari_ends *ends);
-/* q, v, a of the root node */
-void spari_root_of(const spari_state *state, double root[19]);
-/* Motion q, v, a of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
-void spari_root_at(const spar_member *member, double s, double dt, double out[19]);
-/* What a driven root from [19] does until to [19], h later, beyond what its accelerations, then its velocities say: a
+/* Motion of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
+spari_pose spari_root_at(const spar_member *member, double s, double dt);
+/* What a driven root does from one pose to another, h later, beyond what its accelerations, then its velocities say: a
    jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
    order in h for smooth driving. */
-void spari_root_jump(const double *from, const double *to, double h, double velocity[6], double place[6]);
+void spari_root_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]);
 
 #endif
