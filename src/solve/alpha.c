@@ -5,7 +5,6 @@
 #include "../member/applied.h"
 #include "leap.h"
 #include "root.h"
-#include "scheme.h"
 #include "solver.h"
 
 #include <float.h>
@@ -38,29 +37,16 @@ static void place_node(const spari_scheme *c, const spari_state *from, const spa
     }
 }
 
-/* What stays over the step in the starting values of Newton. */
-typedef enum guess { ACCELERATION, VELOCITY, PLACE } guess;
+static spari_rates rates_of(const spari_state *s) {
+    return (spari_rates){s->v, s->a, s->b};
+}
 
-/* Starting values of Newton. Smooth motion: the acceleration stays. Where stiff parts ring, their acceleration says
-   nothing of the next: the velocity stays. Where the step is longer than the motion lasts: the place stays. */
-static void predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, guess stays, spari_ends *e,
-                    double *x) {
-    const spari_state *from = &e->from, *to = &e->to;
-    double h = c->h;
+/* Starting values of Newton. */
+static void predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
+                    spari_ends *e, double *x) {
+    spari_scheme_predict(c, stays, 6 * s->n, rates_of(&e->from), x, rates_of(&e->to));
     for (int i = 0; i < s->n; i++) {
-        for (int k = 6 * i; k < 6 * i + 6; k++) {
-            double b = from->b[k], a = from->a[k];
-            if (stays == ACCELERATION) {
-                to->a[k] = a;
-                to->b[k] = (a - c->alpha_m * b) / (1 - c->alpha_m);
-            } else { /* the b that makes x = h v or 0, and the a that goes with it */
-                to->b[k] = (1 - 0.5 / c->beta) * b - (stays == PLACE ? from->v[k] / (h * c->beta) : 0);
-                to->a[k] = ((1 - c->alpha_m) * to->b[k] + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
-            }
-            x[k] = h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
-            to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
-        }
-        place_node(c, from, to, x, i);
+        place_node(c, &e->from, &e->to, x, i);
     }
     spari_root_show(s, member, e);
 }
@@ -124,7 +110,7 @@ static double balance(spari_solver *s, const spar_member *member, const spari_sc
     double scale =
         spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
     for (int i = 0; i < 6 * s->n; i++) {
-        r[i] -= s->load[i];
+        r[i] -= s->steps.load[i];
     }
     if (spari_solver_has_applied(s, member)) {
         scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
@@ -224,15 +210,8 @@ static double apply_correction(const spari_solver *s, const spar_member *member,
         largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
     }
     double cut = largest > longest ? longest / largest : 1;
-    const double cv = c->cv, cm = c->cm, cb = c->cb;
+    spari_scheme_correct(c, cut, 6 * s->n, dx, x, rates_of(to));
     for (int i = 0; i < s->n; i++) {
-        for (int k = 6 * i; k < 6 * i + 6; k++) {
-            double step = -cut * dx[k];
-            x[k] += step;
-            to->v[k] += cv * step;
-            to->a[k] += cm * step;
-            to->b[k] += cb * step;
-        }
         place_node(c, &e->from, to, x, i);
     }
     spari_root_show(s, member, e);
@@ -324,8 +303,11 @@ static int newton(spari_solver *s, const spar_member *member, const spari_scheme
     int iterations = 0;
     static const struct {
         effort how;
-        guess stays;
-    } attempts[] = {{KEPT, ACCELERATION}, {FRESH, ACCELERATION}, {FULL, VELOCITY}, {FULL, PLACE}};
+        spari_guess stays;
+    } attempts[] = {{KEPT, SPARI_KEEP_ACCELERATION},
+                    {FRESH, SPARI_KEEP_ACCELERATION},
+                    {FULL, SPARI_KEEP_VELOCITY},
+                    {FULL, SPARI_KEEP_PLACE}};
     for (size_t k = s->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (c->still) {
             carry(s, member, c, root, turn, e, x);
@@ -344,38 +326,33 @@ static int newton(spari_solver *s, const spar_member *member, const spari_scheme
         member->name, wrong, iterations, member->session->time);
 }
 
-/* Accelerations at t^0: those of the initial rigid-body field, and what the balance of forces there asks beyond them,
-   through M + K / cm instead of M: parts that are stiff or light against this step (or have no mass at all) would start
-   with accelerations that the step cannot follow. Each refinement solves for what is left; with z = omega^2 / cm a mode
-   keeps 1 - (z / (1 + z))^4 of its acceleration. */
-enum { START_REFINEMENTS = 3 };
+/* Forces less loads at t^0 with the accelerations a. */
+static void unbalance_at_start(void *self, const spar_member *member, const double *a, double *r) {
+    spari_solver *s = self;
+    const spari_state *b = &s->begin;
+    spari_body_residual(s->body, b->q, b->v, a, 1, r, NULL);
+    if (spari_solver_has_applied(s, member)) {
+        spari_applied_residual(member, b->q, 1, r);
+    }
+    if (s->arms) {
+        spari_arms_at(s->arms, 0);
+        spari_arms_residual(s->arms, b->q + 3, r + 3);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        r[i] -= s->steps.load0[i];
+    }
+}
 
-static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
+static int start(void *self, const spar_member *member, const spari_scheme *c) {
+    spari_solver *s = self;
     spari_state *b = &s->begin;
     int n = s->n, end = spari_member_held(member);
     if (member->root != SPAR_ROOT_DRIVEN) {
         memset(b->a, 0, (size_t)end * sizeof *b->a);
         memset(b->v, 0, (size_t)end * sizeof *b->v);
     }
-    int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL);
-    for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
-        spari_body_residual(s->body, b->q, b->v, b->a, 1, s->r, NULL);
-        if (spari_solver_has_applied(s, member)) {
-            spari_applied_residual(member, b->q, 1, s->r);
-        }
-        if (s->arms) {
-            spari_arms_at(s->arms, 0);
-            spari_arms_residual(s->arms, b->q + 3, s->r + 3);
-        }
-        for (int i = 0; i < 6 * n; i++) {
-            s->dx[i] = s->load0[i] - s->r[i];
-        }
-        memset(s->dx, 0, (size_t)end * sizeof *s->dx);
-        singular = spari_linear_solve(s->linear, s->dx);
-        for (int i = end; i < 6 * n; i++) {
-            b->a[i] += c->cm * s->dx[i];
-        }
-    }
+    int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL) ||
+                   spari_scheme_start(c, s->linear, end, 6 * n, unbalance_at_start, s, member, s->r, b->a);
     s->factored = 0;
     SPARI_REQUIRE(
         member->session, !singular, SPAR_ERR_NUMERIC,
@@ -389,7 +366,6 @@ static int start(spari_solver *s, const spar_member *member, const spari_scheme 
         a = s->own[0].a;
     }
     memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
-    s->started = 1;
     return SPAR_OK;
 }
 
@@ -413,7 +389,7 @@ static int begin_leap(spari_solver *s, const spar_member *member, const spari_sc
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate(root.q + 3, b + i, b + i);
     }
-    int singular = spari_leap(s, member, from, c->cm, c->cv, b);
+    int singular = spari_leap(s, member, from, c, b);
     for (int i = 0; i < n6 && turned; i += 3) {
         spari_rotate_back(root.q + 3, b + i, b + i);
     }
@@ -425,43 +401,35 @@ static int begin_leap(spari_solver *s, const spar_member *member, const spari_sc
     return SPAR_OK;
 }
 
-int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
-    int A = member->session->substeps;
-    spari_pose before = member->drive[0];
-    spari_scheme c = spari_scheme_of(member, dt / A);
-    if (!s->started && !c.still) {
-        SPARI_TRY(start(s, member, &c));
-    }
+static double begin_step(void *self) {
+    spari_solver *s = self;
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-    double ratio = spari_scheme_stretch(s->h_begin, c.h);
-    int leaps = !c.still && spari_is_leap(s->h_begin, c.h);
-    s->h_solved = c.h;
-    double power = s->power_begin;
-    member->dissipated_step = 0;
-    for (int k = 1; k <= A; k++) {
-        double f = (double)k / A, conj[4], turn[4] = {1, 0, 0, 0};
-        swap(&s->from, &s->to);
-        spari_scheme_load_at(f, 6 * s->n, s->load0, s->load1, s->load);
-        if (s->arms) {
-            spari_arms_at(s->arms, f);
-        }
-        const spari_pose root = spari_root_at(member, f, dt);
-        if (member->root == SPAR_ROOT_DRIVEN) {
-            spari_quat_conj(before.q + 3, conj);
-            spari_quat_mul(root.q + 3, conj, turn);
-        }
-        spari_ends e = spari_root_ends(s, member, &c, &root, k == 1 ? ratio : 1, &s->from, &s->to);
-        if (k == 1 && leaps) {
-            SPARI_TRY(begin_leap(s, member, &c, &e, &s->from));
-        }
-        int status = newton(s, member, &c, &root, turn, &e, s->increment);
-        if (status != SPAR_OK) {
-            s->factored = 0;
-            return status;
-        }
-        before = root;
-        member->dissipated_step += 0.5 * c.h * (power + s->power);
-        power = s->power;
+    return s->power_begin;
+}
+
+static int substep(void *self, const spar_member *member, const spari_scheme *c, const spari_part *part,
+                   double *power) {
+    spari_solver *s = self;
+    double back[4], turn[4] = {1, 0, 0, 0};
+    swap(&s->from, &s->to);
+    if (s->arms) {
+        spari_arms_at(s->arms, part->s);
     }
-    return SPAR_OK;
+    if (member->root == SPAR_ROOT_DRIVEN) {
+        spari_quat_conj(part->before.q + 3, back);
+        spari_quat_mul(part->root.q + 3, back, turn);
+    }
+    spari_ends e = spari_root_ends(s, member, c, &part->root, part->ratio, &s->from, &s->to);
+    if (part->leaps) {
+        SPARI_TRY(begin_leap(s, member, c, &e, &s->from));
+    }
+    int status = newton(s, member, c, &part->root, turn, &e, s->increment);
+    s->factored = s->factored && status == SPAR_OK;
+    *power = s->power;
+    return status;
+}
+
+int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
+    static const spari_integrand how = {start, begin_step, substep};
+    return spari_scheme_advance(&how, s, &s->steps, 6 * s->n, member, s->body->D != NULL, dt);
 }

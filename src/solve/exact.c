@@ -43,7 +43,7 @@ static void exact_restart(spar_member *m) {
 
 static int exact_advance(spar_member *m, double dt) {
     spari_solver *s = m->solution;
-    spari_scheme_loads(m, s->load0, s->load1, s->load);
+    spari_scheme_loads(m, &s->steps);
     SPARI_TRY(spari_solver_advance(s, m, dt));
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
     return SPAR_OK;
@@ -59,10 +59,10 @@ static void exact_effort(const spar_member *m, spari_effort *effort) {
 
 static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     spari_solver *s = m->solution;
-    spari_member_gather(m, m->dead, s->load);
+    spari_member_gather(m, m->dead, s->steps.load);
     spari_member_gather(m, fluid, s->r);
     for (int i = 0; i < 6 * s->n; i++) {
-        s->load[i] += s->r[i];
+        s->steps.load[i] += s->r[i];
     }
     SPARI_TRY(spari_solver_static(s, m, load_steps, onward));
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);

@@ -21,6 +21,7 @@
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "linear.h"
+#include "scheme.h"
 
 enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */
 
@@ -48,10 +49,9 @@ typedef struct spari_frame {
     int factored;
     double kept_cm, kept_cv, kept_omega[3];
     spari_frame_state begin, from, to;
-    double *load, *load0, *load1, *r, *dx, *increment; /* [max(n, 6 nodes)] */
-    double *nodal, *turned, *element;                  /* [18 nodes], [19 nodes], one matrix of an element */
-    double h_begin, h_solved;
-    int started;
+    spari_steps steps;
+    double *r, *dx, *increment;       /* [max(n, 6 nodes)]; so are the loads of the steps */
+    double *nodal, *turned, *element; /* [18 nodes], [19 nodes], one matrix of an element */
     int64_t factors, solves;
 } spari_frame;
 

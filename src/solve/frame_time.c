@@ -7,10 +7,7 @@
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/pose.h"
-#include "leap.h"
-#include "root.h"
-#include "scheme.h"
-#include "solver.h"
+#include "drive.h"
 #include "turn.h"
 
 #include <cblas.h>
@@ -176,12 +173,12 @@ static void turn_loads(const spari_frame *f, const double q[4], double *x, doubl
  * it and are taken at the latest state. */
 static void forcing(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double *out) {
     double weight[3], *x = f->nodal;
-    memcpy(x, f->load, (size_t)(6 * f->nodes) * sizeof *x);
+    memcpy(x, f->steps.load, (size_t)(6 * f->nodes) * sizeof *x);
     if (m->applied) {
         double *q = f->turned, *v = q + 7 * (int64_t)f->nodes, *a = v + 6 * (int64_t)f->nodes;
         to_nodes(f, m, s, q, v, a);
         for (int i = 0; i < 6 * f->nodes; i++) {
-            x[i] = -f->load[i];
+            x[i] = -f->steps.load[i];
         }
         spari_applied_residual(m, q, 1, x);
         for (int i = 0; i < 6 * f->nodes; i++) {
@@ -240,21 +237,25 @@ static double largest(const spari_frame *f, const double *x) {
     return big;
 }
 
+static spari_rates rates_from(const spari_frame_state *s, int first) {
+    return (spari_rates){s->v + first, s->a + first, s->b + first};
+}
+
 /* Starting values: the accelerations stay. */
 static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const spari_frame_state *from,
                              spari_frame_state *to) {
-    double h = c->h;
-    for (int k = f->held; k < f->n; k++) {
-        double b = from->b[k], a = from->a[k];
-        if (c->still) {
-            to->y[k] = from->y[k];
-            to->v[k] = to->a[k] = to->b[k] = 0;
-            continue;
-        }
-        to->a[k] = a;
-        to->b[k] = (a - c->alpha_m * b) / (1 - c->alpha_m);
-        to->y[k] = from->y[k] + h * from->v[k] + h * h * ((0.5 - c->beta) * b + c->beta * to->b[k]);
-        to->v[k] = from->v[k] + h * ((1 - c->gamma) * b + c->gamma * to->b[k]);
+    int held = f->held, n = f->n - held;
+    double *x = f->dx + held;
+    if (c->still) {
+        memset(x, 0, (size_t)n * sizeof *x);
+        memset(to->v + held, 0, (size_t)n * sizeof *x);
+        memset(to->a + held, 0, (size_t)n * sizeof *x);
+        memset(to->b + held, 0, (size_t)n * sizeof *x);
+    } else {
+        spari_scheme_predict(c, SPARI_KEEP_ACCELERATION, n, rates_from(from, held), x, rates_from(to, held));
+    }
+    for (int k = held; k < f->n; k++) {
+        to->y[k] = from->y[k] + f->dx[k];
     }
 }
 
@@ -263,7 +264,7 @@ static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const 
 static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
-    spari_root_jump(&from->root, &to->root, h, jump[0], jump[1]);
+    spari_drive_jump(&from->root, &to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
         double *x = rows[s];
@@ -282,22 +283,24 @@ static void take_jump(const spari_frame *f, const spar_member *m, double h, spar
     }
 }
 
-/* As spari_leap, with the matrix of the step itself, which is kept for it. */
-static int leap(spari_frame *f, const spari_scheme *c, spari_frame_state *from) {
+static void times_mass_of_frame(void *self, const spar_member *m, const double *y, double *r) {
+    const spari_frame *f = self;
+    (void)m;
+    memset(r, 0, (size_t)f->n * sizeof *r);
+    spari_frame_add_times(f, f->M, y, 1, r);
+}
+
+/* Takes out of the acceleration carried along what a much longer step does not resolve, with the matrix of the step
+   itself, which is kept for it. */
+static int leap(spari_frame *f, const spar_member *m, const spari_scheme *c, spari_frame_state *from) {
     double *y = f->increment;
     if (!f->factored && factor_step(f, c)) {
         return 1;
     }
     memcpy(y, from->b, (size_t)f->n * sizeof *y);
     memset(y, 0, (size_t)f->held * sizeof *y);
-    for (int pass = 0; pass < SPARI_LEAP_PASSES; pass++) {
-        memset(f->r, 0, (size_t)f->n * sizeof *f->r);
-        spari_frame_add_times(f, f->M, y, 1, f->r);
-        memset(f->r, 0, (size_t)f->held * sizeof *f->r);
-        if (spari_linear_solve(f->linear, f->r)) {
-            return 1;
-        }
-        cblas_daxpy(f->n, -c->cm, f->r, 1, y, 1);
+    if (spari_scheme_filter(c, f->linear, f->held, f->n, times_mass_of_frame, f, m, f->r, y)) {
+        return 1;
     }
     cblas_daxpy(f->n, -1, y, 1, from->b, 1);
     return 0;
@@ -305,10 +308,17 @@ static int leap(spari_frame *f, const spari_scheme *c, spari_frame_state *from) 
 
 enum { MOST_ITERATIONS = 30 };
 
+static int no_solution(const spar_member *m) {
+    return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                      "member '%s': the linear equations have no solution in the step from t = %g; look at the "
+                      "turning speed of its root, or at loads that follow it",
+                      m->name, m->session->time);
+}
+
 /* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
    other turn, or with loads that follow, the corrections shrink until they are rounding. */
-static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int leaps, spari_frame_state *from,
-                   spari_frame_state *to) {
+static int solve_substep(spari_frame *f, const spar_member *m, const spari_scheme *c, int leaps,
+                         spari_frame_state *from, spari_frame_state *to) {
     double omega[3], last = 0;
     spari_rotate_back(to->root.q + 3, to->root.v + 3, omega);
     combine(f, omega);
@@ -317,7 +327,7 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
     if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
         take_jump(f, m, c->h, from, to);
     }
-    if (leaps && leap(f, c, from)) {
+    if (leaps && leap(f, m, c, from)) {
         return 1;
     }
     predict_unknowns(f, c, from, to);
@@ -336,12 +346,7 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
             return 1;
         }
         f->solves++;
-        for (int k = f->held; k < f->n; k++) {
-            to->y[k] -= f->dx[k];
-            to->v[k] -= c->still ? f->dx[k] / c->h : c->cv * f->dx[k];
-            to->a[k] -= c->cm * f->dx[k];
-            to->b[k] -= c->cb * f->dx[k];
-        }
+        spari_scheme_correct(c, 1, f->n - f->held, f->dx + f->held, to->y + f->held, rates_from(to, f->held));
         double step = largest(f, f->dx), theta = last > 0 ? step / last : 0;
         if (exact || step <= m->session->newton_atol + m->session->newton_rtol * largest(f, to->y) ||
             (it > 2 && theta > 0.5 && step <= 1e-10 * largest(f, to->y))) {
@@ -355,8 +360,15 @@ static int substep(spari_frame *f, spar_member *m, const spari_scheme *c, int le
     return 1;
 }
 
-/* As start() of alpha.c: accelerations at t^0 through M + K / cm. */
-static int start_accelerations(spari_frame *f, spar_member *m, const spari_scheme *c) {
+static void unbalance_of_frame(void *self, const spar_member *m, const double *a, double *r) {
+    spari_frame *f = self;
+    (void)m, (void)a; /* those of t^0, in place */
+    unbalance(f, &f->begin, 0, f->increment, r);
+}
+
+/* Accelerations at t^0. */
+static int start_frame(void *self, const spar_member *m, const spari_scheme *c) {
+    spari_frame *f = self;
     spari_frame_state *b = &f->begin;
     double omega[3];
     int singular;
@@ -364,18 +376,13 @@ static int start_accelerations(spari_frame *f, spar_member *m, const spari_schem
     combine(f, omega);
     spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, c->cm, f->element, &singular);
     f->factored = 0;
-    memcpy(f->load, f->load0, (size_t)(6 * f->nodes) * sizeof *f->load);
+    memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
     forcing(f, m, b, c->still, f->increment);
-    for (int k = 0; k < 4 && !singular; k++) {
-        unbalance(f, b, c->still, f->increment, f->r);
-        singular = spari_linear_solve(f->linear, f->r);
-        for (int i = f->held; i < f->n; i++) {
-            b->a[i] -= c->cm * f->r[i];
-        }
+    if (singular || spari_scheme_start(c, f->linear, f->held, f->n, unbalance_of_frame, f, m, f->r, b->a)) {
+        return no_solution(m);
     }
     memcpy(b->b, b->a, (size_t)f->n * sizeof *b->b);
-    f->started = 1;
-    return singular;
+    return SPAR_OK;
 }
 
 static void copy_state(const spari_frame *f, const spari_frame_state *from, spari_frame_state *to) {
@@ -399,46 +406,37 @@ static double damped_power(spari_frame *f, const spari_frame_state *s) {
     return power;
 }
 
-/* A root that is not driven stays where it is. */
-static void root_at(spari_frame *f, const spar_member *m, double s, double dt) {
-    f->to.root = m->root == SPAR_ROOT_DRIVEN ? spari_root_at(m, s, dt) : f->begin.root;
+static double begin_frame(void *self) {
+    spari_frame *f = self;
+    copy_state(f, &f->begin, &f->to);
+    return damped_power(f, &f->begin);
+}
+
+static int substep_of_frame(void *self, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                            double *power) {
+    spari_frame *f = self;
+    swap_states(&f->from, &f->to);
+    spari_scheme_stretch(part->ratio, f->n, f->from.a, f->from.b);
+    f->to.root = m->root == SPAR_ROOT_DRIVEN ? part->root : f->begin.root; /* else it stays where it is */
+    if (solve_substep(f, m, c, part->leaps, &f->from, &f->to)) {
+        f->factored = 0;
+        return no_solution(m);
+    }
+    *power = damped_power(f, &f->to);
+    return SPAR_OK;
 }
 
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
-    int A = m->session->substeps;
-    spari_scheme_loads(m, f->load0, f->load1, f->load);
-    spari_scheme c = spari_scheme_of(m, dt / A);
-    int failed = !f->started && !c.still && start_accelerations(f, m, &c);
-    copy_state(f, &f->begin, &f->to);
-    spari_scheme_stretch_by(spari_scheme_stretch(f->h_begin, c.h), f->n, f->to.a, f->to.b);
-    int leaps = !c.still && spari_is_leap(f->h_begin, c.h);
-    f->h_solved = c.h;
-    m->dissipated_step = 0;
-    double power = damped_power(f, &f->begin);
-    for (int k = 1; k <= A && !failed; k++) {
-        double s = (double)k / A;
-        swap_states(&f->from, &f->to);
-        spari_scheme_load_at(s, 6 * f->nodes, f->load0, f->load1, f->load);
-        root_at(f, m, s, dt);
-        failed = substep(f, m, &c, k == 1 && leaps, &f->from, &f->to);
-        double before = power;
-        power = damped_power(f, &f->to);
-        m->dissipated_step += 0.5 * c.h * (before + power);
-    }
-    if (failed) {
-        f->factored = 0;
-        return spari_fail(m->session, SPAR_ERR_NUMERIC,
-                          "member '%s': the linear equations have no solution in the step from t = %g; look at the "
-                          "turning speed of its root, or at loads that follow it",
-                          m->name, m->session->time);
-    }
+    static const spari_integrand how = {start_frame, begin_frame, substep_of_frame};
+    spari_scheme_loads(m, &f->steps);
+    SPARI_TRY(spari_scheme_advance(&how, f, &f->steps, 6 * f->nodes, m, m->body->D != NULL, dt));
     publish(f, m, &f->to, &m->after);
     return SPAR_OK;
 }
 
 void spari_frame_accept(spari_frame *f) {
     swap_states(&f->begin, &f->to);
-    f->h_begin = f->h_solved;
+    f->steps.h_begin = f->steps.h_solved;
 }
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
@@ -449,8 +447,8 @@ void spari_frame_restart(spari_frame *f, const spar_member *m) {
     memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
     from_nodes(f, m, &m->now, f->begin.y, f->begin.v);
     copy_state(f, &f->begin, &f->to);
-    f->started = 0;
-    f->h_begin = 0;
+    f->steps.started = 0;
+    f->steps.h_begin = 0;
 }
 
 int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
@@ -461,10 +459,10 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
                   "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
                   m->name);
     int turning = m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, f->begin.root.v, f->begin.root.a, &turn);
-    spari_member_gather(m, m->dead, f->load);
-    spari_member_gather(m, fluid, f->load1);
+    spari_member_gather(m, m->dead, f->steps.load);
+    spari_member_gather(m, fluid, f->steps.load1);
     for (int i = 0; i < 6 * f->nodes; i++) {
-        f->load[i] += f->load1[i];
+        f->steps.load[i] += f->steps.load1[i];
     }
     spari_scheme c = {.cm = 0, .cv = 0};
     copy_state(f, &f->begin, &f->to);
@@ -510,9 +508,9 @@ int64_t spari_frame_state_size(const spari_frame *f) {
 }
 
 void spari_frame_save(const spari_frame *f, double *state) {
-    const double head[STATE_HEAD] = {f->n,        f->factored,      f->kept_cm,       f->kept_cv,      f->h_begin,
-                                     f->h_solved, f->started,       f->combined,      f->omega[0],     f->omega[1],
-                                     f->omega[2], f->kept_omega[0], f->kept_omega[1], f->kept_omega[2]};
+    const double head[STATE_HEAD] = {
+        f->n,        f->factored, f->kept_cm,  f->kept_cv,  f->steps.h_begin, f->steps.h_solved, f->steps.started,
+        f->combined, f->omega[0], f->omega[1], f->omega[2], f->kept_omega[0], f->kept_omega[1],  f->kept_omega[2]};
     memcpy(state, head, sizeof head);
     memcpy(state + STATE_HEAD, &f->begin.root, sizeof f->begin.root);
     memcpy(state + STATE_HEAD + STATE_ROOT, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
@@ -535,8 +533,8 @@ void spari_frame_load(spari_frame *f, const double *state) {
     if (state[7] != 0) {
         combine(f, state + 8);
     }
-    f->h_begin = state[4], f->h_solved = state[5];
-    f->started = state[6] != 0;
+    f->steps.h_begin = state[4], f->steps.h_solved = state[5];
+    f->steps.started = state[6] != 0;
     memcpy(&f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
     memcpy(f->begin.y, state + STATE_HEAD + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
     copy_state(f, &f->begin, &f->to);

@@ -95,45 +95,47 @@ static void subtract(const spari_solver *s, const spar_member *m, const double *
     }
 }
 
-/* r := M y: the forces that accelerations take beyond those at rest. Arrays of the solver that are not in use at the
-   beginning of a step serve as room: `rest` for the forces at rest, `still` for velocities of zero. */
-static void times_mass(const spari_solver *s, const double *q, const double *y, const double *still, const double *rest,
-                       double *r) {
-    spari_body_residual(s->body, q, still, y, 0, r, NULL);
-    for (int i = 0; i < 6 * s->n; i++) {
-        r[i] -= rest[i];
+/* The beginning of a step. Arrays of the solver that are not in use there serve as room: `rest` for the forces at rest,
+   `still` for velocities of zero. */
+typedef struct leap_state {
+    const spari_body *body;
+    const double *q, *still, *rest;
+    int n;
+} leap_state;
+
+/* r := M y: the forces that accelerations take beyond those at rest. */
+static void times_mass(void *self, const spar_member *m, const double *y, double *r) {
+    const leap_state *l = self;
+    (void)m;
+    spari_body_residual(l->body, l->q, l->still, y, 0, r, NULL);
+    for (int i = 0; i < l->n; i++) {
+        r[i] -= l->rest[i];
     }
 }
 
-int spari_leap(spari_solver *s, const spar_member *m, const spari_state *at, double cm, double cv, double *b) {
-    const double *q = at->q;
-    int end = spari_member_held(m), n6 = 6 * s->n, held = spari_member_root_is_given(m);
-    double *y = s->increment; /* the next step begins with its own */
+int spari_leap(spari_solver *s, const spar_member *m, const spari_state *at, const spari_scheme *c, double *b) {
+    int held = spari_member_held(m), n6 = 6 * s->n;
+    double *y = s->increment, *rest = s->tinv, *still = s->best; /* the next step begins with its own */
+    leap_state l = {s->body, at->q, still, rest, n6};
     memcpy(y, b, (size_t)n6 * sizeof *y);
-    if (!held) {
+    if (!spari_member_root_is_given(m)) {
         rigid g;
-        fit(s, m, q, at->v, b, &g);
-        subtract(s, m, q, &g, b, y);
+        fit(s, m, at->q, at->v, b, &g);
+        subtract(s, m, at->q, &g, b, y);
     }
-    memset(y, 0, (size_t)end * sizeof *y);
+    memset(y, 0, (size_t)held * sizeof *y);
     for (int i = 0; i < n6; i++) { /* what is not rigid goes out, and comes back as far as it passes */
         b[i] -= y[i];
     }
     memcpy(s->dx, y, (size_t)n6 * sizeof *y);
-    double *rest = s->tinv, *still = s->best;
     memset(still, 0, (size_t)n6 * sizeof *still);
-    spari_body_residual(s->body, q, still, still, 0, rest, NULL);
-    int singular = spari_solver_factor(s, m, at->q, at->v, at->a, 1, cm, cv, NULL);
-    for (int pass = 0; pass < SPARI_LEAP_PASSES && !singular; pass++) {
-        times_mass(s, q, y, still, rest, s->r);
-        memset(s->r, 0, (size_t)end * sizeof *s->r);
-        singular = spari_linear_solve(s->linear, s->r);
-        for (int i = 0; i < n6; i++) {
-            y[i] -= cm * s->r[i];
-        }
+    spari_body_residual(s->body, at->q, still, still, 0, rest, NULL);
+    if (spari_solver_factor(s, m, at->q, at->v, at->a, 1, c->cm, c->cv, NULL) ||
+        spari_scheme_filter(c, s->linear, held, n6, times_mass, &l, m, s->r, y)) {
+        return 1;
     }
-    for (int i = 0; i < n6 && !singular; i++) {
+    for (int i = 0; i < n6; i++) {
         b[i] += s->dx[i] - y[i];
     }
-    return singular;
+    return 0;
 }

@@ -136,14 +136,14 @@ static int rigid_advance(spar_member *m, double dt) {
     spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], m->now.q, s->load0, b->arms.begin);
+    loads_on_root(m, m->load_history[0], m->now.q, s->steps.load0, b->arms.begin);
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
         if (m->applied) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
             spari_carried_move(m, &last, &m->after);
         }
-        loads_on_root(m, m->load_used, m->after.q, s->load1, b->arms.end);
+        loads_on_root(m, m->load_used, m->after.q, s->steps.load1, b->arms.end);
         SPARI_TRY(spari_solver_advance(s, m, dt));
         q = s->to.q;
         change = 0;

@@ -1,7 +1,8 @@
-/* The motion of a driven root: within a step, where it jumps, and what is seen from it. */
+/* What is seen from a driven root. */
 #include "root.h"
 
 #include "../math/rotation.h"
+#include "drive.h"
 
 #include <string.h>
 
@@ -93,7 +94,7 @@ void spari_root_show(const spari_solver *solver, const spar_member *m, spari_end
 static void lose_jump(const spari_solver *solver, const spar_member *m, double h, const spari_pose *from,
                       const spari_pose *to, spari_state *own) {
     double J[6], E[6], back[4], less[3];
-    spari_root_jump(from, to, h, J, E);
+    spari_drive_jump(from, to, h, J, E);
     for (int k = 0; k < 3; k++) {
         less[k] = -E[3 + k];
     }
@@ -132,60 +133,6 @@ spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const sp
         spari_root_look_from(s, m, &before, from, &e.from);
         lose_jump(s, m, c->h, &before, root, &e.from);
     }
-    spari_scheme_stretch_by(ratio, 6 * s->n, e.from.a, e.from.b);
+    spari_scheme_stretch(ratio, 6 * s->n, e.from.a, e.from.b);
     return e;
-}
-
-void spari_root_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]) {
-    double back[4], turn[4];
-    for (int k = 0; k < 3; k++) {
-        place[k] = to->q[k] - from->q[k];
-    }
-    spari_quat_conj(from->q + 3, back);
-    spari_quat_mul(to->q + 3, back, turn);
-    spari_quat_log(turn, place + 3);
-    for (int k = 0; k < 6; k++) {
-        const double *v = from->v, *a = from->a, *b = to->a;
-        velocity[k] = to->v[k] - v[k] - 0.5 * h * (a[k] + b[k]);
-        place[k] -= h * (v[k] + velocity[k] + h * (a[k] / 3 + b[k] / 6));
-    }
-    for (int k = 0; k < 6; k += 3) {
-        spari_rotate_back(to->q + 3, velocity + k, velocity + k);
-        spari_rotate_back(to->q + 3, place + k, place + k);
-    }
-}
-
-/* Cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1 omega. */
-spari_pose spari_root_at(const spar_member *member, double s, double dt) {
-    const spari_pose *a = &member->drive[0], *b = &member->drive[1];
-    if (s >= 1) {
-        return *b;
-    }
-    double h00 = 1 - s * s * (3 - 2 * s), h01 = s * s * (3 - 2 * s), h10 = s * (1 - s) * (1 - s),
-           h11 = -s * s * (1 - s), d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s), d11 = s * (3 * s - 2);
-    double c[4], p[4], psi1[3], t[9], rate1[3], psi[3], rate[3];
-    spari_pose out;
-    spari_quat_conj(a->q + 3, c);
-    spari_quat_mul(b->q + 3, c, p);
-    spari_quat_log(p, psi1);
-    spari_tangent_inverse(psi1, t);
-    for (int k = 0; k < 3; k++) {
-        rate1[k] = t[3 * k] * b->v[3] + t[3 * k + 1] * b->v[4] + t[3 * k + 2] * b->v[5];
-    }
-    for (int k = 0; k < 3; k++) {
-        out.q[k] = h00 * a->q[k] + h01 * b->q[k] + dt * (h10 * a->v[k] + h11 * b->v[k]);
-        out.v[k] = d01 * (b->q[k] - a->q[k]) / dt + d10 * a->v[k] + d11 * b->v[k];
-        psi[k] = h01 * psi1[k] + dt * (h10 * a->v[3 + k] + h11 * rate1[k]);
-        rate[k] = d01 * psi1[k] / dt + d10 * a->v[3 + k] + d11 * rate1[k];
-    }
-    spari_quat_exp(psi, p);
-    spari_quat_mul(p, a->q + 3, out.q + 3);
-    spari_tangent(psi, t);
-    for (int k = 0; k < 3; k++) {
-        out.v[3 + k] = t[3 * k] * rate[0] + t[3 * k + 1] * rate[1] + t[3 * k + 2] * rate[2];
-    }
-    for (int k = 0; k < 6; k++) {
-        out.a[k] = (1 - s) * a->a[k] + s * b->a[k];
-    }
-    return out;
 }

@@ -1,5 +1,5 @@
-/* A driven root: its motion within a step, its jumps, and the motion of the nodes as seen from it in its axes, in which
-   steady turning is rest and stiff directions stay (docs/beam.md). */
+/* The motion of the nodes as seen from a driven root in its axes, in which steady turning is rest and stiff directions
+   stay (docs/beam.md). */
 #ifndef SPARI_ROOT_H
 #define SPARI_ROOT_H
 
@@ -23,11 +23,5 @@ void spari_root_look_from(const spari_solver *solver, const spar_member *member,
                           const spari_state *state, spari_state *own);
 /* And back, into what the body takes. */
 void spari_root_show(const spari_solver *solver, const spar_member *member, spari_ends *ends);
-/* Motion of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
-spari_pose spari_root_at(const spar_member *member, double s, double dt);
-/* What a driven root does from one pose to another, h later, beyond what its accelerations, then its velocities say: a
-   jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
-   order in h for smooth driving. */
-void spari_root_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]);
 
 #endif

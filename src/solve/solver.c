@@ -27,7 +27,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     for (int k = 0; k < 3; k++) {
         ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
     }
-    double **sixes[] = {&s->increment, &s->load, &s->load0, &s->load1, &s->r, &s->dx, &s->leapt};
+    double **sixes[] = {&s->increment, &s->steps.load, &s->steps.load0, &s->steps.load1, &s->r, &s->dx, &s->leapt};
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
         ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
     }
@@ -63,9 +63,9 @@ void spari_solver_free(spari_solver *s) {
     free(s->own[0].q);
     free(s->own[1].q);
     free(s->increment);
-    free(s->load);
-    free(s->load0);
-    free(s->load1);
+    free(s->steps.load);
+    free(s->steps.load0);
+    free(s->steps.load1);
     free(s->r);
     free(s->dx);
     free(s->leapt);
@@ -81,8 +81,8 @@ void spari_solver_free(spari_solver *s) {
 void spari_solver_restart(spari_solver *s) {
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-    s->started = 0;
-    s->h_begin = s->h_leapt = 0;
+    s->steps.started = 0;
+    s->steps.h_begin = s->h_leapt = 0;
     s->power = s->power_begin = 0;
 }
 
@@ -90,7 +90,7 @@ void spari_solver_accept(spari_solver *s) {
     spari_state t = s->begin;
     s->begin = s->to;
     s->to = t;
-    s->h_begin = s->h_solved;
+    s->steps.h_begin = s->steps.h_solved;
     s->h_leapt = 0;
     s->power_begin = s->power;
 }
@@ -145,9 +145,18 @@ int64_t spari_solver_state_size(const spari_solver *s) {
 }
 
 void spari_solver_save(const spari_solver *s, double *state) {
-    const double head[STATE_HEAD] = {s->n,           s->factored, s->kept_cm,        s->kept_cv,         s->h_begin,
-                                     s->h_solved,    s->started,  (double)s->newton, (double)s->factors, s->power,
-                                     s->power_begin, s->h_leapt};
+    const double head[STATE_HEAD] = {s->n,
+                                     s->factored,
+                                     s->kept_cm,
+                                     s->kept_cv,
+                                     s->steps.h_begin,
+                                     s->steps.h_solved,
+                                     s->steps.started,
+                                     (double)s->newton,
+                                     (double)s->factors,
+                                     s->power,
+                                     s->power_begin,
+                                     s->h_leapt};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
@@ -171,8 +180,8 @@ void spari_solver_load(spari_solver *s, const double *state) {
     size_t n = (size_t)s->n;
     s->factored = state[1] != 0;
     s->kept_cm = state[2], s->kept_cv = state[3];
-    s->h_begin = state[4], s->h_solved = state[5];
-    s->started = state[6] != 0;
+    s->steps.h_begin = state[4], s->steps.h_solved = state[5];
+    s->steps.started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
     s->h_leapt = state[11];

@@ -8,7 +8,7 @@
 #include "../member/structure.h"
 #include "arms.h"
 #include "effort.h"
-#include "linear.h"
+#include "scheme.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
  * doubles a node. With a driven root b is that of the motion seen from it. */
@@ -26,7 +26,7 @@ typedef struct spari_solver {
     spari_state own[2];   /* driven root: a substep's ends seen from it; else NULL */
     double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
     double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
-    double *load, *load0, *load1; /* [n][6] at a substep's end, at t^n and at t^{n+1} */
+    spari_steps steps;
     double *r, *dx, *element;
     double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
     double h_leapt; /* 0: none */
@@ -37,9 +37,7 @@ typedef struct spari_solver {
     double kept_cm, kept_cv;   /* its coefficients */
     double *kept_q;            /* [n][4] how the nodes were turned when it was formed */
     double *turn;              /* [n][4] their turn since */
-    double h_begin, h_solved;  /* the (sub)steps that led to t^n and to t^{n+1}; 0: none yet */
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
-    int started;               /* accelerations at t^0 are known */
     int64_t newton, factors;   /* totals: iterations, factorisations */
 } spari_solver;
 
@@ -48,12 +46,12 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
 void spari_solver_free(spari_solver *solver);
 /* begin.q, v, a have been set anew. */
 void spari_solver_restart(spari_solver *solver);
-/* From t^n to t^n + dt in the session's substeps, under the loads load0 and load1; leaves t^n alone, writes `to` and
+/* From t^n to t^n + dt in the session's substeps, under steps.load0 and load1; leaves t^n alone, writes `to` and
    member->dissipated_step. */
 int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
 /* The step is accepted: t^{n+1} becomes t^n. */
 void spari_solver_accept(spari_solver *solver);
-/* Equilibrium under the load `load`, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
+/* Equilibrium under steps.load, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
    the last call found, if that leads there; else from t^n. */
 int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);
 

@@ -39,8 +39,8 @@ static double balance_at(const spari_solver *s, const spar_member *m, loading *l
         scale = spari_body_residual(s->body, q, NULL, NULL, f, r, NULL);
     }
     for (int i = 0; i < 6 * s->n; i++) {
-        r[i] -= f * s->load[i];
-        scale = fmax(scale, fabs(f * s->load[i]));
+        r[i] -= f * s->steps.load[i];
+        scale = fmax(scale, fabs(f * s->steps.load[i]));
     }
     if (m->applied) {
         scale = fmax(scale, spari_applied_residual(m, q, f, r));
@@ -135,7 +135,7 @@ static outcome equilibrium(spari_solver *s, const spar_member *member, loading *
 static int has_path(const spari_solver *s, const spar_member *m) {
     int moments = 0;
     for (int i = 0; i < s->n; i++) {
-        moments |= spari_norm(s->load + 6 * i + 3) > 0;
+        moments |= spari_norm(s->steps.load + 6 * i + 3) > 0;
     }
     return !moments && m->root != SPAR_ROOT_PINNED && (m->effects & SPAR_EFFECT_LARGE_ROTATION) &&
            (!m->applied || spari_applied_potential(m));

@@ -1,0 +1,14 @@
+/* The motion of a driven root within a step, and where it jumps. */
+#ifndef SPARI_DRIVE_H
+#define SPARI_DRIVE_H
+
+#include "../member/structure.h"
+
+/* Motion of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
+spari_pose spari_drive_at(const spar_member *member, double s, double dt);
+/* What a driven root does from one pose to another, h later, beyond what its accelerations, then its velocities say: a
+   jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
+   order in h for smooth driving. */
+void spari_drive_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]);
+
+#endif
