@@ -9,6 +9,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SPARI_ROW(name, width, order, kind)                                                                            \
+    { offsetof(spar_member, name), width, order, SPARI_NODAL_##kind }
+const spari_nodal spari_nodal_table[SPARI_NODAL_COUNT] = {
+    SPARI_ROW(xr, 3, 0, REFERENCE),
+    SPARI_ROW(qr, 4, 0, REFERENCE),
+    SPARI_ROW(now.q, 7, 0, MOTION),
+    SPARI_ROW(now.v, 6, 0, MOTION),
+    SPARI_ROW(now.a, 6, 0, MOTION),
+    SPARI_ROW(after.q, 7, 0, MOTION),
+    SPARI_ROW(after.v, 6, 0, MOTION),
+    SPARI_ROW(after.a, 6, 0, MOTION),
+    SPARI_ROW(dead, 6, 0, LOAD),
+    SPARI_ROW(load_used, 6, 0, LOAD),
+    SPARI_ROW(load_pushed, 6, 0, LOAD),
+    SPARI_ROW(load_before, 6, 0, LOAD),
+    SPARI_ROW(load_history[0], 6, 0, LOAD),
+    SPARI_ROW(load_history[1], 6, 1, LOAD),
+    SPARI_ROW(load_history[2], 6, 2, LOAD),
+    SPARI_ROW(load_solved[0], 6, 0, LOAD),
+    SPARI_ROW(load_solved[1], 6, 0, LOAD),
+};
+
 double spari_member_length(const spar_member *m) {
     double length = m->body ? m->body->length : 0;
     for (int64_t i = 1; i < m->nodes && !m->body; i++) {

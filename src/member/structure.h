@@ -60,21 +60,45 @@ struct spar_member {
     spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
     spari_pose drive[2];     /* root at t^n and t^{n+1} */
 
-    /* nodal loads [n][6], global axes */
-    double *dead;                /* spar_member_set_load, SPAR_LOAD_DEAD */
-    spari_applied *applied;      /* follower and line loads; NULL: none */
-    spari_applied *applied_next; /* of a file being loaded */
-    int64_t pack_at;             /* where its loads begin in the vector that the ranks sum */
-    double *load_used;           /* fluid loads at t^{n+1} the structure is solved with (predicted, then iterated) */
-    double *load_pushed;     /* fluid loads the fluids gave last: t^n between steps, t^{n+1} after spar_step_check */
-    double *load_before;     /* the same before the first step: what it goes back to when it is given up */
-    double *load_history[3]; /* accepted fluid loads at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
-    double *load_solved[2];  /* all nodal loads that the motion now and the motion after were found with */
+    /* Nodal loads [n][6], global axes, in their lives:
+                           between steps     step begun        solved               checked
+         dead              the host's, kept until it gives others
+         load_pushed       at t^n            at t^n            at t^n               at t^{n+1}, as the fluids gave them
+         load_used         -                 predicted         solved with          to be solved with next, if any
+         load_solved[1]    as [0]            as [0]            dead + load_used     dead + load_used, of the motion
+       after load_solved[0]    all that the motion at t^n was found with load_history[k]   accepted: load_pushed at t^n,
+       t^{n-1}, t^{n-2}, as far back as the predictor looks load_before       load_pushed before the first step: what it
+       goes back to when that is given up Accepting a step makes load_pushed the newest of the history (load_used, where
+       nothing was checked) and load_solved[1] load_solved[0]; giving it up puts both back. */
+    double *dead;
+    double *load_used;
+    double *load_pushed;
+    double *load_before;
+    double *load_history[3];
+    double *load_solved[2];
+    spari_applied *applied;             /* follower and line loads; NULL: none */
+    spari_applied *applied_next;        /* of a file being loaded */
+    int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
     spari_work *work;                   /* NULL: not asked for */
     spari_remake *advice;               /* of spar_session_advise; NULL: none */
 };
+
+/* The arrays over the nodes, in one table: all that makes, frees, saves, loads or carries over a member walks it. */
+typedef enum spari_nodal_kind { SPARI_NODAL_REFERENCE, SPARI_NODAL_MOTION, SPARI_NODAL_LOAD } spari_nodal_kind;
+typedef struct spari_nodal {
+    size_t field; /* of the member */
+    int width;    /* numbers a node has in it */
+    int order;    /* of the predictor from which on it is there */
+    spari_nodal_kind kind;
+} spari_nodal;
+enum { SPARI_NODAL_COUNT = 17 };
+extern const spari_nodal spari_nodal_table[SPARI_NODAL_COUNT];
+/* The array of row k; NULL: it is not there. */
+static inline double **spari_nodal_array(spar_member *member, int k) {
+    return (double **)(void *)((char *)member + spari_nodal_table[k].field);
+}
 
 /* Of the first node of arrays q, v, a. */
 static inline spari_pose spari_pose_of(const double *q, const double *v, const double *a) {

@@ -91,28 +91,22 @@ static void check_pose_words(passage *t, const double *words, int width, int64_t
     t->image->failed |= !ok;
 }
 
-static void pass_member(passage *t, spar_member *m) {
-    int64_t n = m->nodes;
-    double *motions[] = {m->now.q, m->now.v, m->now.a, m->after.q, m->after.v, m->after.a};
-    static const int width[] = {7, 6, 6, 7, 6, 6};
-    double *loads[] = {m->dead,
-                       m->load_used,
-                       m->load_pushed,
-                       m->load_before,
-                       m->load_history[0],
-                       m->load_history[1],
-                       m->load_history[2],
-                       m->load_solved[0],
-                       m->load_solved[1]};
-    for (int k = 0; k < 6; k++) {
-        const double *there = (const double *)(const void *)(t->image->word + t->image->at);
-        pass(t, motions[k], width[k] * n);
-        if (t->mode == CHECK) {
-            check_pose_words(t, t->image->failed ? NULL : there, width[k], n);
-        }
+static void pass_motion(passage *t, double *words, int width, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, width * n);
+    if (t->mode == CHECK) {
+        check_pose_words(t, t->image->failed ? NULL : there, width, n);
     }
-    for (size_t k = 0; k < sizeof loads / sizeof *loads; k++) {
-        pass_kept(t, loads[k], 6 * n);
+}
+
+static void pass_member(passage *t, spar_member *m) {
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        const spari_nodal *row = spari_nodal_table + k;
+        if (row->kind == SPARI_NODAL_MOTION) {
+            pass_motion(t, *spari_nodal_array(m, k), row->width, m->nodes);
+        } else if (row->kind == SPARI_NODAL_LOAD) {
+            pass_kept(t, *spari_nodal_array(m, k), row->width * m->nodes);
+        }
     }
     pass(t, m->drive, 2 * (int64_t)(sizeof *m->drive / sizeof(double)));
     pass(t, &m->dissipated, 1);

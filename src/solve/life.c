@@ -166,52 +166,22 @@ int spari_member_effects(const spar_member *m) {
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }
 
-/* The arrays over the nodes, how many numbers a node has in each, and the least order of the predictor that needs it.
- */
-static const struct {
-    size_t field;
-    int width, order;
-} node_arrays[] = {
-    {offsetof(spar_member, xr), 3, 0},
-    {offsetof(spar_member, qr), 4, 0},
-    {offsetof(spar_member, now.q), 7, 0},
-    {offsetof(spar_member, now.v), 6, 0},
-    {offsetof(spar_member, now.a), 6, 0},
-    {offsetof(spar_member, after.q), 7, 0},
-    {offsetof(spar_member, after.v), 6, 0},
-    {offsetof(spar_member, after.a), 6, 0},
-    {offsetof(spar_member, dead), 6, 0},
-    {offsetof(spar_member, load_used), 6, 0},
-    {offsetof(spar_member, load_pushed), 6, 0},
-    {offsetof(spar_member, load_before), 6, 0},
-    {offsetof(spar_member, load_history[0]), 6, 0},
-    {offsetof(spar_member, load_history[1]), 6, 1},
-    {offsetof(spar_member, load_history[2]), 6, 2},
-    {offsetof(spar_member, load_solved[0]), 6, 0},
-    {offsetof(spar_member, load_solved[1]), 6, 0},
-};
-enum { NODE_ARRAYS = sizeof node_arrays / sizeof *node_arrays };
-
-static double **node_array(spar_member *m, int k) {
-    return (double **)(void *)((char *)m + node_arrays[k].field);
-}
-
 static int make_node_arrays(spar_member *m) {
-    for (int k = 0; k < NODE_ARRAYS; k++) {
-        if (node_arrays[k].order > m->session->predictor) {
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        if (spari_nodal_table[k].order > m->session->predictor) {
             continue;
         }
-        double *x = spari_zalloc(node_arrays[k].width * m->nodes, sizeof *x);
+        double *x = spari_zalloc(spari_nodal_table[k].width * m->nodes, sizeof *x);
         SPARI_REQUIRE(m->session, x, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
-        *node_array(m, k) = x;
+        *spari_nodal_array(m, k) = x;
     }
     return SPAR_OK;
 }
 
 void spari_member_release(spar_member *m) {
-    for (int k = 0; k < NODE_ARRAYS; k++) {
-        free(*node_array(m, k));
-        *node_array(m, k) = NULL;
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        free(*spari_nodal_array(m, k));
+        *spari_nodal_array(m, k) = NULL;
     }
     spari_work_free(m->work);
     m->work = NULL;
@@ -227,8 +197,8 @@ void spari_member_release(spar_member *m) {
 }
 
 void spari_member_disown(spar_member *m) {
-    for (int k = 0; k < NODE_ARRAYS; k++) {
-        *node_array(m, k) = NULL;
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        *spari_nodal_array(m, k) = NULL;
     }
     m->work = NULL;
     m->applied = m->applied_next = NULL;

@@ -51,32 +51,17 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
     return SPAR_OK;
 }
 
-static void carry_state(const spar_member *old, spar_member *m) {
-    const double *loads[] = {old->dead,
-                             old->load_used,
-                             old->load_pushed,
-                             old->load_before,
-                             old->load_history[0],
-                             old->load_history[1],
-                             old->load_history[2],
-                             old->load_solved[0],
-                             old->load_solved[1]};
-    double *to[] = {m->dead,
-                    m->load_used,
-                    m->load_pushed,
-                    m->load_before,
-                    m->load_history[0],
-                    m->load_history[1],
-                    m->load_history[2],
-                    m->load_solved[0],
-                    m->load_solved[1]};
+/* Past loads are kept as far as either predictor looks. */
+static void carry_state(spar_member *old, spar_member *m) {
     int E = m->elements, P = old->per_element, n = m->per_element;
-    spari_resample_values(E, P, n, 7, 3, old->now.q, m->now.q);
-    spari_resample_values(E, P, n, 6, -1, old->now.v, m->now.v);
-    spari_resample_values(E, P, n, 6, -1, old->now.a, m->now.a);
-    for (size_t k = 0; k < sizeof to / sizeof *to; k++) {
-        if (loads[k] && to[k]) { /* past loads are kept as far as either predictor looks */
-            spari_resample_loads(E, P, n, loads[k], to[k]);
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        const spari_nodal *row = spari_nodal_table + k;
+        const double *from = *spari_nodal_array(old, k);
+        double *to = *spari_nodal_array(m, k);
+        if (row->kind == SPARI_NODAL_MOTION) {
+            spari_resample_values(E, P, n, row->width, row->width == 7 ? 3 : -1, from, to);
+        } else if (row->kind == SPARI_NODAL_LOAD && from && to) {
+            spari_resample_loads(E, P, n, from, to);
         }
     }
     spari_member_restart(m);
