@@ -33,6 +33,8 @@ typedef struct spari_body {
     double *scratch;   /* work space of one element, and of 6 doubles a node at least */
 } spari_body;
 
+/* Doubles of a body's scratch. */
+int64_t spari_body_scratch(int per_element, int points);
 /* Sizes the arrays for `points` quadrature points over all elements; elastic, damped, massive say which properties
    exist. Returns NULL when there is no memory. */
 spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive);
@@ -43,6 +45,10 @@ void spari_body_free(spari_body *body);
    takes out. Returns an estimate of the largest single contribution (what rounding in r is relative to). */
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                            double *r, double *power);
+
+/* The same of a body that has been made linear too, as if it were not. */
+double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
+                                 double factor, double *r, double *power);
 
 /* Tangent of element e, row-major S [6P][6P]: dr = S (du, dtheta) with dv = cv X, da = cm X, X = (du, Tinv dtheta),
    Tinv [unique][9] or NULL for the identity; v, a NULL: at rest. */

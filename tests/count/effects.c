@@ -363,7 +363,7 @@ typedef struct effect {
 
 static const effect effects[] = {
     {"inertia",
-     "point_inertia_forces",
+     "spari_point_inertia_forces",
      NEVER,
      {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION},
      {.effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION},
@@ -376,7 +376,7 @@ static const effect effects[] = {
      {0}},
     {"gravity", "", NEVER, {.heavy = 1}, {.effects = ALL & ~SPAR_EFFECT_GRAVITY, .heavy = 1}, {0}},
     {"gravity, without inertia",
-     "point_weight",
+     "spari_point_weight",
      NEVER,
      {.heavy = 1, .effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_GRAVITY},
      {.heavy = 1, .effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION},
