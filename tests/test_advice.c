@@ -117,7 +117,7 @@ static double solutions(const scene *of, const answer *a, double over) {
     k.dt = a->advice[SPAR_ADVICE_DT], k.substeps = (int)a->advice[SPAR_ADVICE_SUBSTEPS];
     k.scheme = (int)a->advice[SPAR_ADVICE_SCHEME], k.tolerance = a->advice[SPAR_ADVICE_COUPLING_RTOL];
     k.predictor = (int)a->advice[SPAR_ADVICE_PREDICTOR], k.newton = a->advice[SPAR_ADVICE_NEWTON_RTOL];
-    k.rung = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
+    k.fidelity = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
     k.points = a->points, k.rule = a->points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     assert_int_equal(scene_build(of, &k, &r), SPAR_OK);
     for (; t < over; t += k.dt) {

@@ -5,7 +5,13 @@
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
+#define SPARI_FIDELITY_NAME(number, name) [SPAR_FIDELITY_##number] = #name,
+static const char *const row_name[] = {SPARI_FIDELITIES(SPARI_FIDELITY_NAME)};
 enum { ROWS = sizeof table / sizeof *table };
+
+const char *spari_fidelity_name(int fidelity) {
+    return row_name[fidelity];
+}
 
 const spari_fidelity *spari_fidelity_of(const spar_member *m) {
     return m->external || m->kind == SPARI_POINT ? &spari_fidelity_given : table[m->fidelity];

@@ -72,6 +72,8 @@ typedef struct spari_fidelity {
 SPARI_FIDELITIES(SPARI_DECLARE_FIDELITY)
 extern const spari_fidelity spari_fidelity_given; /* points and external members */
 
+/* What a fidelity is called: "exact". */
+const char *spari_fidelity_name(int fidelity);
 /* The row of a member, from what it is described as. */
 const spari_fidelity *spari_fidelity_of(const spar_member *member);
 /* What of the description its row cannot serve: a status and a message. */

@@ -46,25 +46,25 @@ static int consider(spari_advisor *d, const spari_plan *p, const spari_record *b
     return SPAR_OK;
 }
 
-static int choose_rung(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
+static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
     static const int64_t modes[] = {16, 8, 4, 2};
     double cost = spari_plan_cost(d, base);
     spari_plan best = *p, q = *p;
     int taken, small;
     spari_shape *b = &q.group[g];
     b->fidelity = SPAR_FIDELITY_LINEAR;
-    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &small));
+    SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &small));
     for (size_t k = 0; k < sizeof modes / sizeof *modes && small; k++) {
         b->fidelity = SPAR_FIDELITY_MODAL;
         b->modes = modes[k];
-        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
     }
     b->modes = 0;
     b->fidelity = SPAR_FIDELITY_RIGID;
-    SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
+    SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
     if (taken && spari_member_root_is_given(spari_plan_member(d, g))) {
         b->fidelity = SPAR_FIDELITY_PRESCRIBED;
-        SPARI_TRY(consider(d, &q, base, spari_rule.rung, &best, &cost, &taken));
+        SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
     }
     *p = best;
     return SPAR_OK;
@@ -118,7 +118,7 @@ static int choose_structure(spari_advisor *d, const spari_plan *finest, spari_pl
         status = spari_plan_run(d, &p, 1, &base);
     }
     for (int g = 0; g < d->groups && status == SPAR_OK; g++) {
-        status = s->keep_fidelity ? SPAR_OK : choose_rung(d, &p, g, &base);
+        status = s->keep_fidelity ? SPAR_OK : choose_fidelity(d, &p, g, &base);
         if (status == SPAR_OK && is_elastic(&p, g)) {
             status = choose_points(d, &p, g, &base);
             status = status == SPAR_OK && !s->keep_nodes ? choose_nodes(d, &p, g, &base) : status;
@@ -232,7 +232,7 @@ static int fewer_points(const spari_advisor *d, spari_plan *p, int g) {
     return moved;
 }
 
-static int lower_rung(const spari_advisor *d, spari_plan *p, int g) {
+static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
     spari_shape *b = &p->group[g];
     if (d->session->keep_fidelity) {
         return 0;
@@ -268,9 +268,9 @@ static int more_substeps(const spari_advisor *d, spari_plan *p, int g) {
 
 static const struct {
     move first, second;
-} moves[] = {{coarser, NULL},           {fewer_nodes, NULL},        {fewer_points, NULL},  {lower_rung, NULL},
+} moves[] = {{coarser, NULL},           {fewer_nodes, NULL},        {fewer_points, NULL},  {lower_fidelity, NULL},
              {looser_newton, NULL},     {other_predictor, coarser}, {more_substeps, NULL}, {finer, fewer_nodes},
-             {coarser, more_nodes},     {finer, lower_rung},        {finer, fewer_points}, {coarser, coarser},
+             {coarser, more_nodes},     {finer, lower_fidelity},    {finer, fewer_points}, {coarser, coarser},
              {fewer_nodes, fewer_nodes}};
 
 /* Moves as long as one pays and keeps the tolerance. */

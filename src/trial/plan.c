@@ -5,6 +5,7 @@
 
 #include "../math/basis.h"
 #include "../member/beam.h"
+#include "../solve/fidelity.h"
 
 #include <float.h>
 #include <math.h>
@@ -106,10 +107,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
 }
 
 static const char *describe_plan(const spari_advisor *d, const spari_plan *p, char *text, size_t size) {
-    static const char *const scheme[] = {"explicit", "fixed point", "Aitken", "IQN-ILS"}, *const rung[] = {
-                                                                                              "prescribed", "rigid",
-                                                                                              "linear", "modal",
-                                                                                              "exact"};
+    static const char *const scheme[] = {"explicit", "fixed point", "Aitken", "IQN-ILS"};
     double dt = d->run.dt * (double)d->run.steps / (double)p->steps;
     int at = snprintf(text, size, "dt %.4g", dt);
     if (p->substeps > 1) {
@@ -122,8 +120,8 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
     at += snprintf(text + at, size - (size_t)at, ", predictor %d, Newton %.0e", p->predictor, p->newton);
     for (int g = 0; g < d->groups && (size_t)at + 80 < size; g++) {
         const spari_shape *b = &p->group[g];
-        at += snprintf(text + at, size - (size_t)at, ", %s", rung[b->fidelity]);
-        if (b->fidelity == SPAR_FIDELITY_MODAL) {
+        at += snprintf(text + at, size - (size_t)at, ", %s", spari_fidelity_name(b->fidelity));
+        if (b->modes > 0) {
             at += snprintf(text + at, size - (size_t)at, " %lld", (long long)b->modes);
         }
         at += snprintf(text + at, size - (size_t)at, " of %d nodes", b->nodes);

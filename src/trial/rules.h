@@ -31,7 +31,7 @@ typedef struct spari_rules {
     double reference_most;   /* and above this one there is no reference */
     double reference_newton; /* with what it is solved: Newton's tolerance, */
     double reference_rtol;   /* and the coupling's */
-    double rung, nodes;      /* shares that a lower fidelity and fewer nodes may take, */
+    double fidelity, nodes;  /* shares that a lower fidelity and fewer nodes may take, */
     double points, newton;   /* fewer quadrature points, a looser Newton */
     double loosest_newton;   /* its tolerance goes no further */
     double good;             /* share that the error of good settings is below: the rest is for what no trial shows */
