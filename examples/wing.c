@@ -129,6 +129,20 @@ static int step(spar_session *s, spar_fluid *surface, const mesh *m) {
     return iterations;
 }
 
+/* The flow as spar_step and spar_session_solve_static call it. */
+typedef struct host {
+    spar_fluid *surface;
+    const mesh *m;
+} host;
+
+static int steady_flow(spar_session *s, double t, double step_dt, int iteration, void *context) {
+    const host *h = context;
+    (void)t, (void)step_dt, (void)iteration;
+    check(s, spar_fluid_pull_motion(h->surface, 1, h->m->x, h->m->v));
+    solve_flow(h->m);
+    return spar_fluid_push_forces(h->surface, h->m->force, NULL);
+}
+
 static void report(const spar_session *s, const spar_member *wing, int iterations) {
     double q[8][7], t;
     check(s, spar_member_get_motion(wing, q[0], NULL, NULL));
@@ -167,6 +181,13 @@ int main(int argc, char **argv) {
         if (rank == 0 && (i % 80 == 0 || i == 8 || i == 24)) {
             report(s, wing, iterations);
         }
+    }
+    host h = {surface, &m};
+    int iterations = 0;
+    check(s, spar_session_solve_static(s, 1, steady_flow, &h, &iterations)); /* where the run is heading, at once */
+    if (rank == 0) {
+        printf("equilibrium, found by %d solutions of the flow:\n", iterations);
+        report(s, wing, iterations);
     }
     if (rank == 0) { /* uniform wing, lift at a quarter: theta(tip) = alpha (1/cos(lambda) - 1) */
         double pressure = 0.5 * density * wind * wind, arm = (0.33 - 0.25) * chord;

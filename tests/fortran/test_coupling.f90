@@ -63,6 +63,34 @@ contains
     if (present(context) .or. .not. session%exists() .or. t < 0 .or. dt < 0 .or. iteration < 0) stat = 5
   end subroutine solve_own_springs
 
+  ! For a static solution: the clock stands.
+  subroutine solve_standing_springs(session, t, dt, iteration, context, stat)
+    class(spar_session), intent(inout) :: session
+    real(c_double), intent(in) :: t, dt
+    integer(c_int), intent(in) :: iteration
+    class(*), intent(inout), optional :: context
+    integer(c_int), intent(inout) :: stat
+
+    if (abs(dt) > 0 .or. abs(t) > 0 .or. .not. session%exists()) stat = 3
+    select type (context)
+    type is (springs)
+      if (iteration /= context%calls) stat = 5
+      context%calls = context%calls + 1
+      call pull_and_push_from(context%fluid, context%stiffness, [2, 0, 0] * 1.0_c_double)
+    class default
+      stat = 4
+    end select
+  end subroutine solve_standing_springs
+
+  subroutine pull_and_push_from(fluid, stiffness, rest)
+    type(spar_fluid), intent(inout) :: fluid
+    real(c_double), intent(in) :: stiffness, rest(3)
+    real(c_double) :: x(3,1)
+
+    call fluid%pull_motion(1.0_c_double, x)
+    call fluid%push_forces(-stiffness * (x - reshape(rest, [3, 1])))
+  end subroutine pull_and_push_from
+
   subroutine refuse_to_solve(session, t, dt, iteration, context, stat)
     class(spar_session), intent(inout) :: session
     real(c_double), intent(in) :: t, dt
@@ -102,6 +130,7 @@ program test_coupling
   call failing_fluid()
   call logging()
   call cantilever()
+  call equilibrium()
   call driven_root()
   if (failures > 0) error stop 'test_coupling failed'
 
@@ -390,6 +419,41 @@ contains
     call check(all(f(2:3) >= f(1:2)) .and. f(1) > 0 .and. all(abs(shapes(:,1,:)) <= 0), 'modes of a clamped beam')
     call check(maxval(abs(shapes(:,4,1))) > 0, 'the tip moves in the first mode')
   end subroutine cantilever
+
+  ! A cantilever under a tip force p, on a spring k of the fluid: u = p / (1 / (L / GA + L^3 / 3 EI) + k), here along y.
+  subroutine equilibrium()
+    type(spar_session) :: session
+    type(spar_member) :: beam
+    type(spar_fluid), target :: fluid
+    type(springs) :: host
+    real(c_double) :: stiffness(6,6,1), q(7,4), p(6)
+    integer(c_int) :: iterations, stat
+    character(400) :: errmsg
+
+    call session%create()
+    call session%set_coupling(SPAR_COUPLING_IQN_ILS, 0.0_c_double, 1e-12_c_double, 20)
+    stiffness(:,:,1) = diagonal([100, 50, 60, 10, 20, 30] * 1.0_c_double)
+    call beam%create_beam(session, 'beam', 1, 4)
+    call beam%set_axis([0, 1] * 1.0_c_double, reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
+    call beam%set_sections([0.0_c_double], stiffness)
+    call beam%set_effects(0)
+    call beam%commit()
+    call fluid%create(beam, 'springs')
+    call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
+    call fluid%set_force_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
+    call fluid%map()
+    p = 0
+    p(2) = 0.01_c_double
+    call beam%set_load(4, SPAR_LOAD_DEAD, p)
+    host%fluid => fluid
+    host%stiffness = 7
+    call session%solve_static(solve=solve_standing_springs, context=host, iterations=iterations)
+    call beam%get_motion(q)
+    call check(abs(q(2,4) - p(2) / (1 / (2 / 50.0_c_double + 8 / 90.0_c_double) + 7)) < 1e-13_c_double, 'the beam on its spring')
+    call check(iterations == host%calls .and. iterations > 1, 'as many calls of the fluid')
+    call session%solve_static(0, stat=stat, errmsg=errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'spar_session_solve_static') > 0, 'no load steps')
+  end subroutine equilibrium
 
   ! A rigid body whose node is driven about z through two turns: its tip goes round, |q| = 1.
   subroutine driven_root()
