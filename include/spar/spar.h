@@ -77,6 +77,13 @@
    Flags raised meanwhile are not seen outside. Rounding and the treatment of denormal numbers stay the host's. A stack
    of 128 kB is enough. (Built by another compiler than GCC or Clang, the library leaves all of this as it is.)
 
+   Adding to the library (docs/adding.md):
+   - a public call: header, cmake/make-map.sh, both files of fortran/, tests/contract.c, the tables of tests/torture;
+   - a setting: a field of the session (src/base/scene.h) and a row of the table in src/session/settings.c;
+   - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/solve/fidelity.h;
+   - a coupling scheme: its SPAR_COUPLING_*, the next loads in src/session/accelerate.c, the range in settings.c;
+   - a projection: its SPAR_PROJECT_*, src/transfer/projection.c, the check in src/fluid/nodes.c.
+
    ABI. Structs are opaque, enumerators and codes never change their numbers, a function never changes its arguments:
    what must behave differently is a new function. The shared library's soname changes only if that rule is broken. */
 #ifndef SPAR_SPAR_H
@@ -101,7 +108,7 @@ typedef struct spar_fluid
 
 /* ---- status ------------------------------------------------------------------------------------------------------ */
 
-/* Fixed for ever. */
+/* Statuses. Their numbers never change. */
 enum {
     SPAR_OK = 0,
     SPAR_ERR_ARGUMENT = 1,    /* a value is not allowed */
@@ -149,10 +156,11 @@ enum {
 
 /* A session of this process alone. session: out. Local. */
 SPAR_API int spar_session_create(spar_session **session);
-/* A session over a communicator, which is duplicated and stays the caller's. comm: in, the Fortran integer of it (C:
-   see spar_mpi.h), the same on all ranks of it. Every build has this call; one without MPI answers
-   SPAR_ERR_UNSUPPORTED. Collective over comm: all ranks get a session, or none. SPAR_ERR_ARGUMENT: not a communicator;
-   SPAR_ERR_COMM: MPI is not initialised, or finalised already, or failed. */
+/* A session over a communicator, which is duplicated and stays the caller's. Every build has this call; one without MPI
+   answers SPAR_ERR_UNSUPPORTED. Collective over comm: all ranks get a session, or none.
+     comm: in, the Fortran integer of it (C: see spar_mpi.h), the same communicator on all ranks of it
+     session: out
+   SPAR_ERR_ARGUMENT: not a communicator; SPAR_ERR_COMM: MPI is not initialised, or finalised already, or failed. */
 SPAR_API int spar_session_create_fcomm(int comm, spar_session **session);
 /* Releases the session with its members and fluids; their handles are dead then. Collective: before MPI_Finalize; it
    waits for the others to make a collective call of this session, and whichever that is it ends there. */
@@ -167,28 +175,35 @@ SPAR_API const char *spar_session_message(const spar_session *session);
 /* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
-/* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). rho_inf: in, spectral radius at infinite
-   frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9; an exact beam that spins at Omega without a driven
-   root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5 Omega dt. dt may grow or shrink by any
-   factor from step to step: what a longer step does not resolve is damped by rho_inf a step and feeds nothing.
-   substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
-   default 1. */
+/* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). dt may grow or shrink by any factor from step to
+   step: what a longer step does not resolve is damped by rho_inf a step and feeds nothing.
+     rho_inf: in, spectral radius at infinite frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9. An exact beam
+           that spins at Omega without a driven root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5
+           Omega dt
+     substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
+           default 1 */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
-   rotations by 1). Both >= 0; max_iterations >= 1, past which the answer is SPAR_ERR_NUMERIC. Defaults 1e-15, 1e-12,
-   50. */
+   rotations by 1).
+     atol, rtol: in, >= 0; defaults 1e-15, 1e-12
+     max_iterations: in, >= 1, past which the answer is SPAR_ERR_NUMERIC; default 50 */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
 SPAR_API int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations);
-/* Polynomial the loads are extrapolated with to t^{n+1} in part 1 of a step: 0, 1 (default, (T11)), 2;
-   no farther than ten times the last step, so that a much longer one does not start from its rounding. As many loads
-   are kept as it needs: the first step uses 0, the second 1 at most, and so do those after the order has been raised.
+/* Polynomial the loads are extrapolated with to t^{n+1} in part 1 of a step; no farther than ten times the last step,
+   so that a much longer one does not start from its rounding. As many loads are kept as it needs: the first step uses
+   0, the second 1 at most, and so do those after the order has been raised.
+     order: in, 0, 1 (default, (T11)) or 2
    SPAR_ERR_MEMORY: the order is as before. */
 SPAR_API int spar_session_set_predictor(spar_session *session, int order);
 SPAR_API int spar_session_get_predictor(const spar_session *session, int *order);
-/* How a step is iterated. scheme: in, SPAR_COUPLING_*. Done when the change of the fluid's nodal loads is below atol
-   + rtol |loads|, in newtons, moments by the member's length; max_iterations >= 1, past which spar_step_check answers
-   SPAR_ERR_NUMERIC (or accepts, see the option coupling.unconverged). Defaults: explicit, 1e-9, 1e-6, 50. */
+/* How a step is iterated: until the change of the fluid's nodal loads is below atol + rtol |loads|, moments by the
+   member's length.
+     scheme: in, SPAR_COUPLING_*; default explicit
+     atol: in, N, >= 0; default 1e-9
+     rtol: in, >= 0; default 1e-6
+     max_iterations: in, >= 1, past which spar_step_check answers SPAR_ERR_NUMERIC (or accepts, see the option
+           coupling.unconverged); default 50 */
 SPAR_API int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
 SPAR_API int spar_session_get_coupling(const spar_session *session, int *scheme, double *atol, double *rtol,
                                        int *max_iterations);
@@ -199,7 +214,7 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
    (default): to rounding. SPAR_ERR_UNSUPPORTED: on several ranks in this release. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);
-/* The long tail, by words and numbers as text. key, value: in.
+/* All other settings, by name and text. key, value: in.
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
      coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
@@ -237,8 +252,10 @@ SPAR_API int spar_session_get_iterations(const spar_session *session, int *itera
 /* What the coupling says of itself; the same on all ranks. report[capacity]: out, by SPAR_REPORT_*, NULL: not wanted.
    Local. */
 SPAR_API int spar_session_get_report(const spar_session *session, int64_t capacity, double *report);
-/* t: out, t^n in s, the time of the last accepted step, from 0; step: out, steps accepted; iteration: out, coupling
-   iterations of the step under way or just ended. Each NULL: not wanted. Local. */
+/* The clock. Each NULL: not wanted. Local.
+     t: out, t^n in s, the time of the last accepted step, from 0
+     step: out, steps accepted
+     iteration: out, coupling iterations of the step under way, or of the last step or static solution */
 SPAR_API int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration);
 
 /* Levels of the log. */
@@ -246,8 +263,9 @@ enum { SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2 };
 /* Called with every message of the session, on the rank and in the thread where it arises; it must not call the
    session. */
 typedef void (*spar_log)(const spar_session *session, int level, const char *text, void *context);
-/* log: in, NULL: silent (default). context: in, handed to log; must live as long as the session uses it. Local, at
-   any time. */
+/* Who is told. Local, at any time.
+     log: in, NULL: nobody (default)
+     context: in, handed to log; must live as long as the session uses it */
 SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */
@@ -284,39 +302,52 @@ enum {
 /* The creates: name in, unique in the session, not empty, copied. Before the first step. Members go with their
    session. Local, but made on every rank alike and in the same order. member: out. */
 
-/* A massless node with 6 degrees of freedom that follows spar_member_set_motion or spar_member_drive_root. x: in,
-   reference place, NULL: the origin; q: in, reference orientation, NULL: none. */
+/* A massless node with 6 degrees of freedom that follows spar_member_set_motion or spar_member_drive_root.
+     x[3]: in, reference place, m, NULL: the origin
+     q[4]: in, reference orientation, NULL: none */
 SPAR_API int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
                                spar_member **member);
-/* A rigid body of one node. x, q: as for a point. mass: in, 36, about the node and in the frame q: m I, m c~ and J as
-   of a rigid body with its centre of mass at c; any other form is refused. Default root: free. */
+/* A rigid body of one node. Default root: free.
+     x[3], q[4]: in, as for a point
+     mass[36]: in, about the node and in the frame q: m I, m c~ and J as of a rigid body with its centre of mass at c;
+           any other form is refused */
 SPAR_API int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
                                const double mass[36], spar_member **member);
-/* A geometrically exact (Simo-Reissner) beam of Legendre spectral elements. elements: in, >= 1; nodes_per_element:
-   in, 2 to 24. Needs a line (axis or nodes) and sections before the commit. Default root: fixed. */
+/* A geometrically exact (Simo-Reissner) beam of Legendre spectral elements. Needs a line (axis or nodes) and sections
+   before the commit. Default root: fixed.
+     elements: in, >= 1
+     nodes_per_element: in, 2 to 24 */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
 /* What it was created with, or, within a trial that varies nodes, has now. elements, nodes_per_element: out, NULL: not
    wanted. Local. */
 SPAR_API int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element);
-/* The reference line by points, in the beam's own frame; the nodes are a least-squares fit, exact at both ends. n:
-   in, >= 2; eta[n]: in, strictly increasing, the first 0, the last 1; xyz[n][3]: in, m; twist[n]: in, rad about the
-   tangent, right-handed, linear between the points, NULL: 0. Replaces an earlier line. Local. */
+/* The reference line by points, in the beam's own frame; the nodes are a least-squares fit, exact at both ends.
+   Replaces an earlier line. Local.
+     n: in, points, >= 2
+     eta[n]: in, strictly increasing, the first 0, the last 1
+     xyz[n][3]: in, m
+     twist[n]: in, rad about the tangent, right-handed, linear between the points, NULL: 0 */
 SPAR_API int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz,
                                 const double *twist);
-/* The nodes themselves, instead of an axis, in the beam's own frame. n: in, elements*nodes_per_element, element by
-   element (a joint stands twice, at the same place; its two orientations may differ: a kink). x[n][3]: in, m;
-   q[n][4]: in, section frames, NULL: tangent and the rule of the conventions. Local. */
+/* The nodes themselves, instead of an axis, in the beam's own frame. Local.
+     n: in, elements*nodes_per_element, element by element (a joint stands twice, at the same place; its two
+           orientations may differ: a kink)
+     x[n][3]: in, m
+     q[n][4]: in, section frames, NULL: tangent and the rule of the conventions */
 SPAR_API int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q);
-/* Sections, linear in eta between their stations and constant beyond the first and last. n: in, >= 1; eta[n]: in,
-   strictly increasing in [0,1]; stiffness[n][36]: in, N, N m, N m^2, symmetric and positive definite; mass[n][36]:
-   in, per length, kg/m, kg, kg m, of the form of a rigid section, NULL: massless. Local. */
+/* Sections, linear in eta between their stations and constant beyond the first and last. Local.
+     n: in, stations, >= 1
+     eta[n]: in, strictly increasing in [0,1]
+     stiffness[n][36]: in, N, N m, N m^2, symmetric and positive definite
+     mass[n][36]: in, per length, kg/m, kg, kg m, of the form of a rigid section, NULL: massless */
 SPAR_API int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
                                     const double *mass);
-/* Integration along an element. rule: in, _GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points`
-   Gauss points in each piece between section stations. points: in, 1 (Lobatto 2) to 512. Default: sections if there
-   are more than two stations, else Gauss with as many points as nodes. Commit refuses a rule too coarse for the
-   element. Local. */
+/* Integration along an element. Default: sections if there are more than two stations, else Gauss with as many points
+   as nodes. Commit refuses a rule too coarse for the element. Local.
+     rule: in, SPAR_QUADRATURE_GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points` Gauss points in
+           each piece between section stations
+     points: in, 1 (Lobatto 2) to 512 */
 SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points);
 /* rule: out, the one in force; points: out, 0 if they were not set: as many as nodes, or in each piece between sections
    as many as its length asks for. NULL: not wanted. Local. */
@@ -327,14 +358,18 @@ SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
 /* mu[6]: out, s, also those of spar_beam_set_modal_damping; 0: none. Local. */
 SPAR_API int spar_beam_get_damping(const spar_member *beam, double mu[6]);
 /* Axis, sections and damping of a beam from BeamDyn's files: the primary file's members, key points and twist, the
-   blade file's stations (blade_path NULL: the file that the primary one names, beside it). BeamDyn's z axis, along the
-   blade, becomes the beam's x axis, its x and y axes y and z. Elements, nodes and quadrature are those of the beam, not
-   of the files; where elements join is eta, not where members do. Every rank reads the files. Local, before commit.
+   blade file's stations. BeamDyn's z axis, along the blade, becomes the beam's x axis, its x and y axes y and z.
+   Elements, nodes and quadrature are those of the beam, not of the files; where elements join is eta, not where members
+   do. Every rank reads the files. Local, before commit.
+     primary_path: in
+     blade_path: in, NULL: the file that the primary one names, beside it
    SPAR_ERR_IO: a file cannot be read, or a field cannot; the message names file, line and field, and the beam is as it
    was. SPAR_ERR_ARGUMENT: a matrix is not allowed. SPAR_ERR_UNSUPPORTED: damp_type beyond 1. */
 SPAR_API int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path);
-/* Takes the member from its own frame to its reference place: x -> R(q) x + x. x: in, m, NULL: unchanged; q: in,
-   NULL: unchanged. For a point or a rigid body instead of those given to create. Local. */
+/* Takes the member from its own frame to its reference place: X -> R(q) X + x. For a point or a rigid body instead of
+   those given to create. Local.
+     x[3]: in, m, NULL: unchanged
+     q[4]: in, NULL: unchanged */
 SPAR_API int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]);
 /* x[3], q[4]: out, NULL: not wanted. Local. */
 SPAR_API int spar_member_get_placement(const spar_member *member, double x[3], double q[4]);
@@ -371,8 +406,9 @@ SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
 /* kind: out; modes: out, of a modal member, else 0. NULL: not wanted. Local. */
 SPAR_API int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *modes);
-/* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Each [3]: in, NULL: 0. Before the first
-   step, before or after commit. Local. */
+/* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Before the first step, before or after commit.
+   Local.
+     x0[3]: in, m; v0[3]: in, m/s; omega[3]: in, rad/s; each NULL: 0 */
 SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                               const double omega[3]);
 /* rank: in, who solves the member. Default: spread over the ranks in order of creation. Local. */
@@ -388,17 +424,20 @@ SPAR_API int spar_member_commit(spar_member *member);
 
 /* nodes: out. Before commit too. */
 SPAR_API int spar_member_get_count(const spar_member *member, int64_t *nodes);
-/* Reference configuration, placed. x[n][3]: out, m; q[n][4]: out, section frames. NULL: not wanted. */
+/* Reference configuration, placed. Each NULL: not wanted.
+     x[n][3]: out, m
+     q[n][4]: out, section frames */
 SPAR_API int spar_member_get_reference(const spar_member *member, double *x, double *q);
 /* q[n][7], v[n][6], a[n][6]: out. NULL: not wanted. */
 SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a);
-/* For external members and points. q[n][7], v[n][6], a[n][6]: in, NULL: unchanged. During a step: the motion at
-   t^{n+1}, may be given again in every iteration; before the first step: the initial motion. Local, the same on every
-   rank. */
+/* For external members and points. During a step: the motion at t^{n+1}, may be given again in every iteration; before
+   the first step: the initial motion. Local, the same on every rank.
+     q[n][7], v[n][6], a[n][6]: in, NULL: unchanged */
 SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a);
 /* Motion of a driven root, or of a point, at the end of the step begun next; within it the motion is interpolated.
-   q[7], v[6], a[6]: in; v, a NULL: 0. Between steps only; not driven anew, the root stays where it is. Local, the
-   same on every rank. */
+   Between steps only; not driven anew, the root stays where it is. Local, the same on every rank.
+     q[7]: in
+     v[6], a[6]: in, NULL: 0 */
 SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]);
 /* A load on a node, which replaces the node's earlier one of that kind and is kept; zeros take it away. A node bears
    the sum of its two kinds. With LARGE_ROTATION off a follower stays as it is in the reference configuration; otherwise
@@ -419,23 +458,26 @@ SPAR_API int spar_member_set_load(spar_member *member, int64_t node, int kind, c
    of the beam's displacement and rotation field. After commit. Local, the same on every rank. SPAR_ERR_ARGUMENT: no
    beam, or eta or load not allowed. */
 SPAR_API int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load);
-/* load[n][6]: out, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that do the
-   same work: those the structure is solved with; after spar_step_check those just
-   pushed. */
+/* load[n][6]: out, N, N m, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that
+   do the same work: those the structure is solved with; after spar_step_check those just pushed. */
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 /* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */
 SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);
-/* Sections of a beam now. n: in; eta[n]: in, places in [0, 1], a joint belongs to the element before it. Out, NULL: not
-   wanted: strain[n][6] (stretch, shears, twist, curvatures beyond the reference) and force[n][6] (N, N m, what the part
-   beyond gives, damping included), both in section axes (x tangent, y, z), order axial, shear y, shear z, torsion,
-   bending y, bending z; x[n][3] place; q[n][4] orientation. force is the section's stiffness times its strain and
-   converges with the nodes as the strains do, one order behind the displacements; the reaction and the nodal balance
-   are exact to rounding. In static equilibrium under loads at element ends, with Gauss quadrature of P - 1 points in a
-   straight element, the forces (turned to global axes) at those points balance the loads to rounding too. Of a linear
-   or modal member, or one with LARGE_ROTATION off, strains are those of linear theory, as in its strain energy: of the
-   displacement and rotation vector seen from the root where that is fixed or driven, else from the reference; of a
-   rigid or prescribed one 0. Local.
-   SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
+/* Sections of a beam now. Local. Each output NULL: not wanted.
+     n: in, places
+     eta[n]: in, in [0, 1]; a joint belongs to the element before it
+     strain[n][6]: out, stretch, shears, twist, curvatures beyond the reference (1, 1/m)
+     force[n][6]: out, N, N m, what the part beyond gives, damping included
+     x[n][3]: out, place, m
+     q[n][4]: out, orientation
+   Strain and force are in section axes (x tangent, y, z), in the order axial, shear y, shear z, torsion, bending y,
+   bending z. force is the section's stiffness times its strain and converges with the nodes as the strains do, one
+   order behind the displacements; the reaction and the nodal balance are exact to rounding. In static equilibrium under
+   loads at element ends, with Gauss quadrature of P - 1 points in a straight element, the forces (turned to global
+   axes) at those points balance the loads to rounding too. Of a linear or modal member, or one with LARGE_ROTATION off,
+   strains are those of linear theory, as in its strain energy: of the displacement and rotation vector seen from the
+   root where that is fixed or driven, else from the reference; of a rigid or prescribed one 0. SPAR_ERR_UNSUPPORTED:
+   force of a beam without sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* Energies of a member, J. */
@@ -459,36 +501,40 @@ enum {
 };
 /* work[capacity]: out, by SPAR_WORK_*, in the accepted steps. The account begins at zero with the first call, between
    steps, and anew where the motion is set (static solution, initial velocity, load): nothing is computed for members it
-   has not been asked for. Kinetic + strain
-   + potential + dissipated energy less the sum of the three stays constant to the order of the integrator; of a linear
-   or modal member on a root that turns but for the shortening of the bent beam, which they neglect. Local. */
+   has not been asked for. Kinetic + strain + potential + dissipated energy less the sum of the three stays constant to
+   the order of the integrator; of a linear or modal member on a root that turns but for the shortening of the bent beam,
+   which they neglect. Local. */
 SPAR_API int spar_member_get_work(spar_member *member, int64_t capacity, double *work);
-/* Static equilibrium under gravity, all kept loads and the fluid loads in use, from the present state. load_steps: in,
-   >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails. Velocities
-   become 0. A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame
-   that turns with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities
-   and accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers)
-   the result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and
-   it is refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can
-   follow, a log is warned. Between steps. Collective. SPAR_ERR_NUMERIC: not found, the message says which part of the
-   loads was reached and what is in the way, state as before; SPAR_ERR_STATE: nothing holds the member;
-   SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
+/* Static equilibrium of one member under gravity, all kept loads and the fluid loads in use, from the present state;
+   velocities become 0. With the fluid's answer: spar_session_solve_static. Between steps. Collective.
+     load_steps: in, >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails
+   A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame that turns
+   with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
+   accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
+   result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
+   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a
+   log is warned. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the
+   way; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
-/* The n lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
+/* The lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
    terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
    those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
-   load stiffness; of a rigid one those of the rigid body. n: in, at most the number of free unknowns; frequency_hz[n]:
-   out, ascending, negative where the stiffness is, infinite where there is no mass; shapes[n][nodes][6]: out,
-   displacement and rotation, normalised to unit modal mass, NULL: not wanted. A rotor: set_root DRIVEN,
-   set_initial_velocity, commit, solve_static, solve_modes. Local. */
+   load stiffness; of a rigid one those of the rigid body. A rotor: set_root DRIVEN, set_initial_velocity, commit,
+   solve_static, solve_modes. Local.
+     n: in, modes, at most the number of free unknowns
+     frequency_hz[n]: out, ascending, negative where the stiffness is, infinite where there is no mass
+     shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, NULL: not wanted */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
-   shear y, torsion with stretch), the third group gets the geometric mean. mode[2]: in, from 0, as
-   spar_member_solve_modes gives them now; ratio[2]: in, of critical, > 0; mu[6]: out, s, what has been set, NULL: not
-   wanted. Between commit and the first step. Collective. SPAR_ERR_ARGUMENT: both modes are of one kind;
-   SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a free or pinned beam as a rigid body). */
+   shear y, torsion with stretch), the third group gets the geometric mean. Between commit and the first step.
+   Collective.
+     mode[2]: in, from 0, as spar_member_solve_modes gives them now
+     ratio[2]: in, of critical, > 0
+     mu[6]: out, s, what has been set, NULL: not wanted
+   SPAR_ERR_ARGUMENT: both modes are of one kind; SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a
+   free or pinned beam as a rigid body). */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
@@ -517,17 +563,22 @@ enum {
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
 /* A fluid may go before its session; its loads go with it. */
 SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
-/* Nodes that are moved, by their places in the reference configuration. n: in; x[n][3]: in, m. To be mapped. */
+/* Nodes that are moved, by their places in the reference configuration. To be mapped.
+     n: in
+     x[n][3]: in, m */
 SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x);
 /* Nodes that loads come from. As above. */
 SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x);
-/* Sections of a blade element model, instead: motion nodes and force nodes at given places of the line. n: in; xi[n]:
-   in, in [-1,1] over the whole beam; offset[n][3]: in, m, from the line to the node in the section frame (x tangent,
-   y, z), NULL: 0. Keeps the node forces, unless spar_member_set_effects has left SPAR_EFFECT_FLUID_HISTORY out. To be
-   mapped. */
+/* Sections of a blade element model, instead: motion nodes and force nodes at given places of the line. Keeps the node
+   forces, unless spar_member_set_effects has left SPAR_EFFECT_FLUID_HISTORY out. To be mapped.
+     n: in
+     xi[n]: in, in [-1,1] over the whole beam
+     offset[n][3]: in, m, from the line to the node in the section frame (x tangent, y, z), NULL: 0 */
 SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
-/* method: in, SPAR_PROJECT_*, default bounded; max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and
-   refused under the option fluid.far = refuse); <= 0: no limit (default). For the next spar_fluid_map. */
+/* How feet are found, for the next spar_fluid_map.
+     method: in, SPAR_PROJECT_*, default bounded
+     max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and refused under the option fluid.far = refuse);
+           <= 0: no limit (default) */
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
 /* method, max_distance: out, NULL: not wanted. */
 SPAR_API int spar_fluid_get_projection(const spar_fluid *fluid, int *method, double *max_distance);
@@ -545,24 +596,39 @@ SPAR_API int spar_fluid_map(spar_fluid *fluid);
 SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);
 /* flag: in, one SPAR_MAP_*; n: out, how many mapped nodes of the set bear it. */
 SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
-/* xi[n]: out, of the foot, over the whole beam; distance[n]: out, m; flags[n]: out, SPAR_MAP_* or-ed. NULL: not
-   wanted. */
+/* Where the nodes are mapped to. Each NULL: not wanted.
+     xi[n]: out, of the foot, over the whole beam
+     distance[n]: out, m
+     flags[n]: out, SPAR_MAP_* or-ed */
 SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags);
-/* x_map[n][3]: out, foot in the reference configuration, m; q_map[n][4]: out, its section frame; con[n][3]: out, from
-   the foot to the node, the arm c of (T3). NULL: not wanted. */
+/* The feet. Each NULL: not wanted.
+     x_map[n][3]: out, foot in the reference configuration, m
+     q_map[n][4]: out, its section frame
+     con[n][3]: out, from the foot to the node, the arm c of (T3), m */
 SPAR_API int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
-/* The interpolation behind the map. first_node[n]: out, node of the member the P = nodes_per_element basis values
-   begin at; phi[n][P]: out. NULL: not wanted. */
+/* The interpolation behind the map. Each NULL: not wanted.
+     first_node[n]: out, node of the member that the P = nodes_per_element basis values begin at
+     phi[n][P]: out */
 SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi);
-/* Motion nodes at t^n + theta dt (parts 3 and 4 of a step, (T4) to (T6)). theta: in, in [0,1]: 1 backward Euler, 1/2
-   Crank-Nicolson, 0 explicit. x[n][3]: out, places, m; v[n][3]: out, m/s. NULL: not wanted. Before the first step:
-   the initial state. SPAR_ERR_NUMERIC: the rotations of an element's nodes cancel. */
+/* Motion nodes at t^n + theta dt (parts 3 and 4 of a step, (T4) to (T6)); before the first step: the initial state.
+   Each output NULL: not wanted.
+     theta: in, in [0,1]: 1 backward Euler, 1/2 Crank-Nicolson, 0 explicit
+     x[n][3]: out, places, m
+     v[n][3]: out, m/s
+   SPAR_ERR_NUMERIC: the rotations of an element's nodes cancel. */
 SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
-/* At the same nodes and time. q[n][4]: out, orientation of the section now, scalar part >= 0; omega[n][3]: out,
-   rad/s; accel[n][3]: out, acceleration of the node, m/s^2. NULL: not wanted. */
+/* At the same nodes and time. Each NULL: not wanted.
+     q[n][4]: out, orientation of the section now, scalar part >= 0
+     omega[n][3]: out, rad/s
+     accel[n][3]: out, acceleration of the node, m/s^2 */
 SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
-/* All of a section's motion at once, for blade element hosts, at the motion nodes: x[n][3], m; q[n][4] as above;
-   v[n][3], m/s; omega[n][3], rad/s; accel[n][3], m/s^2; alpha[n][3], rad/s^2; all out, NULL: not wanted. */
+/* All of a section's motion at once, for blade element hosts, at the motion nodes. Each NULL: not wanted.
+     x[n][3]: out, m
+     q[n][4]: out, as above
+     v[n][3]: out, m/s
+     omega[n][3]: out, rad/s
+     accel[n][3]: out, m/s^2
+     alpha[n][3]: out, rad/s^2 */
 SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
                                    double *accel, double *alpha);
 /* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
@@ -573,23 +639,27 @@ enum {
 };
 /* convention: in, SPAR_MATRIX_*; matrix[n][9]: out. */
 SPAR_API int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix);
-/* Self-test for a host that keeps matrices of its own: matrix[n][9]: in, what it holds for the motion nodes at t^{n+1}.
+/* Self-test for a host that keeps matrices of its own. Allocates; not for every step.
+     convention: in, SPAR_MATRIX_*
+     matrix[n][9]: in, what it holds for the motion nodes at t^{n+1}
    SPAR_ERR_ARGUMENT if one is not what pull_matrices gives (to 1e-5); the message tells a transposed matrix, one with
-   determinant -1, one that is no rotation, and one that is another rotation apart. Allocates; not for every step. */
+   determinant -1, one that is no rotation, and one that is another rotation apart. */
 SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix);
 /* The fluid's own node forces at t^n + theta dt, for an actuator line: pushed at t^n; at t^{n+1} pushed, or predicted
    as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: asked for
    the first time after a push without SPAR_EFFECT_FLUID_HISTORY. */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
 /* Loads at t^{n+1} on the force nodes where they are now (part 7 of a step, (T8) to (T10)); before the first step those
-   at t = 0. Replaces what the fluid pushed before. force[n][3]: in, N; moment[n][3]: in, N m, about each node, NULL:
-   none. A refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good
-   push follows. */
+   at t = 0. Replaces what the fluid pushed before.
+     force[n][3]: in, N
+     moment[n][3]: in, N m, about each node, NULL: none
+   A refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
+   follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
-/* For a fluid that takes several steps within dt: its loads over the part of the step that ends at t^n + theta dt,
-   theta in (0, 1], rising from push to push; a theta that does not rise begins anew (the next iteration). The loads in
-   use at t^{n+1} are the mean over the step so far, weighted by the parts' lengths. It pulls at any theta. Not before
-   the first step; otherwise as spar_fluid_push_forces. */
+/* For a fluid that takes several steps within dt: its loads over the part of the step that ends at t^n + theta dt. The
+   loads in use at t^{n+1} are the mean over the step so far, weighted by the parts' lengths. It pulls at any theta. Not
+   before the first step; otherwise as spar_fluid_push_forces.
+     theta: in, in (0, 1], rising from push to push; one that does not rise begins anew (the next iteration) */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
@@ -614,7 +684,7 @@ SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, dou
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
 
 /* All collective. A step is begun, solved, checked, as often as it takes, and accepted or rejected; a call out of
-   this order is SPAR_ERR_STATE. After a failure the state at t^n is untouched: reject, and begin anew if you will. */
+   this order is SPAR_ERR_STATE. After a failure the state at t^n is untouched: reject the step, and begin another. */
 
 /* Step 1: predicts the loads at t^{n+1} = t^n + dt. dt: in, s, > 0, the same on every rank; may differ from step to
    step. */
@@ -634,9 +704,11 @@ SPAR_API int spar_step_reject(spar_session *session);
    success; anything else ends the step with SPAR_ERR_USER. The step stays spar_step's: the calls that
    begin, solve, check, accept and reject one are SPAR_ERR_STATE from here, on the rank that makes them. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
-/* The whole step. dt: in, s; solve: in, NULL: no fluid (on this rank: others may have one); context: in, handed to
-   solve; iterations: out, how many it took, NULL: not wanted. Accepts, or after a failure of any part rejects and
-   answers that part's status. */
+/* The whole step. Accepts, or after a failure of any part rejects and answers that part's status.
+     dt: in, s
+     solve: in, NULL: no fluid (on this rank: others may have one)
+     context: in, handed to solve
+     iterations: out, how many it took, NULL: not wanted */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
 /* Static equilibrium of all members with the fluid's answer: the shape under gravity, all kept loads and the loads that
@@ -662,16 +734,16 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
                                        int *iterations);
 
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
-   fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. path: in;
-   rank 0 writes and reads, the others' paths are not looked at but for being there. The file is written under path.new,
-   flushed and renamed: there is always a whole one, and what a killed process has left at path.new goes with the next
-   save. Where path is a symbolic link, all this happens where it leads, and the link stays; a file with hard links
-   parts from its other names; mode and owner stay as far as the system allows. What is no file (a pipe, a device, a
-   folder) is SPAR_ERR_IO and stays; so is a file that another process is writing. load: into a session with the same
-   members, committed, and the same fluids, mapped, by name, no step under way, on any number of ranks: nodes may be
-   spread over the ranks otherwise, node forces find them by their reference places. What the host sets (gravity,
-   integrator, tolerances) it sets as before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of
-   another session: SPAR_ERR_ARGUMENT; the session is then as it was. Collective. */
+   fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. Collective.
+     path: in; rank 0 writes and reads; on the other ranks it must be given and is not used
+   save: the file is written under path.new, flushed and renamed: there is always a whole one, and what a killed process
+   has left at path.new goes with the next save. Where path is a symbolic link, all this happens where it leads, and the
+   link stays; a file with several hard links is replaced under this name only; mode and owner stay as far as the system
+   allows. What is no file (a pipe, a device, a folder) is SPAR_ERR_IO and stays; so is a file that another process is
+   writing. load: into a session with the same members, committed, and the same fluids, mapped, by name, no step under
+   way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them by their reference
+   places. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut off or damaged or
+   cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it was. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 
@@ -685,8 +757,8 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
    accelerations from the balance of forces. All calls here are collective, between steps; before and
    solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are
-   compared at 8 times, evenly spread. The seconds of a run are the processor time of its steps, the fluid's included, on
-   all ranks; advice goes by counted work, not by them. */
+   compared at 8 times, evenly spread. The seconds of a run are the processor time of its steps, the fluid's included,
+   on all ranks; advice goes by counted work, not by them. */
 
 /* t, dt: the step goes from t to t + dt. Answer 0 for success; anything else ends the trial with SPAR_ERR_USER. */
 typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
@@ -701,10 +773,16 @@ enum {
     SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
     SPAR_TRY_COUNT = 5
 };
-/* One trial with the session as it is, for hosts that compare settings of their own. before, solve: in, NULL: none
-   (without solve the loads stay as they are); context: in, handed to both. compare: in, 0: what later trials are
-   compared with (errors come out 0); 1: compared with that run, over the same time, with any dt. report[capacity]: out,
-   by SPAR_TRY_*, NULL: not wanted. Failures as of spar_step; SPAR_ERR_STATE: nothing to compare with. */
+/* One trial with the session as it is, for hosts that compare settings of their own. Failures as of spar_step.
+     dt: in, s
+     steps: in, a multiple of 8
+     before, solve: in, NULL: none (without solve the loads stay as they are)
+     context: in, handed to both
+     compare: in, 0: what later trials are compared with (errors come out 0); 1: compared with that run, over the same
+           time, with any dt
+     capacity: in, of the report
+     report[capacity]: out, by SPAR_TRY_*, NULL: not wanted
+   SPAR_ERR_STATE: nothing to compare with. */
 SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before,
                               spar_fluid_solver solve, void *context, int compare, int64_t capacity, double *report);
 
@@ -737,11 +815,14 @@ enum {
 };
 /* Name of a row, "gravity"; static storage; "" for what is no row. */
 SPAR_API const char *spar_effect_name(int row);
-/* What each effect is worth in the scene as it stands: sizes from the present state; errors and savings from trials of
-   `steps` steps of dt, with the effect and without it, all members at once. before, solve, context: in, as of
-   spar_session_try; solve NULL: under the present loads, rows of the fluid not in force. rows, columns: in, the
-   capacity of the table; table[rows][columns]: out, by SPAR_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not
-   wanted. */
+/* What each effect is worth in the scene as it stands: sizes from the present state; errors and savings from trials,
+   with the effect and without it, all members at once.
+     dt: in, s
+     steps: in, of dt in each trial, a multiple of 8
+     before, solve, context: in, as of spar_session_try; solve NULL: under the present loads, rows of the fluid not in
+           force
+     rows, columns: in, the capacity of the table
+     table[rows][columns]: out, by SPAR_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not wanted */
 SPAR_API int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
                                          spar_fluid_solver solve, void *context, int64_t rows, int64_t columns,
                                          double *table);
@@ -761,22 +842,26 @@ enum {
     SPAR_ADVICE_COUNT = 10
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
-   coupling; nothing is changed. tolerance: in, as SPAR_TRY_MOTION, in (0, 1). dt, steps: in, the host's dt, and how
-   many of it the trials last: what happens later is not seen, but see the option advise.horizon. before, solve,
-   context: in, as of spar_session_try, called with other dt too. advice[capacity]: out, by SPAR_ADVICE_*, NULL:
-   not wanted; what it says of beams: spar_member_get_advice. Beams of one make (all that is described but name,
-   placement and initial velocity) get one advice. Costs are counted (iterations of Newton, tangents, nodes,
-   unknowns, solutions of the fluid) and not timed, so that the same scene gets the same advice each time; what a
-   solution of the fluid counts for: the option advise.fluid_cost. What is kept as it is: the options advise.dt,
-   advise.nodes, advise.fidelity, advise.coupling = keep. A log is told of each trial at SPAR_LOG_INFO.
-   SPAR_ERR_UNSUPPORTED: solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what
-   error was reached. */
+   coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
+     tolerance: in, as SPAR_TRY_MOTION, in (0, 1)
+     dt, steps: in, the host's dt in s, and how many of it the trials last, a multiple of 8: what happens later is not
+           seen, but see the option advise.horizon
+     before, solve, context: in, as of spar_session_try, called with other dt too
+     capacity: in, of the advice
+     advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
+   Beams of one make (all that is described but name, placement and initial velocity) get one advice. Costs are counted
+   (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the same scene gets
+   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. What is kept as it
+   is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is
+   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);
-/* What the last advice says of a beam: SPAR_FIDELITY_*, modes of a modal one (else 0), nodes per element, points for
-   spar_beam_set_quadrature with the rule in force (0: as described). Each NULL: not wanted. Local. SPAR_ERR_STATE: no
-   advice yet. */
+/* What the last advice says of a beam. Each NULL: not wanted. Local. SPAR_ERR_STATE: no advice yet.
+     fidelity: out, SPAR_FIDELITY_*
+     modes: out, of a modal one, else 0
+     nodes_per_element: out
+     points: out, for spar_beam_set_quadrature with the rule in force; 0: as described */
 SPAR_API int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,
                                     int *points);
 
