@@ -59,6 +59,7 @@ module spar
   public :: SPAR_MATRIX_LOCAL_TO_GLOBAL, SPAR_MATRIX_GLOBAL_TO_LOCAL
   public :: SPAR_MAP_FAR, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
+  public :: SPAR_EFFECT_WORK, SPAR_EFFECT_DEFAULT
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
@@ -1496,7 +1497,7 @@ contains
   end subroutine member_get_energy
 
   subroutine member_get_work(self, work, stat, errmsg)
-    class(spar_member), intent(inout) :: self
+    class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: work(:)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg

@@ -42,6 +42,7 @@ static void create(scene *c, int me, int ranks, int scheme) {
     OK(s, spar_session_set_relaxation(s, 0.3));
     c->beam = scene_beam(s, "beam", 3, POINTS / 3, 10, K, M);
     OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
+    OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));
@@ -58,8 +59,6 @@ static void create(scene *c, int me, int ranks, int scheme) {
     OK(s, spar_fluid_set_motion_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
     OK(s, spar_fluid_set_force_nodes(c->around, c->n, c->n ? c->x[0] : NULL));
     OK(s, spar_fluid_map(c->around));
-    double unused[NODES][3];
-    OK(s, spar_fluid_pull_forces(c->around, 1, c->n ? unused[0] : NULL)); /* node forces are kept from here on */
     OK(s, spar_fluid_create(c->piston, "added", &c->added));
     OK(s, spar_fluid_set_force_nodes(c->added, c->piston_here, c->piston_here ? where : NULL));
     OK(s, spar_fluid_map(c->added));

@@ -11,7 +11,7 @@ enum { NODES = 200 }; /* of each rank; many, so that what is not there lies beyo
 static int rank, size;
 
 static void create(spar_session *s, int first, int ranks, spar_fluid **fluid) {
-    double K[36], M[36], unused[3 * NODES], *x = calloc((size_t)(3 * NODES * ranks), sizeof *x);
+    double K[36], M[36], *x = calloc((size_t)(3 * NODES * ranks), sizeof *x);
     scene_box(K, M);
     spar_member *beam = scene_beam(s, "beam", 1, 4, 10, K, M);
     OK(s, spar_member_commit(beam));
@@ -19,11 +19,17 @@ static void create(spar_session *s, int first, int ranks, spar_fluid **fluid) {
         x[3 * i] = 10.0 * (first * NODES + i) / (NODES * size);
     }
     OK(s, spar_fluid_create(beam, "nodes", fluid));
-    OK(s, spar_fluid_set_force_nodes(*fluid, (int64_t)NODES * ranks, x));
-    OK(s, spar_fluid_map(*fluid));
-    if (first == 0 && ranks == 1) {
-        OK(s, spar_fluid_pull_forces(*fluid, 1, unused));
+    if (first == 0) { /* sections keep their forces */
+        double *xi = calloc((size_t)(NODES * ranks), sizeof *xi);
+        for (int i = 0; i < NODES * ranks; i++) {
+            xi[i] = 0.2 * x[3 * i] - 1;
+        }
+        OK(s, spar_fluid_set_sections(*fluid, (int64_t)NODES * ranks, xi, NULL));
+        free(xi);
+    } else {
+        OK(s, spar_fluid_set_force_nodes(*fluid, (int64_t)NODES * ranks, x));
     }
+    OK(s, spar_fluid_map(*fluid));
     free(x);
 }
 

@@ -185,6 +185,7 @@ static void test_modal_falls(void **state) {
     OK(s, spar_session_set_gravity(s, g));
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 12));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_initial_velocity(b, x0, v, spin));
     OK(s, spar_member_get_work(b, 3, work));
@@ -252,6 +253,7 @@ static void test_rigid_is_the_stiff_limit(void **state) {
             OK(s, spar_session_set_integrator(s, 0.0, 1));
             OK(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
             OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
+            OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
             OK(s, spar_member_get_work(b, 3, work[i]));

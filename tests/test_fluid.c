@@ -526,7 +526,7 @@ static void pulls_give_what_is_asked_for(void **state) {
 static void node_forces_are_kept_and_predicted(void **state) {
     (void)state;
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY);
     const double node[3] = {5, 0.2, 0.3};
     const double dt[4] = {0.1, 0.3, 0.2, 0.05};
     double force[3], got[3], t = 0;
@@ -572,8 +572,8 @@ static void node_forces_are_kept_and_predicted(void **state) {
     rig_end(&r);
 }
 
-/* Asked for when it is too late, a history is refused with the cure. */
-static void late_history_is_refused(void **state) {
+/* What was not asked for is refused with the cure, before a push as after it: a getter switches nothing on. */
+static void unasked_history_is_refused(void **state) {
     (void)state;
     rig r;
     const double node[3] = {5, 0.2, 0.3}, force[3] = {1, 2, 3};
@@ -583,6 +583,7 @@ static void late_history_is_refused(void **state) {
     OK(spar_fluid_create(r.member, "line", &f));
     OK(spar_fluid_set_force_nodes(f, 1, node));
     OK(spar_fluid_map(f));
+    assert_int_equal(spar_fluid_pull_forces(f, 1, got), SPAR_ERR_STATE);
     OK(spar_fluid_push_forces(f, force, NULL));
     assert_int_equal(spar_fluid_pull_forces(f, 1, got), SPAR_ERR_STATE);
     assert_true(says(&r, "SPAR_EFFECT_FLUID_HISTORY"));
@@ -590,17 +591,20 @@ static void late_history_is_refused(void **state) {
 }
 
 /* Sections imply a history; effects without it take it away, and what was pushed is then gone for good; effects with it
-   give it to any nodes. */
+   give it to any nodes, also beside the default. */
 static void history_is_an_effect(void **state) {
     (void)state;
     const double xi[2] = {-0.5, 0.5}, force[2][3] = {{1, 2, 3}, {4, 5, 6}};
-    static const int effects[3] = {0, SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_HISTORY};
-    for (int k = 0; k < 6; k++) {
+    enum { KINDS = 5 };
+    static const int effects[KINDS] = {0, SPAR_EFFECT_DEFAULT, SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_HISTORY,
+                                       SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY};
+    for (int k = 0; k < 2 * KINDS; k++) {
         rig r;
         double node[2][3] = {{2, 0, 0}, {7, 0, 0}}, got[2][3];
-        int sections = k < 3, kept = effects[k % 3] == SPAR_EFFECT_FLUID_HISTORY || (sections && k % 3 == 0);
+        int sections = k < KINDS,
+            kept = (effects[k % KINDS] & SPAR_EFFECT_FLUID_HISTORY) || (sections && k % KINDS < 2);
         spar_fluid *f;
-        rig_start(&r, effects[k % 3]);
+        rig_start(&r, effects[k % KINDS]);
         OK(spar_fluid_create(r.member, "line", &f));
         OK(sections ? spar_fluid_set_sections(f, 2, xi, NULL) : spar_fluid_set_force_nodes(f, 2, node[0]));
         OK(spar_fluid_map(f));
@@ -801,7 +805,7 @@ int main(void) {
         cmocka_unit_test(half_step_cuts_the_corner),
         cmocka_unit_test(pulls_give_what_is_asked_for),
         cmocka_unit_test(node_forces_are_kept_and_predicted),
-        cmocka_unit_test(late_history_is_refused),
+        cmocka_unit_test(unasked_history_is_refused),
         cmocka_unit_test(history_is_an_effect),
         cmocka_unit_test(loads_of_fluids_add),
         cmocka_unit_test(far_nodes_are_flagged_or_refused),

@@ -202,6 +202,7 @@ static void move(moved *m) {
     OK(m->session, spar_beam_set_axis(m->beam, 2, eta, xyz, twist));
     OK(m->session, spar_member_set_external(m->beam, 1));
     OK(m->session, spar_member_set_placement(m->beam, place, turned));
+    OK(m->session, spar_member_set_effects(m->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
     OK(m->session, spar_member_commit(m->beam));
     OK(m->session, spar_member_get_reference(m->beam, m->x, m->frame));
     for (int i = 0; i < NODES; i++) {
@@ -383,7 +384,6 @@ static void test_fluids(void **state) {
     OK(m.session, spar_fluid_set_motion_nodes(mesh, 2, nodes));
     OK(m.session, spar_fluid_set_force_nodes(mesh, 1, nodes));
     OK(m.session, spar_fluid_map(mesh));
-    OK(m.session, spar_fluid_pull_forces(mesh, 1, x)); /* from here on node forces are kept */
     OK(m.session, spar_fluid_push_forces(mesh, force, NULL));
     OK(m.session, spar_fluid_pull_motion(mesh, 1, x, NULL));
     OK(m.session, spar_fluid_write_vtk(mesh, "output_fluid.vtp"));

@@ -329,6 +329,7 @@ static void flag_create(flag *f, int scheme) {
     OK(f->session, spar_session_set_gravity(f->session, gravity));
     f->beam = scene_beam(f->session, "flag", 2, 6, 4, K, M);
     OK(f->session, spar_beam_set_damping(f->beam, mu));
+    OK(f->session, spar_member_set_effects(f->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
     OK(f->session, spar_member_commit(f->beam));
     for (int i = 0; i < 11; i++) {
         f->x[i][0] = 0.4 * i;

@@ -287,7 +287,9 @@ enum {
     SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping */
     SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference configuration */
     SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
-    SPAR_EFFECT_FLUID_HISTORY = 64   /* node forces kept for spar_fluid_pull_forces */
+    SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
+    SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
+    SPAR_EFFECT_DEFAULT = 256        /* all that is on where nothing is set; or-ed with what is wanted besides */
 };
 
 /* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
@@ -382,8 +384,9 @@ SPAR_API int spar_member_get_root(const spar_member *member, int *kind);
 SPAR_API int spar_member_set_external(spar_member *member, int on);
 /* on: out. Local. */
 SPAR_API int spar_member_get_external(const spar_member *member, int *on);
-/* effects: in, SPAR_EFFECT_* or-ed. Default: what the description implies (no damping given, none computed). Asking
-   for what the description has nothing for is legal and has no effect. Local. */
+/* effects: in, SPAR_EFFECT_* or-ed. Default: what the description implies (no damping given, none computed), without
+   WORK, and with FLUID_HISTORY for the fluids that are made of sections. Asking for what the description has nothing
+   for is legal and has no effect. Local. */
 SPAR_API int spar_member_set_effects(spar_member *member, int effects);
 /* effects: out, those in force: of what was asked for, or of all, what the description has something for. After commit.
    Local. */
@@ -499,12 +502,12 @@ enum {
     SPAR_WORK_ROOT = 2,  /* by a driven root */
     SPAR_WORK_COUNT = 3
 };
-/* work[capacity]: out, by SPAR_WORK_*, in the accepted steps. The account begins at zero with the first call, between
-   steps, and anew where the motion is set (static solution, initial velocity, load): nothing is computed for members it
-   has not been asked for. Kinetic + strain + potential + dissipated energy less the sum of the three stays constant to
-   the order of the integrator; of a linear or modal member on a root that turns but for the shortening of the bent beam,
-   which they neglect. Local. */
-SPAR_API int spar_member_get_work(spar_member *member, int64_t capacity, double *work);
+/* work[capacity]: out, by SPAR_WORK_*, NULL: not wanted. Of the accepted steps since the motion was set last (commit,
+   static solution, initial velocity, load). Kinetic + strain + potential + dissipated energy less the sum of the three
+   stays constant to the order of the integrator; of a linear or modal member on a root that turns but for the shortening
+   of the bent beam, which they neglect. Local.
+   SPAR_ERR_STATE: SPAR_EFFECT_WORK was not asked for. */
+SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, double *work);
 /* Static equilibrium of one member under gravity, all kept loads and the fluid loads in use, from the present state;
    velocities become 0. With the fluid's answer: spar_session_solve_static. Between steps. Collective.
      load_steps: in, >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails
@@ -646,8 +649,8 @@ SPAR_API int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int conve
    determinant -1, one that is no rotation, and one that is another rotation apart. */
 SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix);
 /* The fluid's own node forces at t^n + theta dt, for an actuator line: pushed at t^n; at t^{n+1} pushed, or predicted
-   as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: asked for
-   the first time after a push without SPAR_EFFECT_FLUID_HISTORY. */
+   as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: they are
+   not kept (SPAR_EFFECT_FLUID_HISTORY). */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
 /* Loads at t^{n+1} on the force nodes where they are now (part 7 of a step, (T8) to (T10)); before the first step those
    at t = 0. Replaces what the fluid pushed before.

@@ -9,22 +9,6 @@
 
 /* ---- loads in ---- */
 
-/* Node forces are kept from now on, if they can still be kept from the beginning. */
-static int start_history(spar_fluid *fluid, int64_t n, const char *caller) {
-    if (fluid->history) {
-        return SPAR_OK;
-    }
-    if (fluid->pushes > 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "node forces were not kept; set SPAR_EFFECT_FLUID_HISTORY on the member before it is "
-                                  "committed, or call spar_fluid_pull_forces once before the first push");
-    }
-    if (spari_fluid_renew_history(fluid, n) != SPAR_OK) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the node forces");
-    }
-    return SPAR_OK;
-}
-
 static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, const char *caller) {
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
     theta = spari_fluid_time(fluid, theta);
@@ -34,9 +18,13 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
     if (n > 0 && !d && !f) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the place for the forces is NULL");
     }
-    SPARI_TRY(start_history(fluid, n, caller));
-    fluid->asked |= SPARI_MUTE_HISTORY;
     const spari_history *h = fluid->history;
+    if (!h && s) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
+                                  "node forces are not kept; ask for SPAR_EFFECT_FLUID_HISTORY with "
+                                  "spar_member_set_effects before the member is committed");
+    }
+    fluid->asked |= SPARI_MUTE_HISTORY;
     if (fluid->mute & SPARI_MUTE_HISTORY) {
         memset(d ? (void *)d : (void *)f, 0, (size_t)(3 * n) * (d ? sizeof *d : sizeof *f));
         return SPAR_OK;

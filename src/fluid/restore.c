@@ -186,8 +186,7 @@ int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states)
     if (on && s && s->n > 0 && !kept) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_ARGUMENT, call,
-            "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY or spar_fluid_pull_forces), and the saved "
-            "run did not keep them");
+            "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
     }
     if (!kept || !s) {
         return SPAR_OK;

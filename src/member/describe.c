@@ -303,13 +303,14 @@ int spar_member_set_external(spar_member *member, int on) {
 int spar_member_set_effects(spar_member *member, int effects) {
     SPARI_QUIET;
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                    SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY;
+                    SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY |
+                    SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
                   (unsigned)(effects & ~all));
     member->effects = effects;
-    member->effects_given = 1;
+    member->effects_given = !(effects & SPAR_EFFECT_DEFAULT);
     return SPAR_OK;
 }
 

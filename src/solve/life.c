@@ -153,16 +153,18 @@ static int check_complete(spar_member *m) {
     return spari_fidelity_check(m);
 }
 
-/* What is in force: what was asked for (or everything), as far as the description gives it something to do. */
+/* What is in force: what was asked for, or is implied, as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m) {
-    int e = m->effects_given ? m->effects : ~0;
+    const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
+                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT;
+    int e = m->effects_given ? m->effects : m->effects | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
     int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
-    possible |= m->effects_given ? SPAR_EFFECT_FLUID_HISTORY : 0; /* unasked it comes with the fluids that need it */
+    possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }
 
@@ -238,6 +240,9 @@ int spari_member_build(spar_member *m) {
         int status = m->row->create(m);
         SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
         SPARI_TRY(status);
+    }
+    if (m->effects & SPAR_EFFECT_WORK) {
+        SPARI_TRY(spari_work_create(m));
     }
     spari_member_restart(m);
     return SPAR_OK;

@@ -94,26 +94,23 @@ void spari_work_restart(spar_member *m) {
     spari_member_reaction_in(m, w->room, w->reaction);
 }
 
-int spar_member_get_work(spar_member *member, int64_t capacity, double *work) {
+int spari_work_create(spar_member *m) {
+    spari_work *w = m->work = spari_zalloc(1, sizeof *w); /* loads along the line may come later: room for them too */
+    int ok = w && (w->fluid = spari_zalloc(6 * m->nodes, sizeof *w->fluid)) &&
+             (w->load = spari_zalloc(6 * m->nodes, sizeof *w->load)) &&
+             (w->room = spari_zalloc(spari_member_reaction_room(m) + 6 * m->nodes, sizeof *w->room));
+    SPARI_REQUIRE(m->session, ok, SPAR_ERR_MEMORY, "no memory for the work of '%s'", m->name);
+    return SPAR_OK;
+}
+
+int spar_member_get_work(const spar_member *member, int64_t capacity, double *work) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
-    spar_session *s = member->session;
-    SPARI_TRY(spari_need_capacity(s, __func__, capacity));
-    if (!member->work) {
-        SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
-                      "%s: '%s': the account begins with the first call; make it between steps", __func__,
-                      member->name);
-        spari_work *w = spari_zalloc(1, sizeof *w); /* loads along the line may come later: room for them too */
-        int ok = w && (w->fluid = spari_zalloc(6 * member->nodes, sizeof *w->fluid)) &&
-                 (w->load = spari_zalloc(6 * member->nodes, sizeof *w->load)) &&
-                 (w->room = spari_zalloc(spari_member_reaction_room(member) + 6 * member->nodes, sizeof *w->room));
-        if (!ok) {
-            spari_work_free(w);
-            return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, member->name);
-        }
-        member->work = w;
-        spari_work_restart(member);
-    }
+    SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
+    SPARI_REQUIRE(member->session, member->work, SPAR_ERR_STATE,
+                  "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK with spar_member_set_effects before it is "
+                  "committed",
+                  __func__, member->name);
     spari_fill(capacity, work, SPAR_WORK_COUNT, member->work->sum);
     return SPAR_OK;
 }

@@ -5,6 +5,8 @@
 
 #include "../member/structure.h"
 
+/* An account for the member. */
+int spari_work_create(spar_member *member);
 /* The step is accepted: now -> after, before `after` becomes `now`. */
 void spari_work_step(spar_member *member);
 /* The motion has been set anew: the account starts at zero. */

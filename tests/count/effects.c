@@ -107,7 +107,6 @@ typedef struct setting {
     int fluid;                   /* nodes of it */
     int velocity, moment;        /* pulled, pushed */
     int poses, accelerations;    /* pulled */
-    int history;                 /* pull_forces */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
     int unaudited, account;
@@ -179,6 +178,9 @@ static void make_beam(scene *s) {
     MUST(spar_member_set_root(*b, SPAR_ROOT_DRIVEN));
     if (s->is.effects & GIVEN) {
         MUST(spar_member_set_effects(*b, s->is.effects & ~GIVEN));
+    }
+    if (s->is.account) {
+        MUST(spar_member_set_effects(*b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
     }
     s->described = heap;
     MUST(spar_member_commit(*b));
@@ -284,13 +286,6 @@ static void make(scene *s, const setting *is) {
     } else if (is->fluid) {
         make_fluid(s);
     }
-    if (is->history) {
-        MUST(spar_fluid_pull_forces(s->fluid[0], 1, s->w));
-    }
-    if (is->account) {
-        double work[3];
-        MUST(spar_member_get_work(s->member[0], 3, work));
-    }
 }
 
 static void unmake(scene *s) {
@@ -313,9 +308,6 @@ static void exchange(scene *s) {
     MUST(spar_fluid_pull_motion(f, theta, s->x, is->velocity ? s->v : NULL));
     if (is->poses) {
         MUST(spar_fluid_pull_sections(f, theta, s->q, s->w, is->accelerations ? s->a : NULL));
-    }
-    if (is->history) {
-        MUST(spar_fluid_pull_forces(f, theta, s->w));
     }
     double follow = 1e-3 * (1 - 1e-3 * s->x[3 * s->n - 1]);
     for (int64_t j = s->n - 10; j < s->n; j++) {

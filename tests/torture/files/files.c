@@ -32,6 +32,7 @@ typedef struct scene {
     spar_session *session;
     spar_member *member[MEMBERS];
     int members;
+    spar_member *asked; /* whose effects are set; all others have the default, and node forces */
     spar_fluid *fluid[2];
     int fluids;
 } scene;
@@ -65,17 +66,18 @@ static spar_member *beam(scene *c, const char *title, int elements, int nodes) {
 
 static void add_fluid(scene *c, spar_member *m, const double *x) {
     spar_fluid *f = NULL;
-    double force[3] = {0};
     MUST(c->session, spar_fluid_create(m, "fluid", &f));
     MUST(c->session, spar_fluid_set_motion_nodes(f, 1, x));
     MUST(c->session, spar_fluid_set_force_nodes(f, 1, x));
     MUST(c->session, spar_fluid_map(f));
-    MUST(c->session, spar_fluid_pull_forces(f, 1, force)); /* node forces are kept from here on */
     c->fluid[c->fluids++] = f;
 }
 
 static void commit(scene *c) {
     for (int k = 0; k < c->members; k++) {
+        if (c->asked != c->member[k]) {
+            MUST(c->session, spar_member_set_effects(c->member[k], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+        }
         MUST(c->session, spar_member_commit(c->member[k]));
     }
 }
@@ -116,7 +118,8 @@ static void create_large(scene *c) {
     m = beam(c, "rigid", 1, 3);
     MUST(s, spar_member_set_fidelity(m, SPAR_FIDELITY_RIGID, 0));
     MUST(s, spar_member_set_root(m, SPAR_ROOT_FREE));
-    MUST(s, spar_member_set_effects(beam(c, "small", 1, 3), SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY));
+    c->asked = beam(c, "small", 1, 3);
+    MUST(s, spar_member_set_effects(c->asked, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_FLUID_HISTORY));
     body(c, 3);
     MUST(s, spar_point_create(s, "point", x, NULL, &m));
     (void)add(c, m);

@@ -372,6 +372,7 @@ static void act_step(void) {
     CALL(spar_session_set_log, s, quiet, NULL);
     spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
     CALL(spar_member_set_root, b, SPAR_ROOT_DRIVEN);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
@@ -434,6 +435,7 @@ static void act_fidelities(void) {
         spar_member *m = h.member[k] = begin_beam(s, name[k], what[k].elements, what[k].nodes, k);
         CALL(spar_member_set_root, m, what[k].root);
         CALL(spar_member_set_fidelity, m, what[k].kind, what[k].modes);
+        CALL(spar_member_set_effects, m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
         CALL(spar_member_commit, m);
         h.fluid[k] = begin_fluid(m, name[k], 10, &h.n[k], h.x[k]);
         CALL(spar_fluid_map, h.fluid[k]);
