@@ -99,14 +99,14 @@ static int find_centres(spar_aero *aero) {
 }
 
 int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) {
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "spar_aero_create: the place for the handle is NULL");
+    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the place for the handle is NULL", __func__);
     SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
-                  "spar_aero_create: %d blades%s; give one fluid per blade", blades, sections ? "" : " without fluids");
+                  "%s: %d blades%s; give one fluid per blade", __func__, blades, sections ? "" : " without fluids");
     int64_t n = 0;
     SPARI_TRY(check_blade_fluids(blades, sections, &n));
     spar_session *session = blades > 0 ? spari_fluid_session(sections[0]) : NULL;
     spar_aero *made = spari_zalloc(1, sizeof *made);
-    SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "spar_aero_create: no memory");
+    SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "%s: no memory", __func__);
     spari_gsl_quiet();
     made->session = session;
     made->blades = blades;
@@ -114,7 +114,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     made->rotor = (spari_rotor){.turn = 1, .blades = blades, .effects = SPAR_AERO_DRAG};
     int status = make_arrays(made);
     if (status != SPAR_OK) {
-        spari_fail(session, status, "spar_aero_create: no memory for %d blades of %lld sections", blades, (long long)n);
+        spari_fail(session, status, "%s: no memory for %d blades of %lld sections", __func__, blades, (long long)n);
     } else {
         for (int b = 0; b < blades; b++) {
             made->fluid[b] = sections[b];
@@ -179,13 +179,12 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_section: no section %lld; there are %lld, counted from 0", (long long)i,
-                  (long long)aero->n);
+                  "%s: no section %lld; there are %lld, counted from 0", __func__, (long long)i, (long long)aero->n);
     SPARI_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_section: section %lld: chord %g; give a length >= 0", (long long)i, chord);
-    SPARI_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_section: section %lld: the twist is not finite", (long long)i);
-    SPARI_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "spar_aero_set_section: section %lld: the polar is NULL",
+                  "%s: section %lld: chord %g; give a length >= 0", __func__, (long long)i, chord);
+    SPARI_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT, "%s: section %lld: the twist is not finite",
+                  __func__, (long long)i);
+    SPARI_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "%s: section %lld: the polar is NULL", __func__,
                   (long long)i);
     if (aero->blades == 0) {
         return SPAR_OK;
@@ -209,15 +208,15 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
                         double tip_radius) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "spar_aero_set_rotor: hub or axis is NULL");
+    SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "%s: hub or axis is NULL", __func__);
     SPARI_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
-                  SPAR_ERR_ARGUMENT, "spar_aero_set_rotor: hub or axis has an entry that is not finite");
+                  SPAR_ERR_ARGUMENT, "%s: hub or axis has an entry that is not finite", __func__);
     double length = hypot(hypot(axis[0], axis[1]), axis[2]);
     SPARI_REQUIRE(aero->session, isfinite(length) && length > 0.0, SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_rotor: the axis has length %g; give a direction, pointing downwind", length);
-    SPARI_REQUIRE(
-        aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius), SPAR_ERR_ARGUMENT,
-        "spar_aero_set_rotor: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius", hub_radius, tip_radius);
+                  "%s: the axis has length %g; give a direction, pointing downwind", __func__, length);
+    SPARI_REQUIRE(aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius),
+                  SPAR_ERR_ARGUMENT, "%s: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius", __func__,
+                  hub_radius, tip_radius);
     spari_rotor old = aero->rotor;
     int was_given = aero->rotor_given;
     for (int i = 0; i < 3; i++) {
@@ -239,7 +238,7 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
 int spar_aero_set_turn(spar_aero *aero, int turn) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_turn: %d; 1 for right-handed about the downwind axis, -1 for left-handed", turn);
+                  "%s: %d; 1 for right-handed about the downwind axis, -1 for left-handed", __func__, turn);
     aero->rotor.turn = turn;
     return SPAR_OK;
 }
@@ -247,7 +246,7 @@ int spar_aero_set_turn(spar_aero *aero, int turn) {
 int spar_aero_set_blades(spar_aero *aero, int total) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, total >= aero->blades, SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_blades: %d blades in all, but %d of them are on this rank", total, aero->blades);
+                  "%s: %d blades in all, but %d of them are on this rank", __func__, total, aero->blades);
     aero->rotor.blades = total;
     return SPAR_OK;
 }
@@ -256,7 +255,7 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
-                  "spar_aero_set_effects: %d has bits that are no SPAR_AERO_ effect", effects);
+                  "%s: %d has bits that are no SPAR_AERO_ effect", __func__, effects);
     SPARI_TRY(adopt(aero, effects, __func__));
     aero->effects_given = 1;
     return SPAR_OK;
@@ -416,7 +415,7 @@ int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, d
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     SPARI_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
-                  "spar_aero_get_rotor: there is no shaft; call spar_aero_set_rotor before spar_aero_solve");
+                  "%s: there is no shaft; call spar_aero_set_rotor before spar_aero_solve", __func__);
     double thrust_now, torque_now, speed;
     sum_rotor(aero, &thrust_now, &torque_now, &speed);
     double value[] = {thrust_now, torque_now, torque_now * speed}, *out[] = {thrust, torque, power};

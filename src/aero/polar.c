@@ -141,13 +141,11 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                       spar_polar **polar) {
     SPARI_QUIET;
     const double *const value[] = {cl, cd, cm};
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT,
-                  "spar_polar_create: no place for the polar; pass the address of a NULL");
-    SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "spar_polar_create: %lld rows; a polar needs at least 2",
-                  (long long)n);
-    SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "spar_polar_create: %lld rows are too many", (long long)n);
-    SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT,
-                  "spar_polar_create: alpha, cl or cd is NULL; only cm may be");
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: no place for the polar; pass the address of a NULL", __func__);
+    SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "%s: %lld rows; a polar needs at least 2", __func__, (long long)n);
+    SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);
+    SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT, "%s: alpha, cl or cd is NULL; only cm may be",
+                  __func__);
     SPARI_TRY(check_rows(n, alpha_rad, value));
     SPARI_TRY(check_turn(n, alpha_rad, value));
     spari_gsl_quiet();
@@ -155,7 +153,7 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
     spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;
     if (!table) {
         free(made);
-        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_polar_create: no memory for %lld rows", (long long)n);
+        return spari_fail(NULL, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)n);
     }
     made->table = table;
     *polar = made;
@@ -172,18 +170,16 @@ void spar_polar_destroy(spar_polar **polar) {
 
 int spar_polar_set_interpolation(spar_polar *polar, int kind) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_set_interpolation: the polar is NULL");
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
     SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
-                  "spar_polar_set_interpolation: no kind %d; there are SPAR_POLAR_LINEAR, _AKIMA and _CUBIC", kind);
+                  "%s: no kind %d; there are SPAR_POLAR_LINEAR, _AKIMA and _CUBIC", __func__, kind);
     const spari_table *old = polar->table;
     int64_t least = (int64_t)gsl_interp_type_min_size(fit_type(kind, old->full));
-    SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT,
-                  "spar_polar_set_interpolation: kind %d needs at least %lld rows, the polar has %lld", kind,
-                  (long long)least, (long long)old->n);
+    SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT, "%s: kind %d needs at least %lld rows, the polar has %lld",
+                  __func__, kind, (long long)least, (long long)old->n);
     const double *const value[] = {old->value[SPARI_CL], old->value[SPARI_CD], old->value[SPARI_CM]};
     spari_table *table = table_create(old->n, old->alpha, value, kind);
-    SPARI_REQUIRE(NULL, table, SPAR_ERR_MEMORY, "spar_polar_set_interpolation: no memory for %lld rows",
-                  (long long)old->n);
+    SPARI_REQUIRE(NULL, table, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)old->n);
     spari_table_release(polar->table);
     polar->table = table;
     return SPAR_OK;
@@ -227,8 +223,8 @@ double spari_table_moment(const spari_table *table, double place, gsl_interp_acc
 
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "spar_polar_evaluate: the polar is NULL");
-    SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "spar_polar_evaluate: alpha is not finite");
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
+    SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
     gsl_interp_accel accel = {0, 0, 0};
     int beyond;
     double place = spari_table_wrap(polar->table, alpha_rad, &beyond);

@@ -60,12 +60,12 @@ const double *spari_fluid_forces(const spar_fluid *fluid);
 
 /* State for save and load, as doubles: loads and kept node forces, with the places of these nodes. */
 int64_t spari_fluid_state_size(const spar_fluid *fluid);
-int spari_fluid_save(const spar_fluid *fluid, double *state);
+int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state);
 int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count);
 /* From the states of the fluids of this name and member on all ranks of the saved run (or this one alone, where the
    ranks are the same). ready: whether that can be done, with the memory for it; load: does it. The nodal loads, which
    are a sum, go to the fluid that `takes_loads`; node forces are found by the nodes' reference places. */
-int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states);
+int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const double *const *states);
 void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states, int takes_loads);
 
 #endif

@@ -23,22 +23,21 @@ int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, 
 /* ---- life ---- */
 
 int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid) {
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "spar_fluid_create: the member is NULL; create it first");
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = member->session;
-    SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_create: member '%s': the place for the handle is NULL",
+    SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "%s: member '%s': the place for the handle is NULL", __func__,
                   member->name);
     SPARI_REQUIRE(session, !session->trial, SPAR_ERR_STATE,
-                  "spar_fluid_create: member '%s': a trial run is under way; create fluids before or after it",
+                  "%s: member '%s': a trial run is under way; create fluids before or after it", __func__,
                   member->name);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
-                  "spar_fluid_create: member '%s': the fluid needs a name; messages use it", member->name);
+                  "%s: member '%s': the fluid needs a name; messages use it", __func__, member->name);
     spar_fluid *made = spari_zalloc(1, sizeof *made);
     char *copy = spari_zalloc((int64_t)strlen(name) + 1, 1);
     if (!made || !copy) {
         free(made);
         free(copy);
-        return spari_fail(session, SPAR_ERR_MEMORY, "spar_fluid_create: member '%s': no memory for a fluid",
-                          member->name);
+        return spari_fail(session, SPAR_ERR_MEMORY, "%s: member '%s': no memory for a fluid", __func__, member->name);
     }
     strcpy(copy, name);
     made->member = member, made->name = copy;

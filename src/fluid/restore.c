@@ -33,10 +33,10 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
     return state_size(fluid, head);
 }
 
-int spari_fluid_save(const spar_fluid *fluid, double *state) {
+int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     if (fluid->mean_theta != 0 && fluid->mean_theta != 1) {
         return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, "spar_session_save",
+            fluid, SPAR_ERR_STATE, call,
             "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1",
             fluid->mean_theta);
     }
@@ -134,7 +134,8 @@ static const double **find_nodes(const spar_fluid *fluid, int count, const doubl
 }
 
 /* Node forces from the states: to find (h NULL), or to copy. */
-static int take_forces(const spar_fluid *fluid, int count, const double *const *states, spari_history *h) {
+static int take_forces(const spar_fluid *fluid, const char *call, int count, const double *const *states,
+                       spari_history *h) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     int copy = h != NULL;
     double *places = spari_fluid_places(fluid, s);
@@ -159,18 +160,17 @@ static int take_forces(const spar_fluid *fluid, int count, const double *const *
     free(places);
     free(found);
     if (!ok) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, "spar_session_load", "no memory to find the node forces");
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory to find the node forces");
     }
     if (missing >= 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, "spar_session_load",
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, call,
                                   "force node %lld is not in the saved run; load with the nodes it had",
                                   (long long)missing);
     }
     return SPAR_OK;
 }
 
-int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states) {
-    const char *call = "spar_session_load";
+int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const double *const *states) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     int kept = 0, mapped_then = 0, on = fluid->history != NULL;
     spari_history_free(fluid->history_next); /* of a load that another rank could not do */
@@ -191,7 +191,7 @@ int spari_fluid_ready(spar_fluid *fluid, int count, const double *const *states)
     if (!kept || !s) {
         return SPAR_OK;
     }
-    SPARI_TRY(take_forces(fluid, count, states, NULL));
+    SPARI_TRY(take_forces(fluid, call, count, states, NULL));
     if (!on || fluid->history->n != s->n) { /* not in use before all ranks can load */
         fluid->history_next = spari_history_create(s->n, fluid->member->session->predictor);
         if (!fluid->history_next) {
@@ -236,6 +236,6 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
         taken |= gives;
     }
     if (kept && s) {
-        (void)take_forces(fluid, count, states, h); /* what can be missing was looked for before */
+        (void)take_forces(fluid, __func__, count, states, h); /* what can be missing was looked for before */
     }
 }

@@ -562,14 +562,13 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     free(w);
     if (!ok) {
         line_free(line);
-        return spari_fail(m->session, SPAR_ERR_MEMORY, "spar_beam_set_line_load: no memory for the loads of '%s'",
-                          m->name);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
     }
     return SPAR_OK;
 }
 
-static int check_line_load(const spar_member *m, int kind, int64_t n, const double *eta, const double *load) {
-    const char *call = "spar_beam_set_line_load";
+static int check_line_load(const spar_member *m, const char *call, int kind, int64_t n, const double *eta,
+                           const double *load) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
     SPARI_TRY(need_kind(m, call, kind));
@@ -597,12 +596,12 @@ int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double
     SPARI_QUIET;
     SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
-    int status = check_line_load(beam, kind, n, eta, load);
+    int status = check_line_load(beam, __func__, kind, n, eta, load);
     status = status == SPAR_OK && n > 0 ? line_build(beam, kind, n, eta, load, &line) : status;
     if (status == SPAR_OK) {
         line_free(&beam->applied->line[kind]);
         beam->applied->line[kind] = line;
     }
     drop_empty(beam);
-    return status;
+    return spari_named(beam->session, __func__, status);
 }

@@ -70,7 +70,7 @@ static void set_place(spar_member *m, const double x[3], const double q[4]) {
 int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       spar_member **member) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_point_create: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(check_place(session, __func__, name ? name : "", x, q));
     spar_member *m;
     SPARI_TRY(member_create(session, __func__, name, SPARI_POINT, member ? &m : NULL));

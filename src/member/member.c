@@ -45,8 +45,7 @@ double spari_member_length(const spar_member *m) {
 
 int spar_member_get_count(const spar_member *member, int64_t *nodes) {
     SPARI_TRY(spari_need_member(member, __func__));
-    SPARI_REQUIRE(member->session, nodes, SPAR_ERR_ARGUMENT, "spar_member_get_count: '%s': nodes is NULL",
-                  member->name);
+    SPARI_REQUIRE(member->session, nodes, SPAR_ERR_ARGUMENT, "%s: '%s': nodes is NULL", __func__, member->name);
     *nodes = member->nodes;
     return SPAR_OK;
 }
@@ -78,7 +77,7 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
 int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));
-    SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "spar_member_get_loads: '%s': load is NULL", member->name);
+    SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     const spar_session *s = member->session;
     int used = s->phase == SPARI_BEGUN || s->phase == SPARI_SOLVED || (s->phase == SPARI_CHECKED && s->iterating);
     const double *fluid = used ? member->load_used : member->load_pushed;

@@ -119,7 +119,7 @@ static int draw(const spar_fluid *fluid, const sketch *s, const char *path) {
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "spar_fluid_write_vtk: the fluid is NULL; create it first");
+    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it first", __func__);
     sketch s = {0};
     SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &s.count[0]));
     if (!spari_fluid_has_sections(fluid)) {
@@ -134,10 +134,10 @@ int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     s.line_end = spari_zalloc(s.n + 1, sizeof *s.line_end);
     s.line_point = spari_zalloc(3 * s.n, sizeof *s.line_point);
     int whole = s.table && s.q && s.q_map && s.con && s.flags && s.line_end && s.line_point;
-    int status = whole ? draw(fluid, &s, path)
-                       : spari_fail(spari_fluid_session(fluid), SPAR_ERR_MEMORY,
-                                    "spar_fluid_write_vtk: no memory for the %lld nodes of '%s'", (long long)s.n,
-                                    spari_fluid_name(fluid));
+    int status =
+        whole ? draw(fluid, &s, path)
+              : spari_fail(spari_fluid_session(fluid), SPAR_ERR_MEMORY, "%s: no memory for the %lld nodes of '%s'",
+                           __func__, (long long)s.n, spari_fluid_name(fluid));
     void *all[] = {s.table, s.q, s.q_map, s.con, s.flags, s.line_end, s.line_point};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);

@@ -164,8 +164,7 @@ int spar_member_write_vtk(const spar_member *member, const char *path) {
     s.end = spari_zalloc(member->elements, sizeof *s.end);
     int status = SPAR_OK;
     if (!work || !s.table || !s.node || !s.end) {
-        status =
-            spari_fail(member->session, SPAR_ERR_MEMORY, "spar_member_write_vtk: no memory for '%s'", member->name);
+        status = spari_fail(member->session, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, member->name);
     } else {
         status = fill_nodal(member, &at);
     }

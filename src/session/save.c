@@ -189,7 +189,7 @@ static double *put_room(spari_image *image, int64_t n) {
     return room;
 }
 
-static int put_own(spari_image *image, const spar_session *s) {
+static int put_own(spari_image *image, const spar_session *s, const char *call) {
     int64_t solvers = 0, fluids = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -217,7 +217,7 @@ static int put_own(spari_image *image, const spar_session *s) {
         int64_t n = spari_fluid_state_size(f);
         double *state = put_room(image, n);
         if (state) {
-            int status = spari_fluid_save(f, state);
+            int status = spari_fluid_save(f, call, state);
             spari_image_put_int(image, member_index(s, spari_fluid_member(f)));
             spari_image_put_text(image, spari_fluid_name(f));
             spari_image_put_int(image, n);
@@ -235,8 +235,8 @@ static int agree(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-static int no_memory_for_state(spar_session *s, const char *call) {
-    return spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the state of the session", call);
+static int no_memory_for_state(spar_session *s) {
+    return spari_fail(s, SPAR_ERR_MEMORY, "no memory for the state of the session");
 }
 
 /* The words of all ranks, rank by rank, each followed by a word of the exchange: rank r has all[first[r]] to
@@ -245,7 +245,7 @@ static int gather_images(spar_session *s, const spari_image *mine, double **all,
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     double *sizes = spari_zalloc(2 * ranks, sizeof *sizes);
     *first = spari_zalloc(ranks + 1, sizeof **first);
-    int status = agree(s, sizes && *first ? SPAR_OK : no_memory_for_state(s, "spar_session_save"));
+    int status = agree(s, sizes && *first ? SPAR_OK : no_memory_for_state(s));
     if (status == SPAR_OK) {
         for (int r = 0; r < ranks; r++) {
             (*first)[r + 1] = 2 * (r + 1);
@@ -258,7 +258,7 @@ static int gather_images(spar_session *s, const spari_image *mine, double **all,
             (*first)[r + 1] = (*first)[r] + (int64_t)sizes[2 * r] + 1;
         }
         *all = spari_zalloc((*first)[ranks], sizeof **all);
-        status = agree(s, *all ? SPAR_OK : no_memory_for_state(s, "spar_session_save"));
+        status = agree(s, *all ? SPAR_OK : no_memory_for_state(s));
     }
     free(sizes);
     SPARI_TRY(status);
@@ -293,11 +293,11 @@ static int write_file(spar_session *s, const double *all, const int64_t *first, 
         spari_image_put_int(&image, n);
         spari_image_put(&image, all + first[r], n);
     }
-    int status = image.failed ? no_memory_for_state(s, "spar_session_save") : SPAR_OK;
+    int status = image.failed ? no_memory_for_state(s) : SPAR_OK;
     if (status == SPAR_OK) {
         status = spari_image_write(&image, path, why, sizeof why);
         if (status != SPAR_OK) {
-            (void)spari_fail(s, status, "spar_session_save: %s", why);
+            (void)spari_fail(s, status, "%s", why);
         }
     }
     spari_image_free(&image);
@@ -325,8 +325,8 @@ int spar_session_save(const spar_session *session, const char *path) {
     int status = check_call(s, __func__, path);
     status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = put_own(&own, s);
-    status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s, __func__) : status);
+    status = put_own(&own, s, __func__);
+    status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s) : status);
     if (status == SPAR_OK) {
         status = gather_images(s, &own, &all, &first);
     }
@@ -336,7 +336,7 @@ int spar_session_save(const spar_session *session, const char *path) {
     spari_image_free(&own);
     free(all);
     free(first);
-    return status;
+    return spari_named(s, __func__, status);
 }
 
 /* ---- load: first pass ---- */
@@ -350,6 +350,7 @@ typedef struct record {
 } record;
 
 typedef struct reading {
+    const char *call; /* that reads */
     spari_image image;
     int64_t common;          /* where the clock begins */
     int phase;               /* where the step stood */
@@ -375,23 +376,22 @@ static void end_loading(reading *l) {
 }
 
 static int broken(spar_session *s) {
-    return spari_fail(s, SPAR_ERR_IO, "spar_session_load: the file does not hold what it should; take an older file");
+    return spari_fail(s, SPAR_ERR_IO, "the file does not hold what it should; take an older file");
 }
 
 static int compare_scene(spar_session *s, reading *l) {
-    const char *call = "spar_session_load";
     l->ranks = (int)spari_image_get_int(&l->image);
     int64_t members = spari_image_get_int(&l->image);
     SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
-                  "%s: the file is of another session: it has %lld members, this one %d", call, (long long)members,
+                  "the file is of another session: it has %lld members, this one %d", (long long)members,
                   s->member_count);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, spari_image_is_text(&l->image, m->name), SPAR_ERR_ARGUMENT,
-                      "%s: the file is of another session: member '%s' is not where it should be; create the same "
+                      "the file is of another session: member '%s' is not where it should be; create the same "
                       "members in the same order",
-                      call, m->name);
+                      m->name);
         SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
-                      "%s: the file is of another session: member '%s' is described otherwise there", call, m->name);
+                      "the file is of another session: member '%s' is described otherwise there", m->name);
     }
     return l->image.failed || l->ranks < 1 ? broken(s) : SPAR_OK;
 }
@@ -452,10 +452,9 @@ static int check_coupling(spar_session *s, reading *l) {
         }
         return l->image.failed || l->image.at != end ? broken(s) : SPAR_OK;
     }
-    SPARI_REQUIRE(
-        s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
-        "spar_session_load: the file is from the middle of a step and the coupling is set otherwise here; make "
-        "the same settings first (they may be changed when the step is accepted)");
+    SPARI_REQUIRE(s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "the file is from the middle of a step and the coupling is set otherwise here; make "
+                  "the same settings first (they may be changed when the step is accepted)");
     l->image.at = end;
     return SPAR_OK;
 }
@@ -487,7 +486,7 @@ static int compare_fluids(spar_session *s, reading *l, int rank) {
     for (int64_t i = 0; i < fluids && !l->image.failed; i++) {
         record *more = realloc(l->records, (size_t)(l->record_count + 1) * sizeof *more);
         if (!more) {
-            return no_memory_for_state(s, "spar_session_load");
+            return no_memory_for_state(s);
         }
         l->records = more;
         record *r = more + l->record_count++;
@@ -504,7 +503,7 @@ static int compare_fluids(spar_session *s, reading *l, int rank) {
 static int check_own(spar_session *s, reading *l) {
     l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
     if (!l->solution) {
-        return no_memory_for_state(s, "spar_session_load");
+        return no_memory_for_state(s);
     }
     for (int rank = 0; rank < l->ranks; rank++) {
         int64_t count = spari_image_get_int(&l->image), end;
@@ -534,7 +533,7 @@ static int check_image(spar_session *s, reading *l) {
     for (spar_member *m = s->members; m; m = m->next) {
         pass_member(&t, m);
         if (l->image.no_memory) {
-            return no_memory_for_state(s, "spar_session_load");
+            return no_memory_for_state(s);
         }
     }
     if (l->image.failed) {
@@ -569,7 +568,7 @@ static int same_fluids(const spar_session *s, reading *l) {
 static int find_takers(spar_session *s, reading *l, double **takers) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     *takers = spari_zalloc(l->record_count * ranks + 1, sizeof **takers);
-    SPARI_TRY(agree(s, *takers ? SPAR_OK : no_memory_for_state(s, "spar_session_load")));
+    SPARI_TRY(agree(s, *takers ? SPAR_OK : no_memory_for_state(s)));
     for (int64_t i = 0; i < l->record_count; i++) {
         for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
             if (is_record_of(l, l->records + i, s, f)) {
@@ -583,11 +582,10 @@ static int find_takers(spar_session *s, reading *l, double **takers) {
         while (taker < ranks && (*takers)[i * ranks + taker] == 0) {
             taker++;
         }
-        SPARI_REQUIRE(
-            s, taker < ranks, SPAR_ERR_ARGUMENT,
-            "spar_session_load: fluid %lld of the file has none of its name and member here; create the fluids "
-            "of the saved run first",
-            (long long)i);
+        SPARI_REQUIRE(s, taker < ranks, SPAR_ERR_ARGUMENT,
+                      "fluid %lld of the file has none of its name and member here; create the fluids "
+                      "of the saved run first",
+                      (long long)i);
         (*takers)[i * ranks] = taker; /* of all the row is for, the first entry is left */
     }
     return SPAR_OK;
@@ -604,7 +602,7 @@ static int assign_records(spar_session *s, reading *l, int exact, const double *
     l->state_count = spari_zalloc(l->fluid_count, sizeof *l->state_count);
     l->takes_loads = spari_zalloc(l->fluid_count, sizeof *l->takes_loads);
     if (!l->states || !l->state_count || !l->takes_loads) {
-        return no_memory_for_state(s, "spar_session_load");
+        return no_memory_for_state(s);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         l->takes_loads[k] = exact;
@@ -621,10 +619,9 @@ static int assign_records(spar_session *s, reading *l, int exact, const double *
             l->takes_loads[k] |= !exact && takers[i * ranks] == rank;
             own = exact ? i + 1 : own;
         }
-        SPARI_REQUIRE(s, l->state_count[k] > 0, SPAR_ERR_ARGUMENT,
-                      "spar_session_load: fluid '%s' of member '%s' is not in the file", spari_fluid_name(f),
-                      spari_fluid_member(f)->name);
-        SPARI_TRY(spari_fluid_ready(f, l->state_count[k], l->states + at));
+        SPARI_REQUIRE(s, l->state_count[k] > 0, SPAR_ERR_ARGUMENT, "fluid '%s' of member '%s' is not in the file",
+                      spari_fluid_name(f), spari_fluid_member(f)->name);
+        SPARI_TRY(spari_fluid_ready(f, l->call, l->state_count[k], l->states + at));
         at += l->state_count[k];
     }
     return SPAR_OK;
@@ -675,7 +672,7 @@ static int fetch(spar_session *s, reading *l, const char *path) {
     if (root) {
         status = spari_image_read(&l->image, path, why, sizeof why);
         if (status != SPAR_OK) {
-            (void)spari_fail(s, status, "spar_session_load: %s", why);
+            (void)spari_fail(s, status, "%s", why);
         }
     }
     SPARI_TRY(agree(s, status));
@@ -683,7 +680,7 @@ static int fetch(spar_session *s, reading *l, const char *path) {
     if (!root) {
         l->image.word = spari_zalloc(l->image.count, sizeof *l->image.word);
     }
-    SPARI_TRY(agree(s, l->image.word ? SPAR_OK : no_memory_for_state(s, "spar_session_load")));
+    SPARI_TRY(agree(s, l->image.word ? SPAR_OK : no_memory_for_state(s)));
     return spari_comm_broadcast(s->comm, l->image.word, 8 * l->image.count, s->message, sizeof s->message);
 }
 
@@ -691,7 +688,7 @@ int spar_session_load(spar_session *session, const char *path) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    reading l = {0};
+    reading l = {.call = __func__};
     int status = check_call(s, __func__, path);
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
@@ -711,5 +708,5 @@ int spar_session_load(spar_session *session, const char *path) {
         put_in_force(s, &l);
     }
     end_loading(&l);
-    return status;
+    return spari_named(s, __func__, status);
 }

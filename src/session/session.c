@@ -28,12 +28,12 @@ static spar_session *session_new(void) {
 }
 
 int spar_session_create(spar_session **session) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_create: no place for the new session (NULL)");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: no place for the new session (NULL)", __func__);
     spar_session *s = session_new();
     int status = s ? spari_comm_create_self(&s->comm) : SPAR_ERR_MEMORY;
     if (!s || status != SPAR_OK) {
         free(s);
-        return spari_fail(NULL, SPAR_ERR_MEMORY, "spar_session_create: no memory for the session");
+        return spari_fail(NULL, SPAR_ERR_MEMORY, "%s: no memory for the session", __func__);
     }
     *session = s;
     return SPAR_OK;
@@ -85,7 +85,7 @@ void spar_session_destroy(spar_session **session) {
 }
 
 int spar_session_set_log(spar_session *session, spar_log log, void *context) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_set_log: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     session->log = log;
     session->log_context = context;
     return SPAR_OK;
@@ -93,7 +93,7 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
 
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_session_get_time: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (t) {
         *t = session->time;
     }

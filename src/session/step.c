@@ -25,8 +25,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
-static int check_begin(spar_session *s, double dt) {
-    const char *call = "spar_step_begin";
+static int check_begin(spar_session *s, const char *call, double dt) {
     if (s->phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
     }
@@ -65,12 +64,12 @@ static void hold_root(spar_member *m) {
 
 int spar_step_begin(spar_session *session, double dt) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_begin: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, dt)));
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, __func__, dt)));
     if (anew) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
@@ -128,7 +127,7 @@ static int check_finite(const spar_member *m) {
 
 int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_solve: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
@@ -158,16 +157,16 @@ int spar_step_solve(spar_session *session) {
 /* ---- check ---- */
 
 /* status: of what this rank's host has done since the solution */
-static int check_iteration(spar_session *s, int status, int *done) {
+static int check_iteration(spar_session *s, const char *call, int status, int *done) {
     int ended = 0, solved = s->phase == SPARI_SOLVED;
     if (s->phase != SPARI_SOLVED) {
-        status = wrong_phase(s, "spar_step_check", "call spar_step_solve, then push, then check");
+        status = wrong_phase(s, call, "call spar_step_solve, then push, then check");
     } else if (!done) {
-        status = spari_fail(s, SPAR_ERR_ARGUMENT, "spar_step_check: done is NULL");
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: done is NULL", call);
     } else if (status == SPAR_OK) {
-        status = spari_session_pushes(s, "spar_step_check");
+        status = spari_session_pushes(s, call);
     }
-    status = spari_enter(s, "spar_step_check", status);
+    status = spari_enter(s, call, status);
     if (status != SPAR_OK) {
         s->failed = s->failed || (solved && status != SPAR_ERR_COMM); /* alike on all ranks: they were in this call */
         return status;
@@ -188,9 +187,9 @@ static int check_iteration(spar_session *s, int status, int *done) {
 
 int spar_step_check(spar_session *session, int *done) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_check: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_lend_refuse(session, __func__));
-    return check_iteration(session, SPAR_OK, done);
+    return check_iteration(session, __func__, SPAR_OK, done);
 }
 
 /* ---- accept and reject ---- */
@@ -205,7 +204,7 @@ static void shift_history(spar_session *s, spar_member *m) {
 
 int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_accept: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = SPAR_OK;
@@ -255,7 +254,7 @@ static void reject(spar_session *s) {
 
 int spar_step_reject(spar_session *session) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "spar_step_reject: the session is NULL; create it first");
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
@@ -266,15 +265,15 @@ int spar_step_reject(spar_session *session) {
 
 /* ---- the whole step ---- */
 
-static int iterate(spar_session *s, spar_fluid_solver solve, void *context) {
+static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int done = 0;
     while (!done) {
         SPARI_TRY(spar_step_solve(s));
-        int status = spari_lend(s, "spar_step", solve, s->dt, context);
+        int status = spari_lend(s, call, solve, s->dt, context);
         if (status == SPAR_ERR_COMM) {
             return status;
         }
-        SPARI_TRY(check_iteration(s, status, &done));
+        SPARI_TRY(check_iteration(s, call, status, &done));
     }
     return SPAR_OK;
 }
@@ -283,7 +282,7 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
     SPARI_QUIET;
     SPARI_TRY(session ? spari_lend_refuse(session, __func__) : SPAR_OK);
     SPARI_TRY(spar_step_begin(session, dt));
-    int status = iterate(session, solve, context);
+    int status = iterate(session, __func__, solve, context);
     if (iterations) {
         *iterations = session->iteration;
     }

@@ -15,7 +15,6 @@ enum { GROUPS = 3 };
 
 static const int GROUP[6] = {2, 1, 0, 2, 0, 1}; /* of axial, shear y, shear z, torsion, bending y, bending z */
 static const char *const GROUP_NAME[GROUPS] = {"bending about y", "bending about z", "torsion and stretch"};
-static const char CALL[] = "spar_beam_set_modal_damping";
 
 /* x^T B x of both shapes [2][unique][6] at the state q */
 static void modal_damping(const spari_body *b, const double *q, const double *x, double *S, double *S0, double c[2]) {
@@ -127,22 +126,23 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     int64_t most = 1 + (mode[0] > mode[1] ? mode[0] : mode[1]), u = m->body->unique,
             size = 36 * (int64_t)m->per_element * m->per_element;
     double *all = spari_zalloc(most * (1 + 6 * m->nodes) + 7 * u + 12 * u + 2 * size, sizeof *all);
-    SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, m->name);
+    SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 12 * u;
     double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
     int own[2] = {0, 0}, status = spar_member_solve_modes(m, most, all, shapes);
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
             status = spari_fail(s, SPAR_ERR_NUMERIC,
-                                "%s: '%s': mode %lld moves it as a rigid body and cannot be damped; the first that "
+                                "member '%s': mode %lld moves it as a rigid body and cannot be damped; the first that "
                                 "can is %d",
-                                CALL, m->name, (long long)mode[k], rigid_modes(m));
+                                m->name, (long long)mode[k], rigid_modes(m));
             break;
         }
         omega[k] = 6.283185307179586 * all[mode[k]];
         if (!(omega[k] > 0) || !isfinite(omega[k])) {
-            status = spari_fail(s, SPAR_ERR_NUMERIC, "%s: '%s': mode %lld has the frequency %g Hz and cannot be damped",
-                                CALL, m->name, (long long)mode[k], all[mode[k]]);
+            status =
+                spari_fail(s, SPAR_ERR_NUMERIC, "member '%s': mode %lld has the frequency %g Hz and cannot be damped",
+                           m->name, (long long)mode[k], all[mode[k]]);
         }
         spari_member_to_unique(m, 6, shapes + 6 * m->nodes * mode[k], x + 6 * u * k);
     }
@@ -156,13 +156,14 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
         }
     }
     SPARI_REQUIRE(s, own[0] != own[1], SPAR_ERR_ARGUMENT,
-                  "%s: '%s': modes %lld and %lld are both mostly %s, where damping grows with the frequency; choose "
+                  "member '%s': modes %lld and %lld are both mostly %s, where damping grows with the frequency; choose "
                   "modes of two kinds, such as the first flapwise and the first edgewise",
-                  CALL, m->name, (long long)mode[0], (long long)mode[1], GROUP_NAME[own[0]]);
-    SPARI_REQUIRE(s, solve_ratios((const double(*)[GROUPS][GROUPS])share, own, ratio, groups) == 0, SPAR_ERR_NUMERIC,
-                  "%s: '%s': no damping gives modes %lld and %lld the ratios %g and %g: they share too much of their "
-                  "strains; bring the ratios nearer to each other",
-                  CALL, m->name, (long long)mode[0], (long long)mode[1], ratio[0], ratio[1]);
+                  m->name, (long long)mode[0], (long long)mode[1], GROUP_NAME[own[0]]);
+    SPARI_REQUIRE(
+        s, solve_ratios((const double(*)[GROUPS][GROUPS])share, own, ratio, groups) == 0, SPAR_ERR_NUMERIC,
+        "member '%s': no damping gives modes %lld and %lld the ratios %g and %g: they share too much of their "
+        "strains; bring the ratios nearer to each other",
+        m->name, (long long)mode[0], (long long)mode[1], ratio[0], ratio[1]);
     for (int i = 0; i < 6; i++) {
         mu[i] = groups[GROUP[i]];
     }
@@ -171,35 +172,35 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
 
 static int check_pair(const spar_member *m, const int64_t mode[2], const double ratio[2]) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", CALL, m->name);
+    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "member '%s' is not a beam", m->name);
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                  "%s: '%s' is not committed, its modes are not known; call it "
+                  "member '%s' is not committed, its modes are not known; call it "
                   "between spar_member_commit and the first step",
-                  CALL, m->name);
+                  m->name);
     SPARI_REQUIRE(s, !s->started && s->phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: '%s': the clock has started; choose the damping before the first step", CALL, m->name);
-    SPARI_REQUIRE(s, m->body && !(m->effects_given && !(m->effects & SPAR_EFFECT_DAMPING)), SPAR_ERR_STATE,
-                  "%s: '%s': damping is off; leave SPAR_EFFECT_DAMPING in its effects and give spar_beam_set_damping "
-                  "any value before commit, or set no effects",
-                  CALL, m->name);
+                  "member '%s': the clock has started; choose the damping before the first step", m->name);
+    SPARI_REQUIRE(
+        s, m->body && !(m->effects_given && !(m->effects & SPAR_EFFECT_DAMPING)), SPAR_ERR_STATE,
+        "member '%s': damping is off; leave SPAR_EFFECT_DAMPING in its effects and give spar_beam_set_damping "
+        "any value before commit, or set no effects",
+        m->name);
     SPARI_REQUIRE(s, m->row->renew, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' is of a lower fidelity, made up at commit; find mu with an exact member and hand it to "
+                  "member '%s' is of a lower fidelity, made up at commit; find mu with an exact member and hand it to "
                   "spar_beam_set_damping",
-                  CALL, m->name);
-    SPARI_REQUIRE(s, mode && ratio, SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", CALL, m->name, mode ? "ratio" : "mode");
+                  m->name);
+    SPARI_REQUIRE(s, mode && ratio, SPAR_ERR_ARGUMENT, "member '%s': %s is NULL", m->name, mode ? "ratio" : "mode");
     for (int k = 0; k < 2; k++) {
-        SPARI_REQUIRE(s, mode[k] >= 0 && mode[k] < 6 * m->nodes, SPAR_ERR_ARGUMENT, "%s: '%s': there is no mode %lld",
-                      CALL, m->name, (long long)mode[k]);
+        SPARI_REQUIRE(s, mode[k] >= 0 && mode[k] < 6 * m->nodes, SPAR_ERR_ARGUMENT,
+                      "member '%s': there is no mode %lld", m->name, (long long)mode[k]);
         SPARI_REQUIRE(s, ratio[k] > 0 && ratio[k] < 1e3, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': ratio %d is %g; give a damping ratio above 0, such as 0.005", CALL, m->name, k,
-                      ratio[k]);
+                      "member '%s': ratio %d is %g; give a damping ratio above 0, such as 0.005", m->name, k, ratio[k]);
     }
     return SPAR_OK;
 }
 
 int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]) {
     SPARI_QUIET;
-    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", CALL);
+    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = beam->session;
     double found[6];
     spari_body *body = NULL;
@@ -211,17 +212,17 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
         memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
         if (!(beam->effects & SPAR_EFFECT_LARGE_ROTATION) &&
             spari_body_linearise(body, beam->effects & SPAR_EFFECT_GRAVITY)) {
-            status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, beam->name);
+            status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
         }
     }
     int given = mode && ratio;
     const spari_alike alike[] = {
         spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
         spari_real("ratio[0]", given ? ratio[0] : 0), spari_real("ratio[1]", given ? ratio[1] : 0)};
-    status = spari_member_enter(beam, CALL, alike, 4, status);
+    status = spari_member_enter(beam, __func__, alike, 4, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
-        return spari_named(s, CALL, status);
+        return spari_named(s, __func__, status);
     }
     spari_body_free(beam->body);
     beam->body = body;
