@@ -102,6 +102,7 @@ static void step(writer *w) {
         part(w, 90, CALL_spar_step_check);
     }
     part(w, 80, CALL_spar_step_accept);
+    part(w, 10, CALL_spar_session_solve_static);
 }
 
 /* Advice makes hundreds of runs, a report dozens: they are asked for seldom, or all the time is theirs. */
