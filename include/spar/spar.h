@@ -504,9 +504,8 @@ enum {
 };
 /* work[capacity]: out, by SPAR_WORK_*, NULL: not wanted. Of the accepted steps since the motion was set last (commit,
    static solution, initial velocity, load). Kinetic + strain + potential + dissipated energy less the sum of the three
-   stays constant to the order of the integrator; of a linear or modal member on a root that turns but for the shortening
-   of the bent beam, which they neglect. Local.
-   SPAR_ERR_STATE: SPAR_EFFECT_WORK was not asked for. */
+   stays constant to the order of the integrator; of a linear or modal member on a root that turns but for the
+   shortening of the bent beam, which they neglect. Local. SPAR_ERR_STATE: SPAR_EFFECT_WORK was not asked for. */
 SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, double *work);
 /* Static equilibrium of one member under gravity, all kept loads and the fluid loads in use, from the present state;
    velocities become 0. With the fluid's answer: spar_session_solve_static. Between steps. Collective.
