@@ -40,10 +40,14 @@ enum {
     SPAR_AERO_FLAG_BEYOND_POLAR = 4 /* angle of attack outside the rows of the polar: the nearer end is used */
 };
 
-/* A polar: n >= 2 rows, alpha strictly increasing, over a full turn at most. cm NULL: 0. The arrays are copied. A
-   table over the full turn has the same coefficients in its first and last row and goes round; an angle that a
-   shorter one does not cover takes the nearer end's values and flags the section. Refused tables name the row
-   (spar_session_message(NULL)). */
+/* A polar, a table of coefficients. One over the full turn has the same coefficients in its first and last row and goes
+   round; an angle that a shorter one does not cover takes the nearer end's values and flags the section. Refused tables
+   name the row (spar_session_message(NULL)).
+     n: in, rows, >= 2
+     alpha_rad[n]: in, strictly increasing, over a full turn at most
+     cl[n], cd[n]: in
+     cm[n]: in, NULL: 0
+     polar: out */
 SPAR_API int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm,
                                spar_polar **polar);
 /* SPAR_POLAR_LINEAR (default), _AKIMA or _CUBIC; periodic for a table over the full turn. Sections set before keep
@@ -54,19 +58,26 @@ SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, doub
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
-/* A rotor or wing: one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with the
-   same number n >= 2 of sections, in order from root to tip at different places. blades 0 with NULL: a rank without
-   blades. The fluids stay the caller's and must outlive the object's last solve; map them anew and the object must be
-   made anew. */
+/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve; map them anew and the object
+   must be made anew.
+     blades: in, on this rank; 0 with NULL: a rank without blades
+     sections[blades]: in, one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with
+           the same number n >= 2 of sections, in order from root to tip at different places
+     aero: out */
 SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero);
 SPAR_API void spar_aero_destroy(spar_aero **aero);
-/* Section i of every blade: chord >= 0 in m, twist in rad, polar. Positive twist turns the
-   leading edge into the wind and lowers the angle of attack, i.e. minus a right-handed turn about the section's x. */
+/* Section i of every blade.
+     i: in, 0 to n-1
+     chord: in, m, >= 0
+     twist: in, rad; positive turns the leading edge into the wind and lowers the angle of attack, i.e. minus a
+           right-handed turn about the section's x
+     polar: in */
 SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
-/* The shaft: a point of its axis in m, its direction (any length but 0), pointing downwind, the radii in m, measured
-   from the axis, where the blades begin and end. The first call also takes the sections' distances from the axis in
-   the reference configuration, which the tip and hub losses are computed with (a bent blade's tip is still its tip);
-   later calls move the shaft. */
+/* The shaft. The first call also takes the sections' distances from the axis in the reference configuration, which the
+   tip and hub losses are computed with (a bent blade's tip is still its tip); later calls move the shaft.
+     hub[3]: in, a point of its axis, m
+     axis[3]: in, its direction, pointing downwind, any length but 0
+     hub_radius, tip_radius: in, m, from the axis, where the blades begin and end */
 SPAR_API int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius,
                                  double tip_radius);
 /* How the blades are made: 1 (default) for a rotor that turns right-handed about the downwind axis (clockwise for who
@@ -78,26 +89,36 @@ SPAR_API int spar_aero_set_turn(spar_aero *aero, int turn);
 SPAR_API int spar_aero_set_blades(spar_aero *aero, int total);
 /* SPAR_AERO_* or-ed. Default: drag; moments where a polar has any; all of momentum theory once the rotor is set. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
-/* Pulls the motion at theta, finds the loads in the wind inflow [blades][n][3] (m/s, global axes, undisturbed by the
-   rotor), and pushes them. Loads per length are linear between the sections and nothing lies beyond the first and the
-   last; each interval (as long as its ends are apart in the reference configuration) gives its ends the consistent
-   shares L/6 (2 f1 + f2), L/6 (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before. No
-   memory is taken. After a failure the loads are as they were (and what the last solve found, but where it is
-   SPAR_ERR_NUMERIC), and the check of a step under way fails on all ranks unless a later solve succeeds. */
+/* Pulls the motion at theta, finds the loads in the wind, and pushes them.
+     density: in, kg/m^3
+     inflow[blades][n][3]: in, m/s, global axes, undisturbed by the rotor
+     theta: in, as of spar_fluid_pull_motion
+   Loads per length are linear between the sections and nothing lies beyond the first and the last; each interval (as
+   long as its ends are apart in the reference configuration) gives its ends the consistent shares L/6 (2 f1 + f2), L/6
+   (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before. No memory is taken. After a
+   failure the loads are as they were (and what the last solve found, but where it is SPAR_ERR_NUMERIC), and the check
+   of a step under way fails on all ranks unless a later solve succeeds. */
 SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta);
-/* Of the blades on this rank in the last solve, needs set_rotor: force along the axis, moment about the axis
-   (right-handed), moment times rotor speed, which is the mean of the blades' first sections' angular velocity about
-   the axis. Any NULL. */
+/* Of the blades on this rank in the last solve, needs set_rotor. Each NULL: not wanted.
+     thrust: out, N, force along the axis
+     torque: out, N m, moment about the axis, right-handed
+     power: out, W, moment times rotor speed, which is the mean of the blades' first sections' angular velocity about
+           the axis */
 SPAR_API int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power);
-/* In the last solve, [blades][n] each, any NULL: angle of attack, coefficients, inductions: the flow is (1 - a) of
-   the free flow across the disc and (1 + a_tangential) of that along it, both taken in the section's plane; 0 where
-   that free flow is 0. */
+/* In the last solve. Each NULL: not wanted.
+     alpha[blades][n]: out, angle of attack, rad
+     cl[blades][n], cd[blades][n]: out, coefficients
+     a[blades][n], a_tangential[blades][n]: out, inductions: the flow is (1 - a) of the free flow across the disc and (1
+           + a_tangential) of that along it, both taken in the section's plane; 0 where that free flow is 0 */
 SPAR_API int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
                                     double *a_tangential);
-/* SPAR_AERO_FLAG_* or-ed [blades][n], and how many sections had no root; any NULL. */
+/* In the last solve. Each NULL: not wanted.
+     flags[blades][n]: out, SPAR_AERO_FLAG_* or-ed
+     no_root: out, how many sections had no root */
 SPAR_API int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root);
-/* Loads, global axes: per unit of span [blades][n][6] (force, moment), and as pushed, force and moment
-   [blades][n][3]; any NULL. */
+/* Loads in the last solve, global axes. Each NULL: not wanted.
+     per_length[blades][n][6]: out, N/m, N m/m, force and moment per unit of span
+     force[blades][n][3], moment[blades][n][3]: out, N, N m, as pushed */
 SPAR_API int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment);
 
 /* Rows of the report of effects. */
@@ -113,14 +134,17 @@ enum {
 /* Name of a row, "tip loss"; static storage; "" for what is no row. */
 SPAR_API const char *spar_aero_effect_name(int row);
 /* What each effect of this object is worth in the scene as it stands, by trials as of spar_session_try with the effect
-   and without it. session: in, that of the blades, which a rank without blades cannot tell. dt, steps, before, context:
-   in, as there; solve: in, the host's, which calls spar_aero_solve on this object. rows, columns: in,
-   the capacity of the table; table[rows][columns]: out, by SPAR_AERO_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows),
-   NULL: not wanted, columns as of spar_session_report_effects; size: change of the fluid's loads in the first step,
-   relative to these. In force on all ranks where on any: what is on and has something to do (losses and swirl with
-   induction, hub loss with a hub radius, moments with polars that have some). Collective over the session. The effects
-   are as before afterwards, also after a failure; the results of the last solve are then those of a trial, and
-   spar_session_try compares with the run that had all effects. */
+   and without it. Collective over the session.
+     session: in, that of the blades, which a rank without blades cannot tell
+     dt, steps, before, context: in, as of spar_session_try
+     solve: in, the host's, which calls spar_aero_solve on this object
+     rows, columns: in, the capacity of the table
+     table[rows][columns]: out, by SPAR_AERO_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not wanted
+   Columns are as of spar_session_report_effects; size: change of the fluid's loads in the first step, relative to
+   these. In force on all ranks where on any: what is on and has something to do (losses and swirl with induction, hub
+   loss with a hub radius, moments with polars that have some). The effects are as before afterwards, also after a
+   failure; the results of the last solve are then those of a trial, and spar_session_try compares with the run that had
+   all effects. */
 SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps,
                                       spar_before_step before, spar_fluid_solver solve, void *context, int64_t rows,
                                       int64_t columns, double *table);
