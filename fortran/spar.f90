@@ -124,6 +124,7 @@ module spar
     generic :: report_effects => session_report_effects_64, session_report_effects_32
     procedure, private :: session_advise_64, session_advise_32
     generic :: advise => session_advise_64, session_advise_32
+    procedure :: apply_advice => session_apply_advice
     procedure, private :: session_assign
     generic :: assignment(=) => session_assign
     final :: session_final
@@ -1034,6 +1035,15 @@ contains
 
     call self%advise(tolerance, dt, int(steps, c_int64_t), advice, before, solve, context, stat, errmsg)
   end subroutine session_advise_32
+
+  subroutine session_apply_advice(self, dt, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: dt
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_apply_advice(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_apply_advice
 
   ! ---- members ----
 

@@ -883,6 +883,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_advise
 
+    function spar_session_apply_advice(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: dt
+      integer(c_int) :: status
+    end function spar_session_apply_advice
+
     function spar_member_get_advice(member, fidelity, modes, nodes_per_element, points) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member

@@ -2,7 +2,9 @@
 #define _DEFAULT_SOURCE
 #include "check.h"
 
+#include "member/structure.h"
 #include "scenes.h"
+#include "solve/fidelity.h"
 #include "trial/cost.h"
 #include "trial/plan.h"
 
@@ -108,17 +110,23 @@ static void test_weight_of_a_fluid(void **state) {
     spar_session_destroy(&s);
 }
 
-/* Solutions of the fluid in a second of the run, as they are counted for the advice: dt, and what the scheme takes. */
-static double solutions(const scene *of, const answer *a, double over) {
-    scene_run *r;
+/* The scene as one builds it to what is advised. */
+static knobs by_hand(const scene *of, const answer *a) {
     knobs k = of->standard;
-    double seconds = 0, t = 0;
-    int64_t iterations = 0;
     k.dt = a->advice[SPAR_ADVICE_DT], k.substeps = (int)a->advice[SPAR_ADVICE_SUBSTEPS];
     k.scheme = (int)a->advice[SPAR_ADVICE_SCHEME], k.tolerance = a->advice[SPAR_ADVICE_COUPLING_RTOL];
     k.predictor = (int)a->advice[SPAR_ADVICE_PREDICTOR], k.newton = a->advice[SPAR_ADVICE_NEWTON_RTOL];
     k.fidelity = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
     k.points = a->points, k.rule = a->points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
+    return k;
+}
+
+/* Solutions of the fluid in a second of the run, as they are counted for the advice: dt, and what the scheme takes. */
+static double solutions(const scene *of, const answer *a, double over) {
+    scene_run *r;
+    const knobs k = by_hand(of, a);
+    double seconds = 0, t = 0;
+    int64_t iterations = 0;
     assert_int_equal(scene_build(of, &k, &r), SPAR_OK);
     for (; t < over; t += k.dt) {
         OK(r->session, scene_step(r, &seconds, &iterations));
@@ -148,11 +156,78 @@ static void test_dear_and_cheap_fluids(void **state) {
     assert_true(memcmp(&a[0], &a[1], sizeof a[0]) != 0);
 }
 
+/* ---- in one call ---- */
+
+/* What a run shows: the tip's way, and what was counted. */
+typedef struct course {
+    double tip[3], cost;
+    int64_t solutions;
+} course;
+
+static void follow(scene_run *r, double dt, int steps, course *c) {
+    int64_t n;
+    double seconds = 0;
+    *c = (course){.cost = 0};
+    r->knobs.dt = dt;
+    for (int i = 0; i < steps; i++) {
+        int64_t before = c->solutions;
+        OK(r->session, scene_step(r, &seconds, &c->solutions));
+        c->cost += spari_cost_step(r->session, (int)(c->solutions - before));
+    }
+    c->cost += spari_cost_members(r->session);
+    OK(r->session, spar_member_get_count(r->member, &n));
+    double *q = malloc((size_t)(7 * n) * sizeof *q);
+    assert_non_null(q);
+    OK(r->session, spar_member_get_motion(r->member, q, NULL, NULL));
+    memcpy(c->tip, q + 7 * (n - 1), sizeof c->tip);
+    free(q);
+}
+
+/* On each of the five scenes: the session that advice has been put in force in by one call goes as the one that has
+   been built to it by hand: the same motion to rounding, the same error therefore, and the same cost: solutions and
+   counted work. The blade's sections have been fitted by the host to a line of 8 nodes, and of those advised. */
+static void test_one_call_is_as_by_hand(void **state) {
+    (void)state;
+    enum { STEPS = 20 };
+    for (int k = 0; k < SCENE_COUNT; k++) {
+        const scene *of = &scenes[k];
+        answer a;
+        course c[2];
+        double dt;
+        scene_run *r;
+        assert_int_equal(scene_build(of, &of->standard, &r), SPAR_OK);
+        ask(r, 3e-2, 16, &a);
+        OK(r->session, spar_session_apply_advice(r->session, &dt));
+        assert_true(dt == a.advice[SPAR_ADVICE_DT]);
+        OK(r->session, r->solve(r->session, 0, 0, 0, r->context)); /* the loads at t^0, as scene_build gives them */
+        follow(r, dt, STEPS, &c[0]);
+        scene_destroy(&r);
+        const knobs hand = by_hand(of, &a);
+        assert_int_equal(scene_build(of, &hand, &r), SPAR_OK);
+        follow(r, dt, STEPS, &c[1]);
+        scene_destroy(&r);
+        double off = 0, size = 0;
+        for (int i = 0; i < 3; i++) {
+            off = hypot(off, c[0].tip[i] - c[1].tip[i]);
+            size = hypot(size, c[1].tip[i]);
+        }
+        print_message("%s: dt %.3g, scheme %g, fidelity %d of %lld modes, %d/%d nodes: tips %.2g apart, of %.3g m; "
+                      "solutions %lld, %lld; cost %.6g, %.6g\n",
+                      of->name, dt, a.advice[SPAR_ADVICE_SCHEME], a.fidelity, (long long)a.modes, a.nodes, a.points,
+                      off, size, (long long)c[0].solutions, (long long)c[1].solutions, c[0].cost, c[1].cost);
+        assert_true(size > 0);
+        NEAR(off, 0, 1e-8 * size);
+        assert_int_equal(c[0].solutions, c[1].solutions);
+        NEAR(c[0].cost, c[1].cost, 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_same_every_time),
         cmocka_unit_test(test_weight_of_a_fluid),
         cmocka_unit_test(test_dear_and_cheap_fluids),
+        cmocka_unit_test(test_one_call_is_as_by_hand),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     scenes_free();

@@ -1,6 +1,8 @@
 /* Trial runs go back to the bit, and say what theory says. */
 #include "scene.h"
 
+#include "session/own.h"
+#include "trial/apply.h"
 #include "trial/plan.h"
 
 #include <stdio.h>
@@ -54,6 +56,7 @@ static void build(scene *c, int with_body) {
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
     OK(c->s, spar_session_set_gravity(c->s, g));
     c->b = scene_beam(c->s, "wing", 2, 6, 2, K, M);
+    OK(c->s, spar_member_set_effects(c->b, SPAR_EFFECT_DEFAULT | (with_body ? SPAR_EFFECT_WORK : 0)));
     OK(c->s, spar_member_commit(c->b));
     if (with_body) {
         scene_mass(mass, 2, zero, J);
@@ -395,6 +398,138 @@ static void test_advice_stays_stable(void **state) {
     }
 }
 
+/* ---- advice put in force ---- */
+
+/* The saved session is still this one. */
+static void same_file(spar_session *s, const char *before, long size) {
+    long now;
+    OK(s, spar_session_save(s, "trial_apply.spar"));
+    char *after = contents("trial_apply.spar", &now);
+    assert_int_equal(now, size);
+    assert_memory_equal(before, after, (size_t)size);
+    free(after);
+}
+
+static void ask_advice(scene *c, double advice[SPAR_ADVICE_COUNT]) {
+    OK(c->s, spar_session_set_option(c->s, "advise.fluid_cost", "1e-6"));
+    OK(c->s, spar_session_advise(c->s, 0.05, 0.01, 16, keep, press, c, SPAR_ADVICE_COUNT, advice));
+}
+
+/* Refused, and the session as it was to the bit: without advice, in a step, with other members than were advised on,
+   with nodes that wait for their map, and where the second of two members cannot be made anew after the first has been.
+ */
+static void test_apply_refuses(void **state) {
+    (void)state;
+    scene c = {.load = 0.05, .drag = 0.01};
+    const double x[3] = {1, 0, 0};
+    double advice[SPAR_ADVICE_COUNT], dt = 7;
+    int nodes;
+    long size;
+    build(&c, 1);
+    assert_int_equal(spar_session_apply_advice(NULL, &dt), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "no advice yet"));
+    step(&c, 0.01, 3);
+    ask_advice(&c, advice);
+    OK(c.s, spar_member_get_advice(c.b, NULL, NULL, &nodes, NULL));
+    assert_true(nodes != 6); /* else nothing would be made anew */
+    OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
+    char *before = contents("trial_apply.spar", &size);
+    spari_remake right = *c.body->advice;
+    c.body->advice->fidelity = SPAR_FIDELITY_MODAL; /* there is no modal body */
+    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "spar_session_apply_advice"));
+    *c.body->advice = right;
+    same_file(c.s, before, size);
+    assert_true(c.s->predictor == 1 && c.s->scheme == SPAR_COUPLING_EXPLICIT && c.s->newton_rtol == 1e-12);
+    OK(c.s, spar_fluid_set_force_nodes(c.g, 1, x));
+    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "not mapped"));
+    OK(c.s, spar_fluid_map(c.g));
+    OK(c.s, spar_step_begin(c.s, 0.01));
+    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    OK(c.s, spar_step_reject(c.s));
+    c.s->own->advised->of ^= 1; /* as if other members had been advised on */
+    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "ask for it again"));
+    assert_true(dt == 7);
+    step(&c, 0.01, 2);
+    free(before);
+    spar_session_destroy(&c.s);
+}
+
+/* What is to outlive it: sums of the loads' forces, the tip, the work done, the fluid's nodes, the body's motion. */
+typedef struct outlook {
+    double sum[3], tip[7], work[SPAR_WORK_COUNT], x[3 * NODES], body[7];
+    int64_t nodes;
+} outlook;
+
+static void look_at(scene *c, outlook *o) {
+    double load[6 * 48];
+    *o = (outlook){.nodes = 0};
+    OK(c->s, spar_member_get_count(c->b, &o->nodes));
+    OK(c->s, spar_member_get_loads(c->b, load));
+    for (int64_t i = 0; i < o->nodes; i++) {
+        for (int k = 0; k < 3; k++) {
+            o->sum[k] += load[6 * i + k];
+        }
+    }
+    scene_tip(c->b, o->tip);
+    OK(c->s, spar_member_get_work(c->b, SPAR_WORK_COUNT, o->work));
+    OK(c->s, spar_fluid_pull_motion(c->f, 1, o->x, NULL));
+    OK(c->s, spar_member_get_motion(c->body, o->body, NULL, NULL));
+}
+
+/* In the middle of a run, with loads of every kind: the tip stays where it is, places along the beam to what its nodes
+   can show, sums of loads and the work account go on, a body for which nothing is advised keeps its motion to the bit;
+   called again, nothing changes to the bit; and the run goes on. */
+static void test_apply_in_a_run(void **state) {
+    (void)state;
+    scene c = {.load = 0.05, .drag = 0.01, .moments = 1};
+    const double follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
+    double advice[SPAR_ADVICE_COUNT], dt;
+    outlook before, after;
+    int64_t modes;
+    int nodes, fidelity;
+    long size;
+    build(&c, 1);
+    OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_FOLLOWER, follower));
+    OK(c.s, spar_member_set_load(c.b, 4, SPAR_LOAD_DEAD, dead));
+    step(&c, 0.01, 8);
+    ask_advice(&c, advice);
+    OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, NULL));
+    look_at(&c, &before);
+    OK(c.s, spar_session_apply_advice(c.s, &dt));
+    look_at(&c, &after);
+    assert_true(dt == advice[SPAR_ADVICE_DT]);
+    assert_true(after.nodes == 2 * nodes && after.nodes != before.nodes);
+    assert_true(c.b->fidelity == fidelity && c.b->modes == modes);
+    assert_true(c.s->scheme == (int)advice[SPAR_ADVICE_SCHEME] && c.s->predictor == (int)advice[SPAR_ADVICE_PREDICTOR]);
+    assert_true(c.s->substeps == (int)advice[SPAR_ADVICE_SUBSTEPS]);
+    assert_true(c.s->newton_rtol == advice[SPAR_ADVICE_NEWTON_RTOL]);
+    for (int i = 0; i < 3; i++) {
+        NEAR(after.sum[i], before.sum[i], 1e-11);
+        NEAR(after.tip[i], before.tip[i], 1e-13);
+    }
+    assert_memory_equal(after.work, before.work, sizeof after.work);
+    assert_memory_equal(after.body, before.body, sizeof after.body);
+    double off = 0;
+    for (int i = 0; i < 3 * NODES; i++) {
+        off = fmax(off, fabs(after.x[i] - before.x[i]));
+    }
+    print_message("%d nodes an element in place of 6: %.2g m off, the tip is %.3g m down\n", nodes, off, before.tip[2]);
+    NEAR(off, 0, 1e-2 * fabs(before.tip[2])); /* the tolerance that the advice is for is 5 % */
+    OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
+    char *saved = contents("trial_apply.spar", &size);
+    OK(c.s, spar_session_apply_advice(c.s, NULL));
+    same_file(c.s, saved, size);
+    free(saved);
+    step(&c, dt, 8);
+    look_at(&c, &before);
+    assert_true(before.work[SPAR_WORK_FLUID] != after.work[SPAR_WORK_FLUID]);
+    spar_session_destroy(&c.s);
+}
+
 static void test_bad_input(void **state) {
     (void)state;
     scene c = {.load = 0.02};
@@ -541,6 +676,8 @@ int main(void) {
         cmocka_unit_test(test_advice_is_kept),
         cmocka_unit_test(test_copies_get_one_advice),
         cmocka_unit_test(test_advice_stays_stable),
+        cmocka_unit_test(test_apply_refuses),
+        cmocka_unit_test(test_apply_in_a_run),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
         cmocka_unit_test(test_asking),

@@ -836,7 +836,7 @@ enum {
     SPAR_ADVICE_SCHEME = 2,        /* SPAR_COUPLING_* */
     SPAR_ADVICE_COUPLING_RTOL = 3, /* of an iterated scheme; its atol is the session's */
     SPAR_ADVICE_PREDICTOR = 4,
-    SPAR_ADVICE_NEWTON_RTOL = 5,   /* atol 1e-15 */
+    SPAR_ADVICE_NEWTON_RTOL = 5,   /* its atol is the session's */
     SPAR_ADVICE_ERROR = 6,         /* estimated, as SPAR_TRY_MOTION */
     SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
@@ -859,6 +859,20 @@ enum {
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);
+/* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of
+   beams fidelity, modes, nodes per element and quadrature points. dt stays the host's to take. Beams for which
+   something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the work done on
+   them, and their motion, which goes over by the element's own interpolation (loads by its transpose: their sum stays);
+   accelerations begin from the balance of forces. Their fluids keep handles and nodes and are mapped again. Counts
+   change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set from now on, is the
+   host's to say anew. All else stays to the last bit. What the advice does not have stays: rho_inf, the coupling's atol,
+   limits and options, Newton's atol, elements, effects asked for. A beam whose nodes the host has given has its line
+   through the new ones from then on; of the motion a lower fidelity keeps what it can show. Sections of fluids keep
+   places and frames. Called again it does nothing.
+     dt: out, SPAR_ADVICE_DT, s; NULL: not wanted
+   Collective. SPAR_ERR_STATE: a step or a trial is under way, there is no advice, members have been added or described
+   otherwise since, or a fluid has nodes that are not mapped. After a failure all is as it was. */
+SPAR_API int spar_session_apply_advice(spar_session *session, double *dt);
 /* What the last advice says of a beam. Each NULL: not wanted. Local. SPAR_ERR_STATE: no advice yet.
      fidelity: out, SPAR_FIDELITY_*
      modes: out, of a modal one, else 0

@@ -49,6 +49,10 @@ int spari_fluid_asked(const spar_fluid *fluid);
    give it to spari_fluid_restore, also after a failure unless it is NULL. Local. */
 int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old);
 void spari_fluid_restore(spar_fluid *fluid, spar_fluid *old);
+/* It stays as it was made anew: what it was goes. */
+void spari_fluid_adopt(spar_fluid *fluid, spar_fluid *old);
+/* Whether there are nodes that wait for their map. */
+int spari_fluid_is_pending(const spar_fluid *fluid);
 
 /* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
    set; any NULL. */

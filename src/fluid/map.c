@@ -75,6 +75,14 @@ void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, doub
     spari_quat_normalise(q);
 }
 
+void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]) {
+    const spari_nodes *s = set->nodes;
+    spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
+    if (set->frame) {
+        memcpy(q, set->frame + 4 * spari_nodes_node(s, p), 4 * sizeof *q);
+    }
+}
+
 /* Element and local coordinate of a place along the whole line; a joint belongs to the lower element. */
 static int locate(const spar_member *m, double xi, double *local) {
     double eta = 0.5 * (xi + 1) * m->elements;
@@ -302,7 +310,7 @@ int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, doubl
     for (int64_t p = 0; s && p < s->n; p++) {
         int64_t j = spari_nodes_node(s, p);
         double x[3], q[4];
-        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
+        spari_fluid_frame(fluid, spari_fluid_set(fluid, which), p, x, q);
         if (x_map) {
             memcpy(x_map + 3 * j, x, sizeof x);
         }

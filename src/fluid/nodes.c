@@ -53,6 +53,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
 void spari_node_set_clear(spari_node_set *set) {
     free(set->x);
     free(set->xi);
+    free(set->frame);
     spari_nodes_free(set->nodes);
     *set = (spari_node_set){0};
 }

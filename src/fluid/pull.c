@@ -182,8 +182,8 @@ static void unit_quat(double (*buf)[SPARI_ROW], int i, double q[4]) {
 }
 
 /* Orientation of a section now, scalar part >= 0: the states' rotations, averaged where there are two, times the
- * reference's. */
-static void orientation(const states *t, int i, double now[4]) {
+ * reference's, or that of a frame of its own. */
+static void orientation(const states *t, int i, const double *frame, double now[4]) {
     double q[2][4], reference[4];
     for (int k = 0; k < t->n; k++) {
         unit_quat(t->buf[k], i, q[k]);
@@ -194,8 +194,10 @@ static void orientation(const states *t, int i, double now[4]) {
             q[0][c] = t->share[0] * q[0][c] + sign * t->share[1] * q[1][c];
         }
     }
-    unit_quat(t->reference, i, reference);
-    spari_quat_mul(q[0], reference, now);
+    if (!frame) {
+        unit_quat(t->reference, i, reference);
+    }
+    spari_quat_mul(q[0], frame ? frame : reference, now);
     spari_quat_normalise(now);
     double sign = now[0] < 0 ? -1 : 1;
     for (int c = 0; c < 4; c++) {
@@ -214,8 +216,9 @@ static void matrix_of(const double q[4], int convention, double m[9]) {
     }
 }
 
-static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int64_t first, const states *t,
+static void emit_orientations(const spar_fluid *fluid, const spari_node_set *set, int64_t first, const states *t,
                               const wanted *w) {
+    const spari_nodes *s = set->nodes;
     if (!is_wanted(w->q) && !is_wanted(w->matrix)) {
         return;
     }
@@ -225,7 +228,7 @@ static void emit_orientations(const spar_fluid *fluid, const spari_nodes *s, int
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(s, first + i);
         if (i == 0 || s->per_element > 1) { /* else all turn with the one node */
-            orientation(t, i, q);
+            orientation(t, i, set->frame ? set->frame + 4 * node : NULL, q);
             if (is_wanted(w->matrix)) {
                 matrix_of(q, w->convention, m);
             }
@@ -249,7 +252,8 @@ static void zero(sink *out, int64_t n) {
 }
 
 /* Answers what a trial run leaves out, and takes it off the list. */
-static void mute_parts(const spar_fluid *fluid, const spari_nodes *s, wanted *w) {
+static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wanted *w) {
+    const spari_nodes *s = set->nodes;
     if (fluid->mute & SPARI_MUTE_VELOCITY) {
         zero(&w->v, s->n);
     }
@@ -258,7 +262,7 @@ static void mute_parts(const spar_fluid *fluid, const spari_nodes *s, wanted *w)
     }
     for (int64_t p = 0; p < s->n && (is_wanted(w->q) || is_wanted(w->matrix)); p++) {
         double x[3], q[4], m[9];
-        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), x, q);
+        spari_fluid_frame(fluid, set, p, x, q);
         put_values(w->q, spari_nodes_node(s, p), 4, q);
         matrix_of(q, w->convention, m);
         put_values(w->matrix, spari_nodes_node(s, p), 9, m);
@@ -299,7 +303,7 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         emit(s, first, &t, SPARI_R_OMEGA, w->omega);
         emit(s, first, &t, SPARI_R_ACCEL, w->accel);
         emit(s, first, &t, SPARI_R_ALPHA, w->alpha);
-        emit_orientations(fluid, s, first, &t, w);
+        emit_orientations(fluid, spari_fluid_set(fluid, which), first, &t, w);
     }
     return spari_fluid_check_rotation(fluid, least, caller);
 }
@@ -317,7 +321,7 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
     if (fluid->mute) {
         SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, caller, &s));
         if (s) {
-            mute_parts(fluid, s, &left);
+            mute_parts(fluid, spari_fluid_set(fluid, SPAR_NODES_MOTION), &left);
         }
     }
     return pull_set(fluid, SPAR_NODES_MOTION, theta, &left, caller);

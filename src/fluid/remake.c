@@ -31,10 +31,40 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     for (int64_t p = 0; p < s->n; p++) {
         int64_t j = spari_nodes_node(s, p);
         double foot[3], q[4], con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
-        spari_fluid_reference(old, spari_nodes_element(s, p), spari_nodes_xi(s, p), foot, q);
+        spari_fluid_frame(old, from, p, foot, q);
         spari_rotate_back(q, con, set->x + 3 * j);
         set->xi[j] = fmin(fmax(spari_member_xi(old->member, spari_nodes_element(s, p), spari_nodes_xi(s, p)), -1), 1);
     }
+    return SPAR_OK;
+}
+
+/* Sections stay where they are and keep their frames, as what is fastened to a body does: the host knows them so. The
+   line through other nodes passes beside their feet, and is turned otherwise there. */
+static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
+    const spari_node_set *from = &old->set[which];
+    spari_node_set *to = &f->set[which];
+    if (!from->sections || !from->nodes) {
+        return SPAR_OK;
+    }
+    double *place = spari_fluid_places(old, from->nodes);
+    to->frame = spari_zalloc(4 * to->n, sizeof *to->frame);
+    if (!place || !to->frame) {
+        free(place);
+        return no_memory_for_trial(f);
+    }
+    for (int64_t p = 0; p < to->n; p++) {
+        double x[3];
+        spari_fluid_frame(old, from, p, x, to->frame + 4 * spari_nodes_node(from->nodes, p));
+    }
+    for (int64_t p = 0; p < to->n; p++) {
+        int64_t j = spari_nodes_node(to->nodes, p);
+        double foot[3], q[4];
+        spari_fluid_reference(f, spari_nodes_element(to->nodes, p), spari_nodes_xi(to->nodes, p), foot, q);
+        for (int i = 0; i < 3; i++) {
+            to->nodes->con[i][p] = place[3 * j + i] - foot[i];
+        }
+    }
+    free(place);
     return SPAR_OK;
 }
 
@@ -81,6 +111,9 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
             SPARI_TRY(unmap(old, which, &f->set[which]));
         }
         SPARI_TRY(spar_fluid_map(f));
+        for (int which = 0; which < 2; which++) {
+            SPARI_TRY(keep_frames(f, old, which));
+        }
         spari_history_free(f->history); /* the map has begun it with zeros */
     }
     int order = f->member->session->predictor;
@@ -124,11 +157,13 @@ static void drop_copy(double *made, const double *was) {
     }
 }
 
-void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
+/* Frees what f has and the other has not. */
+static void drop_own(spar_fluid *f, const spar_fluid *old) {
     if (f->set[0].nodes != old->set[0].nodes || f->set[1].nodes != old->set[1].nodes) {
         for (int which = 0; which < 2; which++) {
             free(f->set[which].x);
             free(f->set[which].xi);
+            free(f->set[which].frame);
             spari_nodes_free(f->set[which].nodes);
         }
     }
@@ -148,7 +183,22 @@ void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
     if (f->history != old->history) {
         spari_history_free(f->history);
     }
+}
+
+void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
+    drop_own(f, old);
     free(f->why);
     *f = *old;
     free(old);
+}
+
+void spari_fluid_adopt(spar_fluid *f, spar_fluid *old) {
+    drop_own(old, f);
+    f->asked = old->asked;
+    f->why = old->why;
+    free(old);
+}
+
+int spari_fluid_is_pending(const spar_fluid *f) {
+    return f->set[0].pending || f->set[1].pending;
 }

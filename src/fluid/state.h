@@ -15,6 +15,7 @@ typedef struct spari_node_set {
     double *x;          /* [n][3]: places, or offsets in the section frame; while pending */
     double *xi;         /* [n]: sections only; while pending */
     spari_nodes *nodes; /* once mapped */
+    double *frame; /* [n][4]: sections that have kept their frames when the line got other nodes; NULL: the line's */
 } spari_node_set;
 
 /* Node forces over time, for hosts that want them back between the steps (SPAR_EFFECT_FLUID_HISTORY). */
@@ -89,6 +90,8 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
 /* Reference foot and its orientation (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
+/* The same with the frame of the section there: p in the order of storage. */
+void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
 /* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */

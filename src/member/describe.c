@@ -309,7 +309,7 @@ int spar_member_set_effects(spar_member *member, int effects) {
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
                   (unsigned)(effects & ~all));
-    member->effects = effects;
+    member->effects = member->effects_asked = effects;
     member->effects_given = !(effects & SPAR_EFFECT_DEFAULT);
     return SPAR_OK;
 }

@@ -40,6 +40,7 @@ struct spar_member {
     int kind, external, root, owner, committed;
     int effects;                      /* SPAR_EFFECT_*: asked for; after commit what is in force */
     int effects_given;                /* 0: besides these what the description implies */
+    int effects_asked;                /* as given, whatever of it serves the fidelity of now */
     int fidelity;                     /* SPAR_FIDELITY_* */
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* how it moves (solve/fidelity.h); after commit */

@@ -6,6 +6,7 @@
 
 typedef struct spari_record spari_record;     /* trial/trial.h */
 typedef struct spari_coupling spari_coupling; /* coupling.h */
+typedef struct spari_advised spari_advised;   /* trial/apply.h */
 
 struct spari_own {
     double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
@@ -15,6 +16,7 @@ struct spari_own {
     spari_coupling *coupling; /* from the first step on */
     spari_record *kept;       /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);
+    spari_advised *advised; /* of spar_session_advise; NULL: none */
 };
 
 #endif

@@ -77,6 +77,7 @@ void spar_session_destroy(spar_session **session) {
     if (s->own->kept) {
         s->own->free_kept(s->own->kept);
     }
+    free(s->own->advised);
     free(s->own->pack);
     free(s->own->first);
     free(s->own->motion);

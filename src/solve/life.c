@@ -157,7 +157,7 @@ static int check_complete(spar_member *m) {
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                         SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT;
-    int e = m->effects_given ? m->effects : m->effects | implied;
+    int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
     int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;

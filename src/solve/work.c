@@ -103,6 +103,12 @@ int spari_work_create(spar_member *m) {
     return SPAR_OK;
 }
 
+void spari_work_carry(const spar_member *from, spar_member *m) {
+    if (from->work && m->work) {
+        memcpy(m->work->sum, from->work->sum, sizeof m->work->sum);
+    }
+}
+
 int spar_member_get_work(const spar_member *member, int64_t capacity, double *work) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_committed(member, __func__));

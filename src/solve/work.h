@@ -12,5 +12,7 @@ void spari_work_step(spar_member *member);
 /* The motion has been set anew: the account starts at zero. */
 void spari_work_restart(spar_member *member);
 void spari_work_free(spari_work *work);
+/* The member has been made anew: the account of what it was goes on, if there is one. */
+void spari_work_carry(const spar_member *from, spar_member *member);
 
 #endif

@@ -3,6 +3,7 @@
    then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
    those of whole runs, costs what is counted in them (cost.h). */
 #include "../base/quiet.h"
+#include "apply.h"
 #include "plan.h"
 
 #include "../math/basis.h"
@@ -357,10 +358,12 @@ static int search_plans(spari_advisor *d, const spari_plan *present, spari_outco
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 
-/* Memory for the advice of members that have none yet, before the work begins: [members], else NULL. */
+/* Memory for the advice, before the work begins: for members that have none yet [members], else NULL. */
 static int make_remakes(const spari_advisor *d, spari_remake ***room) {
+    spari_own *own = d->session->own;
+    own->advised = own->advised ? own->advised : spari_zalloc(1, sizeof *own->advised);
     spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof(spari_remake *));
-    int k = 0, ok = all != NULL;
+    int k = 0, ok = all && own->advised;
     for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
         ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));
     }
@@ -400,6 +403,14 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_TRIALS] = d->trials,
     };
     memcpy(advice, made, sizeof made);
+    *d->session->own->advised = (spari_advised){.dt = made[SPAR_ADVICE_DT],
+                                                .coupling_rtol = p->rtol,
+                                                .newton_rtol = p->newton,
+                                                .substeps = p->substeps,
+                                                .scheme = p->scheme,
+                                                .predictor = p->predictor,
+                                                .given = 1,
+                                                .of = spari_advised_of(d->session)};
 }
 
 static int check_request(spar_session *s, double tolerance, const spari_run *run, int64_t capacity) {

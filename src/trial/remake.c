@@ -94,3 +94,12 @@ void spari_member_restore(spar_member *m, const spar_member *old) {
     }
     *m = *old;
 }
+
+void spari_member_adopt(spar_member *m, spar_member *old) {
+    spari_member_release(old);
+    if (m->beam != old->beam) {
+        free(old->beam->node_x);
+        free(old->beam->node_q);
+        free(old->beam);
+    }
+}

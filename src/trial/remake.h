@@ -20,5 +20,7 @@ spari_remake spari_remake_of(const spar_member *member);
    give it to spari_member_restore, also after a failure. Local. */
 int spari_member_remake(spar_member *member, const spari_remake *wish, spar_member *old);
 void spari_member_restore(spar_member *member, const spar_member *old);
+/* It stays as it was made anew: what it was goes. */
+void spari_member_adopt(spar_member *member, spar_member *old);
 
 #endif

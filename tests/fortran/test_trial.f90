@@ -168,6 +168,8 @@ contains
     context%stiffness = 4
     call body%get_advice(fidelity, modes, nodes, points, stat)
     call check(stat == SPAR_ERR_STATE, 'no advice yet')
+    call session%apply_advice(stat=stat)
+    call check(stat == SPAR_ERR_STATE, 'no advice to apply')
     call session%advise(1e-2_c_double, dt, 16, advice, count_step, solve, context)
     call check(advice(SPAR_ADVICE_ERROR) <= 1e-2_c_double .and. advice(SPAR_ADVICE_DT) > 0, 'advice')
     call body%get_advice(nodes_per_element=nodes)
@@ -189,6 +191,8 @@ contains
     type(spar_fluid), target :: fluid
     type(spring) :: context
     real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1)
+    real(c_double) :: new_dt
+    integer(c_int64_t) :: count
     integer(c_int) :: nodes
 
     call session%create()
@@ -206,6 +210,11 @@ contains
     call beam%get_advice(nodes_per_element=nodes)
     call check(nodes >= 3 .and. nodes <= 24, 'nodes are advised')
     call check(context%steps > 1, 'runs had other numbers of nodes')
+    call session%apply_advice(new_dt)
+    call check(abs(new_dt - advice(SPAR_ADVICE_DT)) <= 0, 'dt is the one advised')
+    call beam%get_count(count)
+    call check(count == nodes, 'the beam has the nodes advised')
+    call session%step(new_dt, push_by_basis, context)
   end subroutine a_beam
 
   ! Coefficients that are the same at all angles: without drag, cd of hypot(cl, cd) is missing.

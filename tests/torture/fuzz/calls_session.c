@@ -444,3 +444,9 @@ void do_spar_session_advise(call *c) {
     double *advice = OUT_OR_NULL(c, length(n));
     RUN(c, spar_session_advise(l->s, tolerance, dt, steps, before, solve, h, n, advice));
 }
+
+void do_spar_session_apply_advice(call *c) {
+    live_session *l = arg_session(c);
+    double *dt = OUT_OR_NULL(c, 1);
+    RUN(c, spar_session_apply_advice(l->s, dt));
+}

@@ -142,6 +142,7 @@ enum {
     CALL(spar_session_try, 14, FUZZ_TRIAL)                                                                             \
     CALL(spar_session_report_effects, 5, FUZZ_TRIAL)                                                                   \
     CALL(spar_session_advise, 1, FUZZ_TRIAL)                                                                           \
+    CALL(spar_session_apply_advice, 10, FUZZ_CHANGES)                                                                  \
     CALL(spar_vtk_series_add, 10, FUZZ_PURE)                                                                           \
     CALL(spar_polar_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_polar_set_interpolation, 25, FUZZ_CHANGES)                                                               \

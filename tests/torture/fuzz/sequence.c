@@ -115,6 +115,8 @@ static void what_if(writer *w) {
          : k < 950 ? CALL_spar_aero_report_effects
                    : CALL_spar_session_advise);
     part(w, 50, k < 500 ? CALL_spar_session_try : CALL_spar_member_get_advice);
+    part(w, k < 950 ? 5 : 80, CALL_spar_session_apply_advice);
+    part(w, 50, CALL_spar_step);
 }
 
 /* A few saves, as there are a few names; and back, from between steps. */

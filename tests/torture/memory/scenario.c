@@ -662,7 +662,7 @@ static void act_effects(void) {
 
 static void act_advise(void) {
     host h = {0};
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[SPAR_ADVICE_COUNT], dt;
     int fidelity, nodes, points;
     int64_t modes;
     describe_trial(&h);
@@ -670,6 +670,8 @@ static void act_advise(void) {
     CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
     CALL(spar_session_advise, h.session, 0.5, 0.01, 8, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
     CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
+    go(&h, 1);
+    CALL(spar_session_apply_advice, h.session, &dt);
     go(&h, 1);
     end_session(&h.session);
 }

@@ -240,6 +240,10 @@ static int make_advise(scene *c, const arguments *a) {
     return spar_session_advise(c->session, a->tolerance, a->dt, a->steps, a->before, a->solve, c,
                                a->no_out ? -1 : SPAR_ADVICE_COUNT, out);
 }
+static int make_apply(scene *c, const arguments *a) {
+    double advised;
+    return spar_session_apply_advice(c->session, a->no_out ? NULL : &advised);
+}
 static int make_aero(scene *c, const arguments *a) {
     return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
                                     a->no_out ? -1 : SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, out);
@@ -287,6 +291,7 @@ static const struct call {
     {"spar_session_try", make_try, IDLE, TRIAL | COMPARE},
     {"spar_session_report_effects", make_effects, IDLE, TRIAL},
     {"spar_session_advise", make_advise, IDLE, TRIAL | TOLERANCE | NEEDS_SOLVE},
+    {"spar_session_apply_advice", make_apply, IDLE, SETTINGS},
     {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
 };
 enum {
@@ -464,6 +469,8 @@ static void begin_both(scene *hit, scene *calm, enum stage stage) {
         }
         MUST(hit->session, make_save(hit, &a));
         MUST(hit->session, make_try(hit, &a));
+        MUST(hit->session, make_advise(hit, &a));
+        MUST(calm->session, make_advise(calm, &a));
     }
 }
 
@@ -947,7 +954,8 @@ static void failing_memory(const struct call *call, int bad, scene *hit, scene *
             expect(hit, status, of_one(bad, SPAR_ERR_MEMORY), NULL);
         }
         if (all) {
-            if (call->stage != OPEN && (call->stage != IDLE || call->make == make_begin || call->make == make_step)) {
+            if (call->stage != OPEN && (call->stage != IDLE || call->make == make_begin || call->make == make_step ||
+                                        call->make == make_apply)) {
                 MUST(calm->session, call->make(calm, &a));
             }
             return;

@@ -1,0 +1,209 @@
+/* Advice comes into force: settings, and members made anew in place as trials make them, to stay. */
+#include "apply.h"
+
+#include "../base/quiet.h"
+#include "../comm/comm.h"
+#include "../comm/enter.h"
+#include "../fluid/fluid.h"
+#include "../math/predictor.h"
+#include "../member/beam.h"
+#include "../session/exchange.h"
+#include "../session/own.h"
+#include "../solve/work.h"
+#include "remake.h"
+
+#include <stdlib.h>
+
+uint64_t spari_advised_of(const spar_session *s) {
+    uint64_t h = SPARI_HASH_BEGIN;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        uint64_t one = spari_member_hash(m);
+        h = spari_hash_bytes(h, &one, sizeof one);
+    }
+    return h;
+}
+
+/* ---- there, and back where it fails ---- */
+
+/* A member or a fluid made anew, and what it was. */
+typedef struct anew {
+    spar_member *member, was;
+    spar_fluid *fluid, *fluid_was;
+} anew;
+
+typedef struct change {
+    spari_advised before; /* the settings there were */
+    int past;
+    double *pack, *motion; /* what the ranks exchange through, likewise */
+    int64_t pack_count, *first;
+    anew *made; /* [count] in their order */
+    int64_t count;
+} change;
+
+static int change_create(spar_session *s, change *c) {
+    int64_t n = s->member_count;
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        n++;
+    }
+    *c = (change){.made = spari_zalloc(n, sizeof *c->made)};
+    SPARI_REQUIRE(s, c->made, SPAR_ERR_MEMORY, "no memory to put advice in force");
+    return SPAR_OK;
+}
+
+static void put_settings(spar_session *s, const spari_advised *to, int past) {
+    s->substeps = to->substeps;
+    s->predictor = to->predictor;
+    s->past = past < to->predictor ? past : to->predictor;
+    s->scheme = to->scheme;
+    s->coupling_rtol = to->coupling_rtol;
+    s->newton_rtol = to->newton_rtol;
+}
+
+static void set_advised(spar_session *s, change *c) {
+    c->before = (spari_advised){.coupling_rtol = s->coupling_rtol,
+                                .newton_rtol = s->newton_rtol,
+                                .substeps = s->substeps,
+                                .scheme = s->scheme,
+                                .predictor = s->predictor};
+    c->past = s->past;
+    put_settings(s, s->own->advised, s->past);
+}
+
+static int is_as_advised(const spar_member *m) {
+    const spari_remake *to = m->advice;
+    return !to || (to->per_element == m->per_element && to->fidelity == m->fidelity && to->modes == m->modes &&
+                   (to->points == 0 || to->points == m->beam->points));
+}
+
+static int remake_members(spar_session *s, change *c) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (is_as_advised(m)) {
+            SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->predictor) == SPAR_OK,
+                          SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
+            continue;
+        }
+        anew *a = &c->made[c->count++];
+        a->member = m;
+        SPARI_TRY(spari_member_remake(m, m->advice, &a->was));
+        spari_work_carry(&a->was, m);
+    }
+    return SPAR_OK;
+}
+
+static int remake_fluids(spar_session *s, change *c) {
+    int64_t members = c->count;
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        const anew *of = NULL;
+        for (int64_t k = 0; k < members; k++) {
+            of = c->made[k].member == spari_fluid_member(f) ? &c->made[k] : of;
+        }
+        if (!of) {
+            SPARI_REQUIRE(s, spari_fluid_keep(f, s->predictor) == SPAR_OK, SPAR_ERR_MEMORY,
+                          "no memory for the forces of '%s'", spari_fluid_name(f));
+            continue;
+        }
+        anew *a = &c->made[c->count];
+        int status = spari_fluid_remake(f, &of->was, &a->fluid_was);
+        a->fluid = f;
+        c->count += a->fluid_was != NULL;
+        SPARI_TRY(status);
+    }
+    return SPAR_OK;
+}
+
+static void lay_exchange_aside(spari_own *own, change *c) {
+    c->pack = own->pack, c->motion = own->motion, c->first = own->first, c->pack_count = own->pack_count;
+    own->pack = own->motion = NULL;
+    own->first = NULL;
+}
+
+static void swap_exchange(spari_own *own, change *c) {
+    double *pack = own->pack, *motion = own->motion;
+    int64_t *first = own->first, count = own->pack_count;
+    own->pack = c->pack, own->motion = c->motion, own->first = c->first, own->pack_count = c->pack_count;
+    c->pack = pack, c->motion = motion, c->first = first, c->pack_count = count;
+}
+
+static void change_free(change *c) {
+    free(c->pack);
+    free(c->motion);
+    free(c->first);
+    free(c->made);
+}
+
+/* The message of the failure stays. */
+static void undo(spar_session *s, change *c) {
+    for (int64_t k = c->count - 1; k >= 0; k--) {
+        anew *a = &c->made[k];
+        if (a->fluid) {
+            spari_fluid_restore(a->fluid, a->fluid_was);
+        } else {
+            spari_member_restore(a->member, &a->was);
+        }
+    }
+    swap_exchange(s->own, c);
+    put_settings(s, &c->before, c->past);
+}
+
+static void confirm(spar_session *s, change *c) {
+    for (int64_t k = c->count - 1; k >= 0; k--) {
+        anew *a = &c->made[k];
+        if (a->fluid) {
+            spari_fluid_adopt(a->fluid, a->fluid_was);
+        } else {
+            spari_member_adopt(a->member, &a->was);
+        }
+    }
+    s->coupling_stale = 1;
+    s->own->advised->of = spari_advised_of(s);
+}
+
+/* ---- the call ---- */
+
+static int check_apply(spar_session *s, const char *call) {
+    const spari_advised *a = s->own->advised;
+    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+                  call);
+    SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
+                  "spar_session_advise");
+    SPARI_REQUIRE(s, a->of == spari_advised_of(s), SPAR_ERR_STATE,
+                  "%s: members have been added, or described otherwise, since the advice was given; ask for it again",
+                  call);
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        SPARI_REQUIRE(s, !spari_fluid_is_pending(f), SPAR_ERR_STATE,
+                      "%s: fluid '%s' has nodes that are not mapped; call spar_fluid_map first", call,
+                      spari_fluid_name(f));
+    }
+    return SPAR_OK;
+}
+
+static int make_change(spar_session *s, change *c) {
+    SPARI_TRY(remake_members(s, c));
+    return remake_fluids(s, c);
+}
+
+int spar_session_apply_advice(spar_session *session, double *dt) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    change c = {0};
+    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, check_apply(s, __func__)));
+    int status = change_create(s, &c), begun = status == SPAR_OK;
+    if (begun) {
+        lay_exchange_aside(s->own, &c);
+        set_advised(s, &c);
+        status = make_change(s, &c);
+    }
+    status = spari_session_seal(s, status);
+    if (status == SPAR_OK) {
+        confirm(s, &c);
+    } else if (begun) {
+        undo(s, &c);
+    }
+    change_free(&c);
+    if (status == SPAR_OK && dt) {
+        *dt = s->own->advised->dt;
+    }
+    return spari_named(s, __func__, status);
+}
