@@ -563,7 +563,8 @@ enum {
 
 /* name: in, not empty, for the messages. fluid: out. */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
-/* A fluid may go before its session; its loads go with it. */
+/* A fluid may go before its session; its loads go with it. Within a trial run too: the trial goes on without it, and it
+   stays gone when the trial has gone back. */
 SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
 /* Nodes that are moved, by their places in the reference configuration. To be mapped.
      n: in
@@ -755,7 +756,7 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    or what settings do, is found by trying. They are the host's own steps, with its own fluid: `solve` as in spar_step,
    and `before`, called ahead of each step for what the host does there (drive roots, set loads, keep what its fluid had
    at t^n). Both must be repeatable: the same motion and time give the same loads, whatever ran before, and nothing else
-   of the host's is changed for good. They may use members and fluids in all ways, but not create, destroy or map them;
+   of the host's is changed for good. They may use members and fluids in all ways, but not create or map them;
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
    accelerations from the balance of forces. All calls here are collective, between steps; before and
    solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are

@@ -53,6 +53,8 @@ void spari_fluid_restore(spar_fluid *fluid, spar_fluid *old);
 void spari_fluid_adopt(spar_fluid *fluid, spar_fluid *old);
 /* Whether there are nodes that wait for their map. */
 int spari_fluid_is_pending(const spar_fluid *fluid);
+/* After the way back: the fluids that the host has destroyed within the trial. */
+void spari_fluid_release_gone(spar_session *session);
 
 /* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
    set; any NULL. */

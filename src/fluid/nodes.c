@@ -102,19 +102,52 @@ void spari_fluid_free(spar_fluid *fluid) {
     free(fluid);
 }
 
-void spar_fluid_destroy(spar_fluid **fluid) {
-    if (!fluid || !*fluid || (*fluid)->member->session->trial) { /* what it was is needed after the trial */
-        return;
-    }
-    spar_fluid **at = &(*fluid)->member->session->fluids;
-    while (*at && *at != *fluid) {
+void spari_fluid_forget_refusal(spar_fluid *fluid) {
+    free(fluid->why);
+    fluid->why = NULL;
+    fluid->refused = SPAR_OK;
+}
+
+static void take_out(spar_fluid *fluid) {
+    spar_fluid **at = &fluid->member->session->fluids;
+    while (*at && *at != fluid) {
         at = &(*at)->next;
     }
     if (*at) {
-        *at = (*fluid)->next;
+        *at = fluid->next;
     }
-    spari_fluid_free(*fluid);
+    spari_fluid_free(fluid);
+}
+
+/* In a trial run it has no loads and says nothing any more, and waits for the way back. */
+static void fall_silent(spar_fluid *fluid) {
+    double *load[] = {fluid->load, fluid->load_new, fluid->load_accepted};
+    for (int k = 0; k < 3 && fluid->load; k++) {
+        memset(load[k], 0, (size_t)(6 * fluid->member->nodes) * sizeof **load);
+    }
+    spari_fluid_forget_refusal(fluid);
+    fluid->gone = 1;
+}
+
+void spar_fluid_destroy(spar_fluid **fluid) {
+    if (!fluid || !*fluid) {
+        return;
+    }
+    if ((*fluid)->member->session->trial) {
+        fall_silent(*fluid);
+    } else {
+        take_out(*fluid);
+    }
     *fluid = NULL;
+}
+
+void spari_fluid_release_gone(spar_session *session) {
+    for (spar_fluid *f = session->fluids, *next; f; f = next) {
+        next = f->next;
+        if (f->gone) {
+            take_out(f);
+        }
+    }
 }
 
 spar_fluid *spari_fluid_next(const spar_fluid *fluid) {

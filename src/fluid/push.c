@@ -162,12 +162,6 @@ int spari_fluid_refuse_push(spar_fluid *fluid, int status) {
     return status;
 }
 
-void spari_fluid_forget_refusal(spar_fluid *fluid) {
-    free(fluid->why);
-    fluid->why = NULL;
-    fluid->refused = SPAR_OK;
-}
-
 int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
     *why = fluid->why ? fluid->why : "no memory to say why";
     return fluid->refused;

@@ -188,6 +188,7 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
 void spari_fluid_restore(spar_fluid *f, spar_fluid *old) {
     drop_own(f, old);
     free(f->why);
+    old->gone = f->gone;
     *f = *old;
     free(old);
 }

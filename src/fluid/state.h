@@ -32,6 +32,7 @@ struct spar_fluid {
     char *name;
     int method, consistent;
     double max_distance;
+    int gone;   /* destroyed within a trial run: released when that has gone back */
     int shared; /* sections: the motion set serves both */
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */
     int mute;   /* trial runs: SPARI_MUTE_* that are left out */

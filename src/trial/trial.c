@@ -132,6 +132,7 @@ static void go_back(spar_session *s, stash *t) {
     *s->own = t->own;
     free(t->members);
     free(t->fluids);
+    spari_fluid_release_gone(s);
 }
 
 /* ---- what is looked at ---- */

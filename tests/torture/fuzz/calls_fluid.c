@@ -45,7 +45,10 @@ void do_spar_fluid_destroy(call *c) {
             a->orphan |= a->fluid[b] == (int)(f - c->w->fluid);
         }
     }
-    RUN_VOID(c, spar_fluid_destroy(&f->f)); /* in a trial it stays */
+    RUN_VOID(c, spar_fluid_destroy(&f->f));
+    if (f->f) {
+        fuzz_finding("handle", "a destroyed fluid's handle is not NULL");
+    }
 }
 
 static void set_nodes(call *c, int (*set)(spar_fluid *fluid, int64_t n, const double *x)) {
