@@ -192,6 +192,30 @@ static void test_gravity_row(void **state) {
     spar_session_destroy(&c.s);
 }
 
+/* A body that spins steadily about its node, its centre of mass beside it, under a load of twice m w^2 c: gyroscopic
+   terms are half of the leading one, inertia is none as nothing is accelerated; and the next report says the same, for
+   nothing is left changed. */
+static void test_gyroscopic_row(void **state) {
+    (void)state;
+    const double zero[3] = {0}, J[3] = {1, 2, 3}, c[3] = {0.1, 0, 0}, w[3] = {0, 0, 3}, dead[6] = {3.6, 0, 0, 0, 0, 0};
+    double mass[36], table[2][SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    spar_member *b;
+    spar_session *s = scene_session();
+    scene_mass(mass, 2, c, J);
+    OK(s, spar_rigid_create(s, "top", zero, NULL, mass, &b));
+    OK(s, spar_member_set_initial_velocity(b, zero, zero, w));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, dead));
+    for (int k = 0; k < 2; k++) {
+        OK(s,
+           spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[k][0]));
+        NEAR(table[k][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_SIZE], 0.5, 1e-12);
+        NEAR(table[k][SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE], 0, 1e-12);
+    }
+    assert_true(table[0][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_MOTION] == table[1][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_MOTION]);
+    spar_session_destroy(&s);
+}
+
 /* Without inertia the load of the fluid works as in equilibrium: a static scene has the same reactions, gravity left
    out takes m g L off the support exactly. */
 static void test_left_out_of_statics(void **state) {
@@ -699,6 +723,7 @@ int main(void) {
         cmocka_unit_test(test_goes_back_to_the_bit),
         cmocka_unit_test(test_errors_of_dt),
         cmocka_unit_test(test_gravity_row),
+        cmocka_unit_test(test_gyroscopic_row),
         cmocka_unit_test(test_left_out_of_statics),
         cmocka_unit_test(test_fluid_rows),
         cmocka_unit_test(test_advice_is_kept),

@@ -74,11 +74,11 @@ static void minus(double *r, const double *from, int64_t n) {
 }
 
 /* Adds the squares of a member's terms at t^n. */
-static int member_terms(spar_member *m, double sum[TERMS]) {
-    spari_body *b = m->body;
+static int member_terms(const spar_member *m, double sum[TERMS]) {
+    const spari_body *b = m->body;
     int64_t n = b->unique;
-    double *q = spari_zalloc(31 * n + 6 * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *rest = a + 6 * n,
-           *r = rest + 6 * n, *loads = r + 6 * n, length = spari_member_length(m);
+    double *q = spari_zalloc(37 * n + 6 * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *none = a + 6 * n,
+           *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n, length = spari_member_length(m);
     SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "no memory for the effects of '%s'", m->name);
     spari_member_to_unique(m, 7, m->now.q, q);
     spari_member_to_unique(m, 6, m->now.v, v);
@@ -94,16 +94,16 @@ static int member_terms(spar_member *m, double sum[TERMS]) {
         sum[DAMPING] += squares(r, n, length);
     }
     if (m->effects & SPAR_EFFECT_INERTIA) {
-        int gyroscopic = b->gyroscopic;
-        spari_body_residual(b, q, v, a, 0, r, NULL);
-        b->gyroscopic = 0;
-        spari_body_residual(b, q, v, a, 0, rest, NULL);
+        /* inertia is linear in the accelerations: what is there without any is gyroscopic */
+        const double *rate = b->D ? v : NULL;
+        spari_body_residual(b, q, v, none, 0, r, NULL);
+        spari_body_residual(b, q, rate, NULL, 0, rest, NULL);
         minus(r, rest, n);
-        sum[GYROSCOPIC] += gyroscopic ? squares(r, n, length) : 0;
-        spari_body_residual(b, q, b->D ? v : NULL, NULL, 0, r, NULL);
+        sum[GYROSCOPIC] += b->gyroscopic ? squares(r, n, length) : 0;
+        spari_body_residual(b, q, v, a, 0, rest, NULL);
+        spari_body_residual(b, q, v, none, 0, r, NULL);
         minus(rest, r, n);
         sum[INERTIA] += squares(rest, n, length);
-        b->gyroscopic = gyroscopic;
     }
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
         loads[i] = m->dead[i] + m->load_pushed[i];
