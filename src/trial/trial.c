@@ -48,9 +48,36 @@ void spari_wish_free(spari_wish *wish) {
 
 /* ---- there and back ---- */
 
+/* What of a session a run changes beside its settings, which have a table of their own. */
+#define SPARI_SAVED(field)                                                                                             \
+    { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
+static const struct {
+    size_t at, size;
+} saved[] = {SPARI_SAVED(failures),  SPARI_SAVED(log),     SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
+             SPARI_SAVED(time),      SPARI_SAVED(dt),      SPARI_SAVED(dt_last),     SPARI_SAVED(step),
+             SPARI_SAVED(iteration), SPARI_SAVED(phase),   SPARI_SAVED(past),        SPARI_SAVED(order),
+             SPARI_SAVED(iterating), SPARI_SAVED(started), SPARI_SAVED(failed),      SPARI_SAVED(lent),
+             SPARI_SAVED(standing),  SPARI_SAVED(trial),   SPARI_SAVED(parted)};
+
+static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
+    memcpy((char *)to + at, (const char *)from + at, size);
+}
+
+static void copy_saved(spar_session *to, const spar_session *from) {
+    for (size_t k = 0; k < sizeof saved / sizeof *saved; k++) {
+        copy_field(to, from, saved[k].at, saved[k].size);
+    }
+    for (int k = 0; k < from->setting_count; k++) {
+        const spari_setting *of = from->settings + k;
+        copy_field(to, from, of->field, of->kind == SPARI_IS_REAL ? sizeof(double) : sizeof(int));
+    }
+}
+
 typedef struct stash {
-    spar_session session;
-    spari_own own;
+    spar_session session;  /* of it, what is saved */
+    double *pack, *motion; /* of the session's own, what stays aside */
+    int64_t pack_count, *first;
+    spari_coupling *coupling;
     spar_member *members; /* [member_count] what they were; */
     int made;             /* so many have been made anew */
     spar_fluid **fluids;  /* what they were, in their order */
@@ -59,7 +86,14 @@ typedef struct stash {
 
 /* Where it fails the session is as it was: there is nothing to go back to. */
 static int stash_create(spar_session *s, stash *t) {
-    *t = (stash){.session = *s, .own = *s->own};
+    spari_own *own = s->own;
+    *t = (stash){.session = {.settings = s->settings, .setting_count = s->setting_count},
+                 .pack = own->pack,
+                 .motion = own->motion,
+                 .pack_count = own->pack_count,
+                 .first = own->first,
+                 .coupling = own->coupling};
+    copy_saved(&t->session, s);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         t->fluid_count++;
     }
@@ -70,10 +104,10 @@ static int stash_create(spar_session *s, stash *t) {
         free(t->fluids);
         return spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     }
-    s->own->coupling = NULL;
+    own->coupling = NULL;
     s->coupling_stale = 1;
-    s->own->pack = s->own->motion = NULL;
-    s->own->first = NULL;
+    own->pack = own->motion = NULL;
+    own->first = NULL;
     s->log = NULL;
     return SPAR_OK;
 }
@@ -127,9 +161,9 @@ static void go_back(spar_session *s, stash *t) {
     free(s->own->pack);
     free(s->own->first);
     free(s->own->motion);
-    memcpy(t->session.message, s->message, sizeof s->message);
-    *s = t->session;
-    *s->own = t->own;
+    copy_saved(s, &t->session);
+    s->own->pack = t->pack, s->own->motion = t->motion, s->own->first = t->first;
+    s->own->pack_count = t->pack_count, s->own->coupling = t->coupling;
     free(t->members);
     free(t->fluids);
     spari_fluid_release_gone(s);
