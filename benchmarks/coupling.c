@@ -59,6 +59,7 @@ static void measure(int members, int scheme, int iterations, double *us, double 
     size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
     check(s, spar_session_set_coupling(s, scheme, 0, 0, iterations));
     check(s, spar_session_set_option(s, "coupling.unconverged", "accept"));
+    check(s, spar_session_set_option(s, "coupling.patience", "1000000"));
     build(s, members, member, fluid);
     for (int step = 0; step < STEPS; step++) {
         int done = 0, count = 0;

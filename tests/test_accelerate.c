@@ -18,7 +18,7 @@ static const double pi = 3.14159265358979323846;
 typedef void (*map)(const double *x, double *g, int n, const void *context);
 
 static spari_accelerator_settings settings(int scheme, double omega, int reuse, double filter) {
-    return (spari_accelerator_settings){scheme, omega, 50, reuse, filter};
+    return (spari_accelerator_settings){scheme, omega, 50, reuse, filter, 0};
 }
 
 static double norm(const double *x, const double *g, int n) {
@@ -41,7 +41,7 @@ static int solve(spari_accelerator *a, int n, map f, const void *context, double
             memcpy(x, g, (size_t)n * sizeof *x);
             return it;
         }
-        spari_accelerator_next(a, x, g, x);
+        spari_accelerator_next(a, x, g, NULL, x);
     }
     return MOST + 1;
 }
@@ -115,7 +115,7 @@ static void limit_of_relaxation(void **state) {
         x[0] = 0;
         for (int it = 0; it < 1000; it++) {
             modal(x, g, 1, &r);
-            spari_accelerator_next(a, x, g, x);
+            spari_accelerator_next(a, x, g, NULL, x);
         }
         modal(x, g, 1, &r);
         assert_true(side * (fabs(g[0] - x[0]) - 1) > 0);
@@ -299,12 +299,12 @@ static void stalled_residual(void **state) {
         spari_accelerator_begin(a, 1);
         for (int it = 0; it < 100; it++) {
             shift(x, g, 3, NULL);
-            spari_accelerator_next(a, x, g, x);
+            spari_accelerator_next(a, x, g, NULL, x);
             assert_true(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]));
         }
         assert_int_equal(spari_accelerator_dropped(a), scheme == SPAR_COUPLING_IQN_ILS ? 99 : 0);
-        spari_accelerator_next(a, x, x, x);
-        spari_accelerator_next(a, x, x, x);
+        spari_accelerator_next(a, x, x, NULL, x);
+        spari_accelerator_next(a, x, x, NULL, x);
         assert_true(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]));
         spari_accelerator_free(&a);
     }
@@ -320,7 +320,7 @@ static void repeated_columns(void **state) {
     spari_accelerator_begin(a, 1);
     for (int k = 0; k < 4; k++) {
         modal(xs[k], g, 2, r);
-        spari_accelerator_next(a, xs[k], g, next);
+        spari_accelerator_next(a, xs[k], g, NULL, next);
     }
     assert_int_equal(spari_accelerator_columns(a), 1);
     assert_int_equal(spari_accelerator_dropped(a), 2);
@@ -356,8 +356,8 @@ static void empty(void **state) {
         spari_accelerator *a = spari_accelerator_create(0, 6, 3, &set);
         assert_non_null(a);
         spari_accelerator_begin(a, 1);
-        spari_accelerator_next(a, NULL, NULL, NULL);
-        spari_accelerator_next(a, NULL, NULL, NULL);
+        spari_accelerator_next(a, NULL, NULL, NULL, NULL);
+        spari_accelerator_next(a, NULL, NULL, NULL, NULL);
         spari_accelerator_accept(a);
         spari_accelerator_free(&a);
     }
@@ -405,7 +405,7 @@ static void units_do_not_matter(void **state) {
             spari_accelerator_begin(a, 1);
             for (int it = 0; it < 6; it++) {
                 mixed(x, g, 6, &m);
-                spari_accelerator_next(a, x, g, x);
+                spari_accelerator_next(a, x, g, NULL, x);
             }
             for (int i = 0; i < 6; i++) {
                 x[i] /= i < 3 ? m.force : m.moment;
@@ -482,7 +482,7 @@ static double run_tube(const spari_accelerator_settings *set, int *steps) {
             if (residual <= 1e-5 * size || it == 40 || !(size < 1e3 * tube_c2)) {
                 break;
             }
-            spari_accelerator_next(a, p, g, p);
+            spari_accelerator_next(a, p, g, NULL, p);
         }
         total += it;
         if (it == 40 || !(norm(NULL, g, CELLS) < 1e3 * tube_c2)) { /* beyond the pressures the wall can bear */
@@ -549,7 +549,7 @@ static void state_moves(void **state) {
             }
             for (int k = 0; k <= (it >= 3); k++) {
                 modal(x[k], g, 5, r);
-                spari_accelerator_next(k ? b : a, x[k], g, x[k]);
+                spari_accelerator_next(k ? b : a, x[k], g, NULL, x[k]);
             }
         }
         assert_memory_equal(x[0], x[1], sizeof x[0]);

@@ -198,7 +198,7 @@ SPAR_API int spar_session_get_newton(const spar_session *session, double *atol, 
 SPAR_API int spar_session_set_predictor(spar_session *session, int order);
 SPAR_API int spar_session_get_predictor(const spar_session *session, int *order);
 /* How a step is iterated: until the change of the fluid's nodal loads is below atol + rtol |loads|, moments by the
-   member's length.
+   member's length; the change being that part of |loads| that it has in the motion (option coupling.norm).
      scheme: in, SPAR_COUPLING_*; default explicit
      atol: in, N, >= 0; default 1e-9
      rtol: in, >= 0; default 1e-6
@@ -216,6 +216,12 @@ SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);
 /* All other settings, by name and text. key, value: in.
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
+     coupling.patience      1 to 1000000, default 3: with coupling.unconverged = accept, so many steps on end that have
+                            not converged are an error all the same; each is told to the log
+     coupling.norm          motion (default) | loads: what the stop test, Aitken's factor and the columns of IQN-ILS
+                            weigh loads by: the motion that the structure answers them with in the step, so that a load
+                            that moves nothing (drag on a stiff direction) counts nothing; or the loads themselves. With
+                            a member whose motion the host gives (points, external) it is loads in any case
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
      coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
      coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, part of a column that newer ones must not contain already

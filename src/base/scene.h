@@ -57,6 +57,8 @@ struct spar_session {
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
     double coupling_target;          /* error the advised dt aims at */
+    int coupling_patience;           /* option coupling.patience */
+    int norm_of_loads;               /* option coupling.norm = motion (default) | loads */
     double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
     int theta_on_group;              /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
@@ -70,7 +72,8 @@ struct spar_session {
     int64_t step;
     int iteration;
     spari_phase phase;
-    int past;      /* loads before those of t^n that there are so far: the order of the next prediction */
+    int past;      /* loads before those of t^n that there are so far: the order of the next prediction; -1: nobody has
+                      given those of t^n either */
     int order;     /* of the predictor in the step under way */
     int iterating; /* the last check asked for another iteration */
     int started;   /* the clock has run */

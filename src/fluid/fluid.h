@@ -8,6 +8,8 @@
 
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
+/* Whether the host has ever pushed loads. */
+int spari_fluid_has_loads(const spar_fluid *fluid);
 /* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids
    that keep node forces (SPAR_EFFECT_FLUID_HISTORY) have work to do. ratio = dt^{n+1}/dt^n; order 0, 1 or 2 as in force
    at this step. */
@@ -39,6 +41,8 @@ enum {
     SPARI_MUTE_POSES = 2,
     SPARI_MUTE_HALF_STEP = 4,
     SPARI_MUTE_HISTORY = 8,
+    SPARI_ASKED_LOADS = 32, /* loads have been pushed, which may be zero; this too only tells; */
+    SPARI_HAD_LOADS = 64,   /* and had been when the step began, to which a rejected one goes back */
     SPARI_ASKED_MOMENT = 16 /* moments are left out by SPAR_EFFECT_FLUID_MOMENT; this only tells that there are any */
 };
 void spari_fluid_mute(spar_fluid *fluid, int mute);

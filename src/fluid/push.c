@@ -131,7 +131,7 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "the force array is NULL though there are %lld force nodes", (long long)s->n);
     }
-    fluid->asked |= moment.d || moment.f ? SPARI_ASKED_MOMENT : 0;
+    fluid->asked |= SPARI_ASKED_LOADS | (moment.d || moment.f ? SPARI_ASKED_MOMENT : 0);
     if (!(fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT)) {
         moment = (spari_source){0};
     }
@@ -295,6 +295,15 @@ int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audi
 
 /* ---- what the session asks ---- */
 
+/* A fluid from a file, or made anew, shows it by what it has. */
+int spari_fluid_has_loads(const spar_fluid *fluid) {
+    int has = fluid->asked & SPARI_ASKED_LOADS ? 1 : 0;
+    for (int64_t i = 0; !has && fluid->load && i < 6 * fluid->member->nodes; i++) {
+        has = fluid->load[i] != 0;
+    }
+    return has;
+}
+
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
     for (int64_t i = 0; fluid->load && i < 6 * fluid->member->nodes; i++) {
         load[i] += fluid->load[i];
@@ -311,6 +320,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     double w[3];
     spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
+    fluid->asked |= fluid->asked & SPARI_ASKED_LOADS ? SPARI_HAD_LOADS : 0;
     if (!h) {
         return;
     }
@@ -357,6 +367,7 @@ void spari_fluid_reject(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
     fluid->mean_theta = 0;
+    fluid->asked &= fluid->asked & SPARI_HAD_LOADS ? ~0 : ~SPARI_ASKED_LOADS;
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }

@@ -3,6 +3,7 @@
 #include "accelerate.h"
 
 #include "../base/status.h"
+#include "secants.h"
 
 #include <limits.h>
 #include <math.h>
@@ -31,14 +32,22 @@ struct spari_accelerator {
 
     double size[2], weight[2]; /* of forces and moments */
     double *x, *g;             /* of the iteration before */
+    double *image;             /* [2 n] imaged: of its g - x and g */
+    int imaged;                /* in the step: inner products are those of the images */
+    double scatter, scatter_accepted;
+    double residual, residual_first, residual_least; /* in the norm of the images: now, and of the step */
+    int rises;                                       /* iterations since it was far above the least */
 
-    int slots;      /* twice the columns: those at rest or dropped come back when the step is rejected */
-    column *column; /* [slots] */
-    double *v, *w;  /* [slots][n] differences of the residual g - x, and of g */
-    double *q, *r;  /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
-    double *alpha;  /* [columns] */
-    int *order;     /* slot of each column of q */
-    int used;       /* columns of q */
+    int slots;              /* twice the columns: those at rest or dropped come back when the step is rejected */
+    column *column;         /* [slots] */
+    double *v, *w;          /* [slots][n] differences of the residual g - x, and of g */
+    double *iv, *iw;        /* imaged: their images */
+    double *q, *r;          /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
+    double *p;              /* imaged: images of q */
+    spari_secants *secants; /* imaged */
+    double *alpha;          /* [columns] */
+    int *order;             /* slot of each column of q */
+    int used;               /* columns of q */
 };
 
 /* ---- memory ---- */
@@ -57,11 +66,14 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
     int quasi_newton = settings->scheme == SPAR_COUPLING_IQN_ILS;
     int64_t m = quasi_newton ? settings->columns : 0;
     a->slots = (int)(2 * m);
+    int64_t k = quasi_newton && settings->imaged ? m : 0;
     int ok = (a->x = spari_zalloc(n, sizeof *a->x)) && (a->g = spari_zalloc(n, sizeof *a->g)) &&
              (a->column = spari_zalloc(2 * m, sizeof *a->column)) && (a->v = spari_zalloc(2 * m * n, sizeof *a->v)) &&
              (a->w = spari_zalloc(2 * m * n, sizeof *a->w)) && (a->q = spari_zalloc(m * n, sizeof *a->q)) &&
              (a->r = spari_zalloc(m * m, sizeof *a->r)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
-             (a->order = spari_zalloc(m, sizeof *a->order));
+             (a->order = spari_zalloc(m, sizeof *a->order)) && (a->image = spari_zalloc(2 * n, sizeof *a->image)) &&
+             (a->iv = spari_zalloc(2 * k * n, sizeof *a->iv)) && (a->iw = spari_zalloc(2 * k * n, sizeof *a->iw)) &&
+             (a->p = spari_zalloc(k * n, sizeof *a->p)) && (k == 0 || (a->secants = spari_secants_create(n, (int)k)));
     if (!ok) {
         spari_accelerator_free(&a);
     }
@@ -73,15 +85,13 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    free(a->x);
-    free(a->g);
+    double *all[] = {a->x, a->g, a->image, a->v, a->w, a->iv, a->iw, a->q, a->r, a->p, a->alpha};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        free(all[i]);
+    }
     free(a->column);
-    free(a->v);
-    free(a->w);
-    free(a->q);
-    free(a->r);
-    free(a->alpha);
     free(a->order);
+    spari_secants_free(a->secants);
     free(a);
     *accelerator = NULL;
 }
@@ -114,6 +124,19 @@ static double *slot_v(const spari_accelerator *a, int slot) {
 
 static double *slot_w(const spari_accelerator *a, int slot) {
     return a->w + slot * a->n;
+}
+
+static double *slot_iv(const spari_accelerator *a, int slot) {
+    return a->iv + slot * a->n;
+}
+
+static double *slot_iw(const spari_accelerator *a, int slot) {
+    return a->iw + slot * a->n;
+}
+
+/* The root of a . image, 0 where rounding makes that negative. */
+static double size_in(const double *a, const double *image, int64_t n) {
+    return sqrt(fmax(dot(a, image, n), 0));
 }
 
 /* ---- weights ---- */
@@ -167,25 +190,35 @@ static int append(spari_accelerator *a, int slot) {
     if (k == a->set.columns) {
         return 0;
     }
-    double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns;
-    over_sizes(a, slot_v(a, slot), q);
-    double whole = sqrt(dot(q, q, a->n));
+    double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns, *images = a->imaged ? a->p : a->q;
+    double *p = images + k * a->n;
+    if (a->imaged) {
+        memcpy(q, slot_v(a, slot), (size_t)a->n * sizeof *q);
+        memcpy(p, slot_iv(a, slot), (size_t)a->n * sizeof *p);
+    } else {
+        over_sizes(a, slot_v(a, slot), q);
+    }
+    double whole = size_in(q, p, a->n);
     for (int j = 0; j < k; j++) {
         r[j] = 0;
     }
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < k; j++) {
-            double c = dot(a->q + j * a->n, q, a->n);
+            double c = dot(images + j * a->n, q, a->n);
             r[j] += c;
             axpy(-c, a->q + j * a->n, q, a->n);
+            if (a->imaged) {
+                axpy(-c, a->p + j * a->n, p, a->n);
+            }
         }
     }
-    r[k] = sqrt(dot(q, q, a->n));
+    r[k] = size_in(q, p, a->n);
     if (!(r[k] > a->set.filter * whole) || !isfinite(r[k])) {
         return 0;
     }
     for (int64_t i = 0; i < a->n; i++) {
         q[i] /= r[k];
+        p[i] = a->imaged ? p[i] / r[k] : q[i];
     }
     a->order[k] = slot;
     a->used++;
@@ -203,6 +236,9 @@ static int newest_before(const spari_accelerator *a, int64_t serial) {
     return found;
 }
 
+/* Scatter above QUIET: the columns that the filter takes out are kept, to be averaged with; above LOUD they are. */
+static const double QUIET = 1e-3, LOUD = 0.05;
+
 /* Out of use: a column of this step for good, an older one until it is known whether the step is accepted. */
 static void drop_column(spari_accelerator *a, int slot) {
     a->column[slot].state = a->column[slot].step == a->step ? FREE : DROPPED;
@@ -216,8 +252,10 @@ static void factor_columns(spari_accelerator *a) {
         serial = a->column[s].serial;
         int full = a->used == a->set.columns;
         if (!append(a, s)) {
-            drop_column(a, s);
             a->dropped += !full;
+            if (a->scatter <= QUIET) {
+                drop_column(a, s);
+            }
         }
     }
 }
@@ -247,11 +285,35 @@ static void limit_columns(spari_accelerator *a) {
     }
 }
 
+/* What the columns of the step, all but the one in slot `last`, make of that one. One that fits forgets a part of the
+   scatter seen before. */
+static void note_scatter(spari_accelerator *a, int last) {
+    static const double INDEPENDENT = 1e-2, MEMORY = 0.8;
+    int64_t serial = a->serial + 1;
+    spari_secants_begin(a->secants, INDEPENDENT);
+    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        serial = a->column[s].serial;
+        if (a->column[s].step != a->step ||
+            !spari_secants_add(a->secants, slot_v(a, s), slot_w(a, s), slot_iv(a, s), slot_iw(a, s))) {
+            break;
+        }
+    }
+    (void)spari_secants_fit(a->secants, 0);
+    double off = spari_secants_defect(a->secants, slot_v(a, last), slot_w(a, last), slot_iv(a, last), slot_iw(a, last));
+    if (off >= 0) {
+        a->scatter = fmax(fmin(off, 1), MEMORY * a->scatter);
+    }
+}
+
 /* The column of the last two iterations. */
-static void add_column(spari_accelerator *a, const double *x, const double *g) {
+static void add_column(spari_accelerator *a, const double *x, const double *g, const double *image) {
     limit_columns(a);
     int s = free_slot(a), moved = 0;
     double *v = slot_v(a, s), *w = slot_w(a, s);
+    for (int64_t i = 0; i < a->n && a->imaged; i++) {
+        slot_iv(a, s)[i] = image[i] - a->image[i];
+        slot_iw(a, s)[i] = image[a->n + i] - a->image[a->n + i];
+    }
     for (int64_t i = 0; i < a->n; i++) {
         w[i] = g[i] - a->g[i];
         v[i] = w[i] - (x[i] - a->x[i]);
@@ -261,16 +323,92 @@ static void add_column(spari_accelerator *a, const double *x, const double *g) {
         a->dropped++;
         return;
     }
+    if (a->imaged) {
+        note_scatter(a, s);
+    }
     a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt};
     if (!append(a, s)) {
         factor_columns(a);
     }
 }
 
+/* (I - J)^-1 of an added mass lengthens nothing in the norm of the images: the solution is no farther from the loads
+   that the step began with than the first residual is long. A step much longer than that, or than the residual, comes
+   of columns that are wrong. */
+static double longest(const spari_accelerator *a) {
+    static const double LONG = 10;
+    return LONG * fmin(a->residual, a->residual_first);
+}
+
+/* Cuts a step made with alpha to that. */
+static void trust(const spari_accelerator *a, const double *x, double *next) {
+    double step = 0, most = longest(a);
+    for (int64_t i = 0; i < a->n; i++) {
+        double answer = a->image[i];
+        for (int j = 0; j < a->used; j++) {
+            answer += a->alpha[j] * slot_iw(a, a->order[j])[i];
+        }
+        step += (next[i] - x[i]) * answer;
+    }
+    if (step > most * most) {
+        double cut = most / sqrt(step);
+        for (int64_t i = 0; i < a->n; i++) {
+            next[i] = x[i] + cut * (next[i] - x[i]);
+        }
+    }
+}
+
+/* alpha := R^-1 alpha */
+static void back_substitute(spari_accelerator *a) {
+    for (int j = a->used - 1; j >= 0; j--) {
+        const double *r = a->r + (int64_t)j * a->set.columns;
+        a->alpha[j] /= r[j];
+        for (int i = 0; i < j; i++) {
+            a->alpha[i] -= r[i] * a->alpha[j];
+        }
+    }
+}
+
+/* The same in the norm of the images, as x + (W - V) alpha + what the columns leave of the residual: a residual many
+   times larger than the loads leaves no rounding. */
+static int quasi_newton_imaged(spari_accelerator *a, const double *x, const double *g, double *next) {
+    int64_t n = a->n;
+    int m = a->used;
+    for (int64_t i = 0; i < n; i++) {
+        next[i] = g[i] - x[i];
+    }
+    memset(a->alpha, 0, (size_t)m * sizeof *a->alpha);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < m; j++) {
+            double part = dot(a->p + j * n, next, n);
+            a->alpha[j] -= part;
+            axpy(-part, a->q + j * n, next, n);
+        }
+    }
+    back_substitute(a);
+    if (spari_first_nonfinite(a->alpha, m) >= 0) {
+        return 0;
+    }
+    for (int j = 0; j < m; j++) {
+        const double *v = slot_v(a, a->order[j]), *w = slot_w(a, a->order[j]);
+        for (int64_t i = 0; i < n; i++) {
+            next[i] += a->alpha[j] * (w[i] - v[i]);
+        }
+    }
+    for (int64_t i = 0; i < n; i++) {
+        next[i] += x[i];
+    }
+    trust(a, x, next);
+    return 1;
+}
+
 /* next = g + W alpha, alpha the least squares of V alpha = -(g - x): the loads whose residual is as small as the
    columns know how. `next` may be x. Returns 0 where that gives no numbers. */
 static int quasi_newton(spari_accelerator *a, const double *x, const double *g, double *next) {
     int m = a->used;
+    if (a->imaged) {
+        return quasi_newton_imaged(a, x, g, next);
+    }
     for (int j = 0; j < m; j++) {
         const double *q = a->q + j * a->n;
         double s[2] = {0, 0};
@@ -281,13 +419,7 @@ static int quasi_newton(spari_accelerator *a, const double *x, const double *g, 
         }
         a->alpha[j] = -(s[0] * a->weight[0] + s[1] * a->weight[1]);
     }
-    for (int j = m - 1; j >= 0; j--) {
-        const double *r = a->r + (int64_t)j * a->set.columns;
-        a->alpha[j] /= r[j];
-        for (int i = 0; i < j; i++) {
-            a->alpha[i] -= r[i] * a->alpha[j];
-        }
-    }
+    back_substitute(a);
     if (spari_first_nonfinite(a->alpha, m) >= 0) {
         return 0;
     }
@@ -298,20 +430,39 @@ static int quasi_newton(spari_accelerator *a, const double *x, const double *g, 
     return 1;
 }
 
+/* next by the derivative that fits all columns. Returns 0 where that gives no numbers. */
+static int step_by_average(spari_accelerator *a, const double *x, const double *g, double *next) {
+    static const double PART = 0.5, FILTER = 0.3;
+    int64_t serial = a->serial + 1;
+    spari_secants_begin(a->secants, fmin(fmax(a->set.filter, PART * a->scatter), FILTER));
+    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        serial = a->column[s].serial;
+        if (!spari_secants_add(a->secants, slot_v(a, s), slot_w(a, s), slot_iv(a, s), slot_iw(a, s))) {
+            break;
+        }
+    }
+    return spari_secants_fit(a->secants, a->scatter * a->scatter) > 0 &&
+           spari_secants_step(a->secants, x, g, a->residual, longest(a), next);
+}
+
 /* ---- Aitken ---- */
 
 /* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; where the residual stalls omega stays. */
-static void aitken(spari_accelerator *a, const double *x, const double *g) {
+static void aitken(spari_accelerator *a, const double *x, const double *g, const double *image) {
     double product[2] = {0, 0}, square[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
             int kind = k >= a->split;
             double before = a->g[i + k] - a->x[i + k], change = (g[i + k] - x[i + k]) - before;
-            product[kind] += before * change;
-            square[kind] += change * change;
+            double answer = a->imaged ? image[i + k] - a->image[i + k] : change;
+            product[kind] += before * answer;
+            square[kind] += change * answer;
         }
     }
     double w[2] = {a->weight[0] * a->weight[0], a->weight[1] * a->weight[1]};
+    if (a->imaged) {
+        w[0] = w[1] = 1;
+    }
     double omega = -a->omega * (product[0] * w[0] + product[1] * w[1]) / (square[0] * w[0] + square[1] * w[1]);
     if (isfinite(omega) && omega != 0) {
         a->omega = omega;
@@ -337,12 +488,15 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
 }
 
 /* -dx.dg / dx.dx of the last two iterations */
-static void estimate_ratio(spari_accelerator *a, const double *x, const double *g) {
+static void estimate_ratio(spari_accelerator *a, const double *x, const double *g, const double *image) {
     double product = 0, square = 0;
     for (int64_t i = 0; i < a->n; i++) {
-        double w = a->weight[i % a->period >= a->split], dx = w * (x[i] - a->x[i]);
-        product -= dx * w * (g[i] - a->g[i]);
-        square += dx * dx;
+        double w = a->weight[i % a->period >= a->split], dx = x[i] - a->x[i], answer = w * w * dx;
+        if (a->imaged) {
+            answer = (image[a->n + i] - image[i]) - (a->image[a->n + i] - a->image[i]);
+        }
+        product -= answer * (g[i] - a->g[i]);
+        square += answer * dx;
     }
     double ratio = product / square;
     if (isfinite(ratio) && fabs(ratio) > fabs(a->ratio)) {
@@ -351,6 +505,9 @@ static void estimate_ratio(spari_accelerator *a, const double *x, const double *
 }
 
 static void compute_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+    if (a->imaged && a->scatter > LOUD && step_by_average(a, x, g, next)) {
+        return;
+    }
     if (a->used > 0 && quasi_newton(a, x, g, next)) {
         return;
     }
@@ -359,25 +516,73 @@ static void compute_next(spari_accelerator *a, const double *x, const double *g,
     }
 }
 
-void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+/* Columns of one norm say nothing in another. */
+static void set_norm(spari_accelerator *a, int imaged) {
+    if (imaged != a->imaged) {
+        for (int s = 0; s < a->slots; s++) {
+            if (a->column[s].state == LIVE) {
+                drop_column(a, s);
+            }
+        }
+        a->imaged = imaged;
+        a->iteration = a->used = 0;
+    }
+}
+
+static void measure(spari_accelerator *a, const double *x, const double *g, const double *image) {
+    double square = 0;
+    for (int64_t i = 0; i < a->n && a->imaged; i++) {
+        square += (g[i] - x[i]) * image[i];
+    }
+    a->residual = sqrt(fmax(square, 0));
+    if (a->iteration == 1) {
+        a->residual_first = a->residual_least = a->residual;
+        a->rises = 0;
+    }
+    a->rises = a->residual > 4 * a->residual_least ? a->rises + 1 : 0;
+    a->residual_least = fmin(a->residual_least, a->residual);
+}
+
+/* What rises again, twice, after it had all but ended is driven by columns below the fluid's scatter. */
+static void suspect(spari_accelerator *a) {
+    if (a->secants && a->imaged && a->scatter <= LOUD && a->rises >= 2 &&
+        a->residual_least < 0.03 * a->residual_first) {
+        a->scatter = 2 * LOUD;
+    }
+}
+
+static void learn(spari_accelerator *a, const double *x, const double *g, const double *image) {
+    estimate_ratio(a, x, g, image);
+    if (a->set.scheme == SPAR_COUPLING_AITKEN) {
+        aitken(a, x, g, image);
+    } else if (a->set.scheme == SPAR_COUPLING_IQN_ILS) {
+        add_column(a, x, g, image);
+    }
+}
+
+void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const double *image, double *next) {
+    set_norm(a, image && a->set.imaged);
     a->iteration++;
     int reweighed = weigh(a, x, g);
-    if (reweighed && a->slots > 0) {
+    if (reweighed && a->slots > 0 && !a->imaged) {
         factor_columns(a);
     }
+    if (a->iteration == 1 && a->imaged && a->slots > 0) {
+        factor_columns(a);
+    }
+    measure(a, x, g, image);
     if (a->iteration > 1) {
-        estimate_ratio(a, x, g);
-        if (a->set.scheme == SPAR_COUPLING_AITKEN) {
-            aitken(a, x, g);
-        } else if (a->set.scheme == SPAR_COUPLING_IQN_ILS) {
-            add_column(a, x, g);
-        }
+        learn(a, x, g, image);
+        suspect(a);
     }
     if (a->n == 0) {
         return;
     }
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memcpy(a->g, g, (size_t)a->n * sizeof *g);
+    if (a->imaged) {
+        memcpy(a->image, image, (size_t)(2 * a->n) * sizeof *image);
+    }
     compute_next(a, a->x, a->g, next);
 }
 
@@ -408,6 +613,7 @@ void spari_accelerator_accept(spari_accelerator *a) {
     if (a->iteration > 1) {
         a->omega_accepted = a->omega;
     }
+    a->scatter_accepted = a->scatter;
     a->used = 0;
     a->step++;
 }
@@ -419,6 +625,7 @@ void spari_accelerator_reject(spari_accelerator *a) {
             c->state = c->step == a->step ? FREE : LIVE;
         }
     }
+    a->scatter = a->scatter_accepted;
     a->used = 0;
     a->iteration = 0;
 }
@@ -435,9 +642,18 @@ double spari_accelerator_ratio(const spari_accelerator *a) {
     return a->ratio;
 }
 
+double spari_accelerator_scatter(const spari_accelerator *a) {
+    return a->scatter;
+}
+
 /* ---- save and load ---- */
 
-enum { HEAD = 15, COLUMN_HEAD = 5 };
+enum { HEAD = 21, COLUMN_HEAD = 5 };
+
+/* Vectors of length n that are kept of the iteration before, and of each column. */
+static int64_t kept(const spari_accelerator *a) {
+    return a->set.imaged ? 4 : 2;
+}
 
 static int occupied(const spari_accelerator *a) {
     int count = 0;
@@ -448,18 +664,24 @@ static int occupied(const spari_accelerator *a) {
 }
 
 int64_t spari_accelerator_state_size(const spari_accelerator *a) {
-    return HEAD + 2 * a->n + occupied(a) * (COLUMN_HEAD + 2 * a->n) + a->used;
+    return HEAD + kept(a) * a->n + occupied(a) * (COLUMN_HEAD + kept(a) * a->n) + a->used;
 }
 
 void spari_accelerator_save(const spari_accelerator *a, double *state) {
-    const double head[HEAD] = {(double)a->n, (double)a->step, (double)a->serial, a->iteration,      a->dropped,
-                               a->dt,        a->ratio,        a->omega,          a->omega_accepted, a->size[0],
-                               a->size[1],   a->weight[0],    a->weight[1],      occupied(a),       a->used};
+    const double head[HEAD] = {
+        (double)a->n,      (double)a->step,   (double)a->serial, a->iteration, a->dropped, a->dt,
+        a->ratio,          a->omega,          a->omega_accepted, a->size[0],   a->size[1], a->weight[0],
+        a->weight[1],      occupied(a),       a->used,           a->imaged,    a->scatter, a->scatter_accepted,
+        a->residual_first, a->residual_least, a->rises};
     size_t bytes = (size_t)a->n * sizeof *state;
     memcpy(state, head, sizeof head);
     memcpy(state += HEAD, a->x, bytes);
     memcpy(state += a->n, a->g, bytes);
     state += a->n;
+    if (a->set.imaged) {
+        memcpy(state, a->image, 2 * bytes);
+        state += 2 * a->n;
+    }
     for (int s = 0; s < a->slots; s++) {
         const column *c = a->column + s;
         if (c->state != FREE) {
@@ -468,6 +690,11 @@ void spari_accelerator_save(const spari_accelerator *a, double *state) {
             memcpy(state += COLUMN_HEAD, slot_v(a, s), bytes);
             memcpy(state += a->n, slot_w(a, s), bytes);
             state += a->n;
+            if (a->set.imaged) {
+                memcpy(state, slot_iv(a, s), bytes);
+                memcpy(state + a->n, slot_iw(a, s), bytes);
+                state += 2 * a->n;
+            }
         }
     }
     for (int j = 0; j < a->used; j++) {
@@ -481,7 +708,7 @@ static int whole_below(double x, double end) {
 
 /* Columns in slots of their own, not more of this step nor of older ones than there can be. */
 static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
-    int64_t width = COLUMN_HEAD + 2 * a->n, of_step = 0;
+    int64_t width = COLUMN_HEAD + kept(a) * a->n, of_step = 0;
     for (int64_t k = 0; k < occupied; k++) {
         const double *c = first + k * width;
         int now = c[2] == step;
@@ -506,10 +733,11 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
         return 0;
     }
     int64_t occupied = (int64_t)state[13], used = (int64_t)state[14];
-    if (count != HEAD + 2 * a->n + occupied * (COLUMN_HEAD + 2 * a->n) + used) {
+    if (count != HEAD + kept(a) * a->n + occupied * (COLUMN_HEAD + kept(a) * a->n) + used) {
         return 0;
     }
-    if (!are_columns(a, state + HEAD + 2 * a->n, occupied, state[1])) {
+    if (!whole_below(state[15], a->set.imaged ? 2 : 1) || !whole_below(state[20], INT_MAX) ||
+        !are_columns(a, state + HEAD + kept(a) * a->n, occupied, state[1])) {
         return 0;
     }
     for (int64_t j = count - used; j < count; j++) {
@@ -531,9 +759,15 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     a->dt = state[5], a->ratio = state[6], a->omega = state[7], a->omega_accepted = state[8];
     memcpy(a->size, state + 9, sizeof a->size);
     memcpy(a->weight, state + 11, sizeof a->weight);
+    a->imaged = (int)state[15], a->scatter = state[16], a->scatter_accepted = state[17], a->residual_first = state[18];
+    a->residual_least = state[19], a->rises = (int)state[20];
     memcpy(a->x, state += HEAD, bytes);
     memcpy(a->g, state += a->n, bytes);
     state += a->n;
+    if (a->set.imaged) {
+        memcpy(a->image, state, 2 * bytes);
+        state += 2 * a->n;
+    }
     for (int s = 0; s < a->slots; s++) {
         a->column[s].state = FREE;
     }
@@ -543,6 +777,11 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
         memcpy(slot_v(a, s), state += COLUMN_HEAD, bytes);
         memcpy(slot_w(a, s), state += a->n, bytes);
         state += a->n;
+        if (a->set.imaged) {
+            memcpy(slot_iv(a, s), state, bytes);
+            memcpy(slot_iw(a, s), state + a->n, bytes);
+            state += 2 * a->n;
+        }
     }
     a->used = 0;
     for (int j = 0; j < used; j++) { /* in the order of the first time: the same bits */

@@ -6,8 +6,13 @@
    quasi-Newton with least squares, IQN-ILS (Degroote, Bathe & Vierendeels 2009), with the filter QR2 of Haelterman et
    al. (2016): the newest columns first, each kept only if enough of it is independent of those before.
 
-   Entries i with i % period < split are forces, the others moments (already divided by a length). Each of the two is
-   measured by its own size, so that the choice of units changes no iterate. */
+   Inner products are those of the images: <a, b> = a . S b, S symmetric and positive (semidefinite), where the caller
+   gives S (g - x) and S g with x and g. A fluid whose answers contradict each other (noise, or inner iterations that
+   have not ended) is then found by what the columns of the step say of its next answer, and its derivative is fitted
+   to all columns instead (secants.h).
+
+   Without images, entries i with i % period < split are forces, the others moments (already divided by a length). Each
+   of the two is measured by its own size, so that the choice of units changes no iterate. */
 #ifndef SPARI_ACCELERATE_H
 #define SPARI_ACCELERATE_H
 
@@ -21,6 +26,7 @@ typedef struct spari_accelerator_settings {
     int columns;   /* IQN-ILS: the most difference columns in use, >= 1 */
     int reuse;     /* IQN-ILS: accepted steps whose columns are used again, >= 0 */
     double filter; /* IQN-ILS: a column stays if more than this part of it is independent of newer ones; 0: any */
+    int imaged;    /* IQN-ILS: there is memory for images */
 } spari_accelerator_settings;
 
 /* Takes all memory there will be need of; NULL: there is none. */
@@ -30,8 +36,9 @@ void spari_accelerator_free(spari_accelerator **accelerator);
 
 /* A step begins. Columns of steps with another dt (by more than a tenth) rest while it lasts: dt is in the map. */
 void spari_accelerator_begin(spari_accelerator *a, double dt);
-/* From x and g the next x; next may be x. The caller has found x not converged: g - x is not zero. */
-void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, double *next);
+/* From x and g the next x; next may be x. The caller has found x not converged: g - x is not zero. image [2 n]: of g -
+   x and of g; NULL, or not imaged: without. */
+void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const double *image, double *next);
 /* The step is accepted: its columns may serve the next ones. */
 void spari_accelerator_accept(spari_accelerator *a);
 /* The step is given up: all is as before it began. Its columns go, for what made the host reject the step (a failed
@@ -44,6 +51,8 @@ int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered o
 /* The largest -dx.dg / dx.dx of the step: what takes the place of (added mass)/(mass) in the piston model, whose map
    has the derivative minus that ratio. 0 before the second iteration. */
 double spari_accelerator_ratio(const spari_accelerator *a);
+/* How much the fluid's answers contradict each other, relative to their change: 0 of an exact function, 1 of noise. */
+double spari_accelerator_scatter(const spari_accelerator *a);
 
 /* The whole state as doubles, for save and load into an accelerator of the same n and settings. */
 int64_t spari_accelerator_state_size(const spari_accelerator *a);

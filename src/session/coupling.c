@@ -6,6 +6,7 @@
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "own.h"
+#include "weigh.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +20,8 @@ void spari_coupling_free(spari_coupling **coupling) {
     if (!c) {
         return;
     }
-    double *all[] = {c->length, c->unit, c->x, c->g, c->predicted, c->motion, c->residual, c->size};
+    double *all[] = {c->length,   c->unit, c->x,     c->g,    c->predicted, c->motion,
+                     c->residual, c->size, c->image, c->room, c->missed};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -35,15 +37,22 @@ int spari_coupling_wants_motion(const spar_session *s) {
 static int make_vectors(const spar_session *s, spari_coupling *c) {
     int iterated = s->scheme != SPAR_COUPLING_EXPLICIT;
     int64_t n = iterated ? c->n : 0;
-    spari_accelerator_settings set = {s->scheme, s->relaxation, s->coupling_columns, s->coupling_reuse,
-                                      s->coupling_filter};
+    spari_accelerator_settings set = {s->scheme,         s->relaxation,      s->coupling_columns,
+                                      s->coupling_reuse, s->coupling_filter, c->weighs};
+    int64_t largest = 0, images = c->weighs ? n : 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        largest = m->nodes > largest ? m->nodes : largest;
+    }
     c->most = iterated ? s->coupling_max : 1;
     return (c->length = spari_zalloc(c->members, sizeof(double))) &&
            (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
            (c->g = spari_zalloc(n, sizeof(double))) && (c->predicted = spari_zalloc(n, sizeof(double))) &&
            (c->motion =
                 spari_zalloc(iterated && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
+           (iterated || (c->missed = spari_zalloc(c->n, sizeof(double)))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
+           (c->image = spari_zalloc(2 * images + 1, sizeof(double))) &&
+           (c->room = spari_zalloc(c->weighs ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
 
@@ -61,11 +70,12 @@ int spari_coupling_fits(const spar_session *s) {
     return c && !s->coupling_stale && c->members == s->member_count && c->n == count_unknowns(s);
 }
 
-int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
+int spari_coupling_create(spar_session *s, int at_rest, spari_coupling **coupling) {
     spari_coupling *c = spari_zalloc(1, sizeof *c);
     if (c) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
+        c->weighs = !at_rest && s->scheme != SPAR_COUPLING_EXPLICIT && spari_weighs_motion(s);
     }
     if (!c || !make_vectors(s, c)) {
         spari_coupling_free(&c);
@@ -85,9 +95,10 @@ int spari_coupling_create(spar_session *s, spari_coupling **coupling) {
 
 int spari_coupling_prepare(spar_session *s) {
     spari_coupling *c;
-    SPARI_TRY(spari_coupling_create(s, &c));
+    SPARI_TRY(spari_coupling_create(s, 0, &c));
     if (s->own->coupling) {
         c->report[SPAR_REPORT_UNCONVERGED] = s->own->coupling->report[SPAR_REPORT_UNCONVERGED];
+        c->in_row = s->own->coupling->in_row;
     }
     spari_coupling_free(&s->own->coupling);
     s->own->coupling = c;
@@ -198,6 +209,34 @@ static void record(spari_coupling *c, double residual, double size) {
     }
 }
 
+/* By how much the residual has grown from iteration to iteration lately; 0: it has not. */
+static double grown_lately(const spari_coupling *c) {
+    enum { LATELY = 3 };
+    int last = c->iterations - 1, first = last > LATELY ? last - LATELY : 0;
+    double factor =
+        last > first && c->residual[first] > 0 ? pow(c->residual[last] / c->residual[first], 1.0 / (last - first)) : 0;
+    return factor > 1.2 ? factor : 0;
+}
+
+static const char diverging_cures[] =
+    "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, let the fluid correct its pressure more often before it "
+    "pushes, or reject the step";
+
+int spari_coupling_solve_failed(spar_session *s, int status) {
+    const spari_coupling *c = s->own->coupling;
+    double factor = c->iterations == s->iteration ? grown_lately(c) : 0;
+    if (status != SPAR_ERR_NUMERIC || factor == 0) {
+        return status;
+    }
+    char why[SPARI_MESSAGE_SIZE / 2];
+    (void)snprintf(why, sizeof why, "%.*s", (int)sizeof why - 1, s->message);
+    return spari_fail(
+        s, status,
+        "spar_step_solve: the coupling diverges: the change of the loads has grown by a factor of %.3g from "
+        "iteration to iteration, to %.3g N in iteration %d; %s (%.400s)",
+        factor, c->residual[c->iterations - 1], s->iteration, diverging_cures, why);
+}
+
 static int not_converged(spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
@@ -205,12 +244,38 @@ static int not_converged(spar_session *s) {
     if (spari_coupling_wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
+    double factor = grown_lately(c);
+    if (factor > 0) {
+        return spari_fail(
+            s, SPAR_ERR_NUMERIC,
+            "spar_step_check: the coupling has not converged in %d iterations, it diverges: the change of "
+            "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s "
+            "(added mass about %.3g of the mass); %s",
+            s->iteration, factor, c->residual[last], c->size[last], motion, c->report[SPAR_REPORT_ADDED_MASS],
+            diverging_cures);
+    }
     return spari_fail(
         s, SPAR_ERR_NUMERIC,
         "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
         "N%s; added mass about %.3g of the mass); take a smaller relaxation, another scheme or a smaller "
         "dt, or reject the step",
         s->iteration, c->residual[last], c->size[last], motion, c->report[SPAR_REPORT_ADDED_MASS]);
+}
+
+/* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
+static int weigh_residual(spar_session *s, double size, double *residual) {
+    spari_coupling *c = s->own->coupling;
+    double motion, whole;
+    c->weighed = 0;
+    if (c->weighs) {
+        stack(s);
+        const spari_weighed w = {c->n, c->unit, c->x, c->g, c->image, c->room};
+        SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));
+        if (c->weighed) {
+            *residual = whole > 0 ? size * (motion / whole) : 0;
+        }
+    }
+    return SPAR_OK;
 }
 
 int spari_coupling_compare(spar_session *s, int *agreed) {
@@ -225,6 +290,7 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     if (motion) {
         motion_norms(s);
     }
+    SPARI_TRY(weigh_residual(s, size, &residual));
     record(c, residual, size);
     *agreed = residual <= s->coupling_atol + s->coupling_rtol * size &&
               (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled);
@@ -234,11 +300,32 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
 void spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     stack(s);
-    spari_accelerator_next(c->accelerator, c->x, c->g, c->x);
+    spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? c->image : NULL, c->x);
     unstack(s);
     c->report[SPAR_REPORT_ADDED_MASS] = spari_accelerator_ratio(c->accelerator);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
     c->report[SPAR_REPORT_DROPPED] = spari_accelerator_dropped(c->accelerator);
+}
+
+/* Told each time, and no more often than the option coupling.patience says on end. */
+static int accept_unconverged(spar_session *s) {
+    spari_coupling *c = s->own->coupling;
+    int last = c->iterations - 1;
+    if (c->in_row + 1 >= s->coupling_patience) {
+        return not_converged(s);
+    }
+    c->unconverged = 1;
+    c->report[SPAR_REPORT_UNCONVERGED] += 1;
+    if (s->log) {
+        char text[SPARI_MESSAGE_SIZE];
+        (void)snprintf(
+            text, sizeof text,
+            "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g N of "
+            "%.3g N), which goes on as it is (option coupling.unconverged = accept)",
+            s->iteration, s->time, c->residual[last], c->size[last]);
+        spari_log(s, SPAR_LOG_WARNING, text);
+    }
+    return SPAR_OK;
 }
 
 int spari_coupling_check(spar_session *s, int *done) {
@@ -253,8 +340,7 @@ int spari_coupling_check(spar_session *s, int *done) {
         if (!s->accept_unconverged) {
             return not_converged(s);
         }
-        c->report[SPAR_REPORT_UNCONVERGED] += 1;
-        return SPAR_OK;
+        return accept_unconverged(s);
     }
     *done = 0;
     spari_coupling_next(s);
@@ -292,16 +378,39 @@ static double work_defect(const spar_session *s, double *whole) {
     return defect;
 }
 
+/* What the growth says of the fluid: mean, scatter, and the added mass that an explicit scheme of this order grows so
+   fast with, over what it bears: 1, 1/3, 1/7 of the mass. */
+static void tell_alternation(const spar_session *s) {
+    const spari_coupling *c = s->own->coupling;
+    double mean = c->log_growth / c->turns, spread = sqrt(fmax(c->log_growth2 / c->turns - mean * mean, 0));
+    double z = exp(mean), ratio = s->order == 0   ? z
+                                  : s->order == 1 ? z * z / (2 * z + 1)
+                                                  : z * z * z / (3 * z * z + 3 * z + 1);
+    static const double bears[3] = {1, 1.0 / 3, 1.0 / 7};
+    if (s->log) {
+        char text[SPARI_MESSAGE_SIZE];
+        (void)snprintf(
+            text, sizeof text,
+            "the coupling is becoming unstable at t = %g: in the last %d steps the fluid's loads have missed the "
+            "predicted ones in turn on either side, each time by %.3g (+- %.2g) times as much: added mass of "
+            "about %.2g of the mass; an explicit scheme with a predictor of order %d bears %.2g; iterate "
+            "(spar_session_set_coupling) or lower the order of the predictor",
+            s->time + s->dt, c->turns + 1, z, z * spread, ratio, s->order, bears[s->order]);
+        spari_log(s, SPAR_LOG_WARNING, text);
+    }
+}
+
 /* The defect of a sound run is a small part of the work, whatever its course. Of a run about to blow up it is of the
    size of the work and grows from step to step. */
 static void watch(spar_session *s) {
-    enum { GROWING_STEPS = 4 };
+    enum { GROWING_STEPS = 4, LONG_CALM = 20 };
     spari_coupling *c = s->own->coupling;
     double whole, defect = work_defect(s, &whole);
     c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
     c->defect = defect;
     c->report[SPAR_REPORT_WORK_DEFECT] = defect;
-    if (c->grown == 0) {
+    c->calm = c->grown == 0 && c->turns == 0 ? c->calm + 1 : 0;
+    if (c->calm >= LONG_CALM) {
         c->warned = 0;
     }
     if (c->grown >= GROWING_STEPS && !c->warned) {
@@ -319,7 +428,48 @@ static void watch(spar_session *s) {
     }
 }
 
+/* Predicted loads of a sound run are missed by little, and on one side for long. Of an explicit one with too much added
+   mass they are missed in turn on either side, each time by the same factor more: |z| of z^{n+1} + r E(z) = 0, E the
+   extrapolation and r the ratio of the masses. */
+static void watch_alternation(spar_session *s) {
+    static const double OPPOSITE = -0.8, LARGE = 0.5, SMALL = 0.05;
+    enum { AT_LEAST = 2, SURE = 4 };
+    spari_coupling *c = s->own->coupling;
+    double both = 0, now = 0, before = 0, change, size, *e = c->missed;
+    load_norms(s, NULL, &change, &size);
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++, e++) {
+            double miss = (m->load_pushed[i] - m->load_used[i]) / (i % 6 < 3 ? 1 : c->length[k]);
+            both += miss * *e;
+            now += miss * miss;
+            before += *e * *e;
+            *e = miss;
+        }
+    }
+    double factor = sqrt(now / before);
+    if (!(before > 0) || both > OPPOSITE * sqrt(now * before) || !(factor > 1.02) || !isfinite(factor)) {
+        c->turns = 0;
+        c->log_growth = c->log_growth2 = 0;
+        return;
+    }
+    c->turns++;
+    c->log_growth += log(factor);
+    c->log_growth2 += log(factor) * log(factor);
+    int sure = c->turns >= SURE ? change > SMALL * size : c->turns >= AT_LEAST && change > LARGE * size;
+    if (sure && c->log_growth > log(2) && !c->warned) {
+        c->warned = 1;
+        tell_alternation(s);
+    }
+}
+
 void spari_coupling_accept(spar_session *s) {
+    spari_coupling *c = s->own->coupling;
+    c->in_row = c->unconverged ? c->in_row + 1 : 0;
+    c->unconverged = 0;
+    if (s->phase == SPARI_CHECKED && c->missed) {
+        watch_alternation(s);
+    }
     if (s->phase == SPARI_CHECKED) {
         estimate_error(s);
         watch(s);

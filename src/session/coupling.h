@@ -10,9 +10,13 @@
 typedef struct spari_coupling {
     int64_t n; /* six for every node of every member */
     int members;
+    int weighs;        /* iterated: loads are weighed by the motion they cause */
+    int weighed;       /* and were in the last check: `image` holds */
     double *length;    /* of each member: moments count as moment over length, turns as turn times length */
     double *unit;      /* of each member: the power of two next to 1/length, which scales moments without rounding */
     double *x, *g;     /* iterated: loads used and come back, stacked, moments times unit */
+    double *image;     /* weighing motion: [2 n + 1], what g - x and g move, stacked; and room for the ranks' status */
+    double *room;      /* likewise: loads of one member */
     double *predicted; /* iterated: loads the step began with, as they are */
     double *motion;    /* motion test: places and quaternions [7] of the iteration before */
     spari_accelerator *accelerator; /* iterated */
@@ -21,13 +25,17 @@ typedef struct spari_coupling {
     double *residual, *size; /* change of the loads and the loads, [N], by iteration */
     double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
     double report[SPAR_REPORT_COUNT];
-    double defect; /* of the last accepted step */
-    int grown;     /* steps in which it has grown without a break */
-    int warned;
+    double defect;                  /* of the last accepted step */
+    int grown;                      /* steps in which it has grown without a break */
+    int warned, calm;               /* has been told; steps since there was anything to tell */
+    double *missed;                 /* explicit: loads pushed less predicted ones, in the last step */
+    int turns;                      /* steps on end in which that has grown and turned about */
+    double log_growth, log_growth2; /* sums of the logarithms of its growth, and of their squares */
+    int unconverged, in_row; /* the step under way is accepted though it has not converged; and those before it */
 } spari_coupling;
 
-/* Memory for the settings in force. Local. */
-int spari_coupling_create(spar_session *session, spari_coupling **coupling);
+/* Memory for the settings in force. at_rest: for an equilibrium, whose loads are weighed by themselves. Local. */
+int spari_coupling_create(spar_session *session, int at_rest, spari_coupling **coupling);
 /* The same into the session; what there was goes. */
 int spari_coupling_prepare(spar_session *session);
 /* Whether the session's is of the settings in force and of the members there are now. Local, the same on every rank. */
@@ -40,6 +48,9 @@ int spari_coupling_compare(spar_session *session, int *agreed);
 void spari_coupling_next(spar_session *session);
 /* Both, as a step wants it: done where they agree, or where it goes on with what there is. */
 int spari_coupling_check(spar_session *session, int *done);
+/* The structure could not be solved with the loads: says so where these have grown from iteration to iteration.
+   Returns status. */
+int spari_coupling_solve_failed(spar_session *session, int status);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
 void spari_coupling_reject(spar_session *session);

@@ -34,7 +34,7 @@ int spari_session_seal(spar_session *s, int status) {
         s->own->pack_count = count;
         s->own->first = NULL;
         s->own->motion = NULL;
-        s->own->pack = spari_zalloc(count + 1, sizeof *s->own->pack);
+        s->own->pack = spari_zalloc(count + 2, sizeof *s->own->pack);
         int ok = s->own->pack != NULL;
         if (ok && ranks > 1) {
             s->own->first = spari_zalloc(ranks + 1, sizeof *s->own->first);
@@ -65,8 +65,9 @@ int spari_session_pushes(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-int spari_session_exchange_loads(spar_session *s) {
-    memset(s->own->pack, 0, (size_t)(s->own->pack_count + 1) * sizeof *s->own->pack);
+int spari_session_exchange_loads(spar_session *s, int *pushed) {
+    double *pushes = s->own->pack + s->own->pack_count;
+    memset(s->own->pack, 0, (size_t)(s->own->pack_count + 2) * sizeof *s->own->pack);
     int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         m->pack_at = at;
@@ -75,9 +76,14 @@ int spari_session_exchange_loads(spar_session *s) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
             spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
+            *pushes += spari_fluid_has_loads(f);
         }
     }
-    return spari_comm_sum(s->comm, s->own->pack, s->own->pack_count, SPAR_OK, s->message, sizeof s->message);
+    SPARI_TRY(spari_comm_sum(s->comm, s->own->pack, s->own->pack_count + 1, SPAR_OK, s->message, sizeof s->message));
+    if (pushed) {
+        *pushed = *pushes > 0;
+    }
+    return SPAR_OK;
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {

@@ -8,8 +8,8 @@
    its message. Local. */
 int spari_session_pushes(spar_session *session, const char *call);
 /* The sum over all ranks of what the fluids pushed; then the part of one member, into load [nodes][6]. The first is
-   collective. */
-int spari_session_exchange_loads(spar_session *session);
+   collective. pushed: whether any fluid ever pushed loads; may be NULL. */
+int spari_session_exchange_loads(spar_session *session, int *pushed);
 void spari_session_take_loads(const spar_session *session, const spar_member *member, double *load);
 /* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.
  * Collective. */

@@ -9,7 +9,8 @@ typedef struct spari_coupling spari_coupling; /* coupling.h */
 typedef struct spari_advised spari_advised;   /* trial/apply.h */
 
 struct spari_own {
-    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members + 1] */
+    double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members], the fluids that
+                    push, the status */
     int64_t pack_count;
     int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
     double *motion;           /* several ranks: motion of all solved members, by owner */

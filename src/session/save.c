@@ -134,6 +134,13 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass(t, &c->defect, 1);
     pass_int(t, &c->grown);
     pass_int(t, &c->warned);
+    pass_int(t, &c->turns);
+    pass_int(t, &c->calm);
+    pass_int(t, &c->unconverged);
+    pass_int(t, &c->in_row);
+    pass(t, &c->log_growth, 1);
+    pass(t, &c->log_growth2, 1);
+    pass(t, c->missed, c->missed ? c->n : 0);
 }
 
 static void put_accelerator(spari_image *image, const spari_coupling *c) {
@@ -416,7 +423,8 @@ static int check_clock(spar_session *s, reading *l) {
     int ok = !l->image.failed && isfinite(then.time) && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
              is_within(then.step, 0, INT64_C(1) << 53) && is_within(then.iteration, 0, 1 << 30) &&
              is_within(phase, SPARI_IDLE, SPARI_CHECKED) && is_within(then.order, 0, 2) &&
-             is_within(then.past, 0, then.predictor) && then.started == (within || then.step > 0);
+             is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
+             then.started == (within || then.step > 0);
     for (int k = 0; k < 2; k++) { /* what a prediction divides by */
         int used = then.past > k || (within && then.order > k);
         ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
@@ -438,7 +446,7 @@ static int check_coupling(spar_session *s, reading *l) {
     int own = spari_settings_of_coupling(s, settings);
     const uint64_t *saved = spari_image_get(&l->image, own);
     if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
-        SPARI_TRY(spari_coupling_create(s, &l->coupling));
+        SPARI_TRY(spari_coupling_create(s, 0, &l->coupling));
         passage t = {&l->image, READ};
         pass_coupling(&t, l->coupling);
         if (l->coupling->accelerator) {

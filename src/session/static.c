@@ -96,7 +96,7 @@ static void settle_member(spar_member *m, const double *fluid) {
 static int find_rest(spar_member *m, int load_steps) {
     spar_session *s = m->session;
     if (!s->started) {
-        SPARI_TRY(spari_session_exchange_loads(s));
+        SPARI_TRY(spari_session_exchange_loads(s, NULL));
         spari_session_take_loads(s, m, m->load_pushed);
     }
     return spari_session_share_motion(s, solve_member_static(m, m->load_pushed, load_steps, 0));
@@ -144,7 +144,7 @@ static int check_session_static(spar_session *s, int load_steps) {
    aside. */
 static int prepare_coupling(spar_session *s, spari_coupling **of_steps) {
     spari_coupling *own = NULL;
-    int status = spari_enter(s, "coupling", spari_coupling_create(s, &own));
+    int status = spari_enter(s, "coupling", spari_coupling_create(s, 1, &own));
     if (status != SPAR_OK) {
         spari_coupling_free(&own);
         return status;
@@ -197,7 +197,7 @@ static int begin_static(spar_session *s) {
         copy_loads(m, m->load_pushed, m->load_used);
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
-        SPARI_TRY(spari_session_exchange_loads(s));
+        SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *m = s->members; m; m = m->next) {
             spari_session_take_loads(s, m, m->load_used);
         }
@@ -263,7 +263,7 @@ static int ask_fluid(spar_session *s, spar_fluid_solver solve, void *context) {
     }
     status = status == SPAR_OK ? spari_session_pushes(s, session_call) : status;
     SPARI_TRY(spari_enter(s, session_call, status));
-    SPARI_TRY(spari_session_exchange_loads(s));
+    SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
     }

@@ -76,13 +76,15 @@ int spar_step_begin(spar_session *session, double dt) {
     }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
         SPARI_TRY(spari_session_seal(s, SPAR_OK));
-        SPARI_TRY(spari_session_exchange_loads(s));
+        int pushed = 0;
+        SPARI_TRY(spari_session_exchange_loads(s, &pushed));
+        s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
         for (spar_member *m = s->members; m; m = m->next) {
             spari_session_take_loads(s, m, m->load_history[0]);
             memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
         }
     }
-    int order = s->past;
+    int order = s->past > 0 ? s->past : 0;
     for (spar_member *m = s->members; m; m = m->next) {
         hold_root(m);
         predict_loads(m, order, dt, s->dt_last);
@@ -144,7 +146,7 @@ int spar_step_solve(spar_session *session) {
             }
         }
         s->phase = SPARI_BEGUN;
-        return spari_named(s, __func__, status);
+        return spari_coupling_solve_failed(s, spari_named(s, __func__, status));
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
@@ -172,7 +174,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
         return status;
     }
     s->failed = 1; /* until all below has gone well */
-    SPARI_TRY(spari_session_exchange_loads(s));
+    SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
     }
@@ -250,6 +252,7 @@ static void reject(spar_session *s) {
     }
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
+    s->past = s->past > 0 ? s->past : 0;
 }
 
 int spar_step_reject(spar_session *session) {

@@ -429,6 +429,15 @@ static int substep(void *self, const spar_member *member, const spari_scheme *c,
     return status;
 }
 
+int spari_solver_answer(spari_solver *s, const spar_member *member, double *load, double *motion) {
+    spari_scheme c = spari_scheme_of(member, s->body->D != NULL, s->steps.h_solved);
+    if (!s->factored && form_tangent(s, member, &c, &s->to)) {
+        return 1;
+    }
+    memset(load, 0, (size_t)spari_member_held(member) * sizeof *load);
+    return solve_turned(s, s->to.q, load, motion);
+}
+
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
     static const spari_integrand how = {start, begin_step, substep};
     return spari_scheme_advance(&how, s, &s->steps, 6 * s->n, member, s->body->D != NULL, dt);

@@ -57,6 +57,16 @@ static void exact_effort(const spar_member *m, spari_effort *effort) {
     spari_solver_effort(m->solution, effort);
 }
 
+static int exact_answer(spar_member *m, const double *load, double *motion) {
+    spari_solver *s = m->solution;
+    spari_member_gather(m, load, s->r);
+    if (spari_solver_answer(s, m, s->r, s->dx)) {
+        return 1;
+    }
+    spari_member_from_unique(m, 6, s->dx, motion);
+    return 0;
+}
+
 static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     spari_solver *s = m->solution;
     spari_member_gather(m, m->dead, s->steps.load);
@@ -135,6 +145,7 @@ const spari_fidelity spari_fidelity_exact = {
     .renew = exact_renew,
     .restart = exact_restart,
     .advance = exact_advance,
+    .answer = exact_answer,
     .accept = exact_accept,
     .effort = exact_effort,
     .rest = exact_rest,

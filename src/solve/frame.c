@@ -198,6 +198,10 @@ static void frame_shape(const spar_member *m, const double *x, double *room, dou
     spari_member_from_unique(m, 6, room, nodes);
 }
 
+static int frame_answer(spar_member *m, const double *load, double *motion) {
+    return spari_frame_answer(m->solution, m, load, motion);
+}
+
 static void frame_effort(const spar_member *m, spari_effort *e) {
     const spari_frame *f = m->solution;
     *e = (spari_effort){.iterations = f->solves,
@@ -228,8 +232,8 @@ static void frame_load(spar_member *m, const double *state) {
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
-    .free = frame_free, .restart = frame_restart, .advance = frame_advance, .accept = frame_accept,                    \
-    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
+    .free = frame_free, .restart = frame_restart, .advance = frame_advance, .answer = frame_answer,                    \
+    .accept = frame_accept, .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, \
     .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
     .shape = frame_shape, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,              \
     .load = frame_load

@@ -434,6 +434,30 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+int spari_frame_answer(spari_frame *f, const spar_member *m, const double *load, double *motion) {
+    int64_t n6 = 6 * (int64_t)f->nodes;
+    const double *root = f->to.root.q, *x = f->dx;
+    spari_scheme c = spari_scheme_of(m, m->body->D != NULL, f->steps.h_solved);
+    if (!f->factored && factor_step(f, &c)) {
+        return 1;
+    }
+    spari_member_gather(m, load, f->nodal);
+    turn_loads(f, root + 3, f->nodal, f->dx);
+    memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
+    if (spari_linear_solve(f->linear, f->dx)) {
+        return 1;
+    }
+    if (f->basis) {
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x, 1, 0, f->nodal, 1));
+        x = f->nodal;
+    }
+    for (int64_t i = 0; i < n6; i += 3) {
+        spari_rotate(root + 3, x + i, f->turned + i);
+    }
+    spari_member_from_unique(m, 6, f->turned, motion);
+    return 0;
+}
+
 void spari_frame_accept(spari_frame *f) {
     swap_states(&f->begin, &f->to);
     f->steps.h_begin = f->steps.h_solved;

@@ -156,6 +156,28 @@ static int rigid_advance(spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+/* More force and moment on the root, the latter by the arms as they are turned. */
+static int rigid_answer(spar_member *m, const double *load, double *motion) {
+    const spari_rigid_beam *b = m->solution;
+    double sum[6] = {0}, arms[9] = {0}, root[6];
+    sum_on_root(m, load, sum, arms);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double arm[3], moment[3];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = m->xr[3 * i + k] + m->after.q[7 * i + k] - m->xr[k] - m->after.q[k];
+        }
+        spari_cross(arm, load + 6 * i, moment);
+        for (int k = 0; k < 3; k++) {
+            sum[3 + k] += moment[k];
+        }
+    }
+    if (spari_solver_answer(b->solver, m, sum, root)) {
+        return 1;
+    }
+    spari_carried_displace(m, root, motion);
+    return 0;
+}
+
 static void rigid_accept(spar_member *m) {
     const spari_rigid_beam *b = m->solution;
     spari_solver_accept(b->solver);
@@ -242,6 +264,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .free = rigid_free,
     .restart = rigid_restart,
     .advance = rigid_advance,
+    .answer = rigid_answer,
     .accept = rigid_accept,
     .effort = rigid_effort,
     .rest = spari_carried_rest,

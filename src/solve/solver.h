@@ -49,6 +49,10 @@ void spari_solver_restart(spari_solver *solver);
 /* From t^n to t^n + dt in the session's substeps, under steps.load0 and load1; leaves t^n alone, writes `to` and
    member->dissipated_step. */
 int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
+/* After that: what more load [n][6] on the nodes at the end adds to their motion [n][6], displacements and turns, to
+   first order and over the last substep; load is spent. One back-substitution; a tangent is formed only where none is
+   kept. 0, or 1: it is singular. */
+int spari_solver_answer(spari_solver *solver, const spar_member *member, double *load, double *motion);
 /* The step is accepted: t^{n+1} becomes t^n. */
 void spari_solver_accept(spari_solver *solver);
 /* Equilibrium under steps.load, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that

@@ -1,0 +1,252 @@
+/* Least squares for the derivative of a map that scatters: see secants.h. */
+#include "secants.h"
+
+#include "../base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = SPARI_SECANTS_MOST };
+
+typedef struct secant {
+    const double *v, *w, *iv, *iw;
+    double size; /* of x */
+} secant;
+
+struct spari_secants {
+    int64_t n;
+    int most, count, rank;
+    double filter, gain; /* largest |w| / |x| */
+    secant column[MOST];
+    double at[MOST][MOST]; /* of column j, of unit size, in the basis: at[j][i] */
+    double *q, *p, *u;     /* [most][n]: the basis, orthonormal; its images; J of it */
+    double a[MOST][MOST], e[MOST][MOST];
+};
+
+spari_secants *spari_secants_create(int64_t n, int most) {
+    spari_secants *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    s->n = n;
+    s->most = most < MOST ? most : MOST;
+    if (!(s->q = spari_zalloc(s->most * n, sizeof *s->q)) || !(s->p = spari_zalloc(s->most * n, sizeof *s->p)) ||
+        !(s->u = spari_zalloc(s->most * n, sizeof *s->u))) {
+        spari_secants_free(s);
+        return NULL;
+    }
+    return s;
+}
+
+void spari_secants_free(spari_secants *s) {
+    if (s) {
+        free(s->q);
+        free(s->p);
+        free(s->u);
+        free(s);
+    }
+}
+
+void spari_secants_begin(spari_secants *s, double filter) {
+    s->count = s->rank = 0;
+    s->filter = filter;
+    s->gain = 0;
+}
+
+static double product(const double *a, const double *b, int64_t n) {
+    double sum = 0;
+    for (int64_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+static void add_times(double f, const double *a, double *b, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        b[i] += f * a[i];
+    }
+}
+
+/* q, p: x and its image over the size of x; then less what the basis has of them: parts[rank]. Returns what is left. */
+static double split(const spari_secants *s, const secant *c, double *q, double *p, double *parts) {
+    int64_t n = s->n;
+    for (int64_t i = 0; i < n; i++) {
+        q[i] = (c->w[i] - c->v[i]) / c->size;
+        p[i] = (c->iw[i] - c->iv[i]) / c->size;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < s->rank; j++) {
+            double part = product(s->p + j * n, q, n);
+            parts[j] += part;
+            add_times(-part, s->q + j * n, q, n);
+            add_times(-part, s->p + j * n, p, n);
+        }
+    }
+    return sqrt(fmax(product(q, p, n), 0));
+}
+
+static double size_between(const double *a, const double *ia, const double *b, const double *ib, int64_t n) {
+    double sum = 0;
+    for (int64_t i = 0; i < n; i++) {
+        sum += (a[i] - (b ? b[i] : 0)) * (ia[i] - (ib ? ib[i] : 0));
+    }
+    return sqrt(fmax(sum, 0));
+}
+
+int spari_secants_add(spari_secants *s, const double *v, const double *w, const double *iv, const double *iw) {
+    if (s->count == s->most) {
+        return 0;
+    }
+    int64_t n = s->n;
+    secant *c = s->column + s->count;
+    double *q = s->q + s->rank * n, *p = s->p + s->rank * n, *at = s->at[s->count];
+    *c = (secant){v, w, iv, iw, size_between(w, iw, v, iv, n)};
+    if (!(c->size > 0) || !isfinite(c->size)) {
+        return 1;
+    }
+    memset(at, 0, sizeof s->at[0]);
+    double left = split(s, c, q, p, at);
+    s->gain = fmax(s->gain, size_between(w, iw, NULL, NULL, n) / c->size);
+    if (left > s->filter) {
+        for (int64_t i = 0; i < n; i++) {
+            q[i] /= left;
+            p[i] /= left;
+        }
+        at[s->rank++] = left;
+    }
+    s->count++;
+    return 1;
+}
+
+/* a := a^-1, symmetric and positive definite, by Gauss and Jordan */
+static void invert(double a[MOST][MOST], int n) {
+    for (int i = 0; i < n; i++) {
+        double pivot = 1 / a[i][i];
+        a[i][i] = 1;
+        for (int j = 0; j < n; j++) {
+            a[i][j] *= pivot;
+        }
+        for (int k = 0; k < n; k++) {
+            double f = a[k][i];
+            for (int j = 0; j < n && k != i; j++) {
+                a[k][j] = (j == i ? 0 : a[k][j]) - f * a[i][j];
+            }
+        }
+    }
+}
+
+int spari_secants_fit(spari_secants *s, double doubt) {
+    int m = s->rank;
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < m; j++) {
+            s->a[i][j] = i == j ? doubt : 0;
+            for (int k = 0; k < s->count; k++) {
+                s->a[i][j] += s->at[k][i] * s->at[k][j];
+            }
+        }
+    }
+    invert(s->a, m);
+    memset(s->u, 0, (size_t)(m * s->n) * sizeof *s->u);
+    for (int k = 0; k < s->count; k++) {
+        for (int j = 0; j < m; j++) {
+            double f = 0;
+            for (int i = 0; i < m; i++) {
+                f += s->at[k][i] * s->a[i][j];
+            }
+            add_times(f / s->column[k].size, s->column[k].w, s->u + j * s->n, s->n);
+        }
+    }
+    return m;
+}
+
+double spari_secants_defect(spari_secants *s, const double *v, const double *w, const double *iv, const double *iw) {
+    static const double FAR = 0.3, CARE = 2;
+    int64_t n = s->n;
+    double parts[MOST] = {0}, off = 0, seen = 0;
+    secant c = {v, w, iv, iw, size_between(w, iw, v, iv, n)};
+    if (s->rank == 0 || s->rank == s->most || !(c.size > 0) || !isfinite(c.size)) {
+        return -1;
+    }
+    double left = split(s, &c, s->q + s->rank * n, s->p + s->rank * n, parts);
+    if (!(left <= FAR)) {
+        return -1;
+    }
+    for (int i = 0; i < s->rank; i++) {
+        const double *p = s->p + i * n;
+        double was = product(p, w, n), says = 0;
+        for (int j = 0; j < s->rank; j++) {
+            says += c.size * parts[j] * product(p, s->u + j * n, n);
+        }
+        off += (was - says) * (was - says);
+        seen += was * was;
+    }
+    return seen > 0 ? fmax(sqrt(off) - CARE * s->gain * left * c.size, 0) / sqrt(seen) : -1;
+}
+
+/* a becomes diagonal by Jacobi's rotations, e [m][m] its eigenvectors, by columns. */
+static void diagonalise(double a[MOST][MOST], double e[MOST][MOST], int m) {
+    enum { SWEEPS = 30 };
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < m; j++) {
+            e[i][j] = i == j;
+        }
+    }
+    for (int turn = 0; turn < SWEEPS * m * m; turn++) {
+        int p = turn / m % m, q = turn % m;
+        if (q <= p || fabs(a[p][q]) <= 1e-15 * (fabs(a[p][p]) + fabs(a[q][q]))) {
+            continue;
+        }
+        double half = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        double t = (half >= 0 ? 1 : -1) / (fabs(half) + hypot(half, 1)), c = 1 / hypot(t, 1), r = t * c;
+        for (int k = 0; k < m; k++) {
+            double x = a[k][p], y = a[k][q], g = e[k][p], h = e[k][q];
+            a[k][p] = c * x - r * y, a[k][q] = r * x + c * y;
+            e[k][p] = c * g - r * h, e[k][q] = r * g + c * h;
+        }
+        for (int k = 0; k < m; k++) {
+            double x = a[p][k], y = a[q][k];
+            a[p][k] = c * x - r * y, a[q][k] = r * x + c * y;
+        }
+    }
+}
+
+int spari_secants_step(spari_secants *s, const double *x, const double *g, double length, double longest,
+                       double *next) {
+    int m = s->rank;
+    int64_t n = s->n;
+    double b[MOST] = {0}, y[MOST] = {0};
+    for (int i = 0; i < m; i++) {
+        const double *p = s->p + i * n;
+        for (int64_t k = 0; k < n; k++) {
+            b[i] += p[k] * (g[k] - x[k]);
+        }
+        for (int j = 0; j <= i; j++) {
+            double both = product(p, s->u + j * n, n) + product(s->p + j * n, s->u + i * n, n);
+            s->a[i][j] = s->a[j][i] = (i == j) - 0.5 * both;
+        }
+    }
+    diagonalise(s->a, s->e, m);
+    for (int k = 0; k < m; k++) { /* an added mass makes I - J at least I */
+        double along = 0, value = fmax(fabs(s->a[k][k]), 1);
+        for (int i = 0; i < m; i++) {
+            along += s->e[i][k] * b[i];
+        }
+        for (int i = 0; i < m; i++) {
+            y[i] += s->e[i][k] * along / value;
+        }
+    }
+    double square = length * length;
+    for (int64_t i = 0; i < n; i++) {
+        next[i] = g[i] - x[i];
+    }
+    for (int j = 0; j < m; j++) {
+        add_times(y[j] - b[j], s->q + j * n, next, n);
+        square += y[j] * y[j] - b[j] * b[j];
+    }
+    double cut = square > longest * longest ? longest / sqrt(square) : 1;
+    for (int64_t i = 0; i < n; i++) {
+        next[i] = x[i] + cut * next[i];
+    }
+    return spari_first_nonfinite(next, n) < 0;
+}

@@ -1,0 +1,65 @@
+/* The norm of the coupling. Loads x move the structure by S x over the step, S its flexibility: the matrix of the step
+   inverted. In the norm sqrt(x . S x), the root of the work that x does on its own answer, a load that moves nothing
+   counts nothing, forces and moments add up in one unit, and the derivative of an added mass, -M S, is symmetric. */
+#include "weigh.h"
+
+#include "../comm/comm.h"
+#include "../member/structure.h"
+#include "../solve/fidelity.h"
+#include <math.h>
+#include <string.h>
+
+int spari_weighs_motion(const spar_session *s) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        if (!m->row->moves) { /* how it answers is the host's to know */
+            return 0;
+        }
+    }
+    return !s->norm_of_loads;
+}
+
+/* What member m, whose stacked loads begin at `at`, answers to loads x - from (from NULL: x), stacked. */
+static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, int64_t at, const double *x,
+                          const double *from, double *out) {
+    int64_t n = 6 * m->nodes;
+    for (int64_t i = 0; i < n; i++) {
+        c->room[i] = (x[at + i] - (from ? from[at + i] : 0)) / (i % 6 < 3 ? 1 : unit);
+    }
+    if (m->row->answer(m, c->room, out + at)) {
+        return 1;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        out[at + i] /= i % 6 < 3 ? 1 : unit;
+    }
+    return 0;
+}
+
+static double sum_products(const double *a, const double *b, const double *minus, int64_t n) {
+    double s = 0;
+    for (int64_t i = 0; i < n; i++) {
+        s += (a[i] - (minus ? minus[i] : 0)) * b[i];
+    }
+    return s;
+}
+
+int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
+    double *answer = c->image, *whole = c->image + c->n;
+    int64_t at = 0;
+    int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
+    memset(c->image, 0, (size_t)(2 * c->n + 1) * sizeof *c->image);
+    for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
+        if (m->owner == rank && m->row->answer) {
+            singular = singular || answer_stacked(c, m, c->unit[k], at, c->g, c->x, answer) ||
+                       answer_stacked(c, m, c->unit[k], at, c->g, NULL, whole);
+        }
+    }
+    if (singular) { /* its numbers would make the sums none, on every rank */
+        c->image[0] = NAN;
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, c->image, 2 * c->n, SPAR_OK, s->message, sizeof s->message));
+    double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, whole, NULL, c->n);
+    *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0);
+    *residual = sqrt(fmax(work, 0));
+    *size = sqrt(fmax(all, 0));
+    return SPAR_OK;
+}

@@ -1,0 +1,24 @@
+/* How much loads weigh: by the motion that the structure answers them with, or by themselves. */
+#ifndef SPARI_WEIGH_H
+#define SPARI_WEIGH_H
+
+#include "own.h"
+
+#include <stdint.h>
+
+/* What is weighed: stacked loads of all members, moments times `unit` of the member. */
+typedef struct spari_weighed {
+    int64_t n;
+    const double *unit;  /* of each member, in order */
+    const double *x, *g; /* [n] used, and come back */
+    double *image;       /* [2 n + 1] out: the motion that g - x calls for, and that of g; room for the ranks' status */
+    double *room;        /* 6 of each node of the largest member */
+} spari_weighed;
+
+/* Whether the flexibility of all members that fluids act on is known to the library, and wanted (coupling.norm). */
+int spari_weighs_motion(const spar_session *session);
+/* Fills w->image, and the sizes of g - x and g in that norm. All ranks: what an owner finds goes to the others. *ok:
+   whether the norm is one: both are numbers, of squares that are not negative. */
+int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
+
+#endif

@@ -1,0 +1,168 @@
+/* Couplings with flows as solvers have them (tests/support/flows.h): partly converged, noisy, heavy. The default
+   quasi-Newton must end every step; figures beside bounds are what it took when this was written. */
+#include "scene.h"
+
+#include "support/flows.h"
+
+#include <stdio.h>
+
+static flow_result result, exact;
+
+static flow_case flow_of(int scene, double added, int inner) {
+    return (flow_case){.scene = scene,
+                       .added = added,
+                       .inner = inner,
+                       .drag = 1.2,
+                       .dt = 0.025,
+                       .steps = 40,
+                       .scheme = SPAR_COUPLING_IQN_ILS,
+                       .predictor = -1,
+                       .most = 150,
+                       .rtol = 1e-5,
+                       .seed = 3};
+}
+
+static void run(const flow_case *c) {
+    assert_int_equal(flow_run(c, &result), SPAR_OK);
+    if (result.status != SPAR_OK) {
+        fail_msg("scene %d, added mass %g, %d corrections, noise %g: step %d: %s", c->scene, c->added, c->inner,
+                 c->noise, result.steps + 1, result.message);
+    }
+}
+
+/* Added mass 0.1 to 100, exact and with 1 to 4 corrections of the pressure in each push: every step ends, and where the
+   solution with the exact fluid and a tolerance of 1e-10 is, within 1e-3 of the largest way (the tolerance of loads,
+   1e-5, of 40 steps, and what the inner corrections leave). Exact fluids take no more than 3 evaluations a step. */
+static void test_partly_converged(void **state) {
+    (void)state;
+    static const double added[] = {0.1, 1, 4, 30, 100};
+    static const int inner[] = {0, 1, 2, 4};
+    for (int scene = FLOW_CYLINDER; scene <= FLOW_CHANNEL; scene++) {
+        for (size_t a = 0; a < sizeof added / sizeof *added; a++) {
+            flow_case c = flow_of(scene, added[a], 0);
+            c.rtol = 1e-10;
+            run(&c);
+            exact = result;
+            for (size_t k = 0; k < sizeof inner / sizeof *inner; k++) {
+                c = flow_of(scene, added[a], inner[k]);
+                run(&c);
+                assert_true(flow_distance(&result, &exact) < 1e-3);
+                assert_true(inner[k] > 0 || result.iterations < 3);
+            }
+        }
+    }
+}
+
+/* Noise up to a hundredth of the loads, with tolerances five times as large: no more iterations than without. */
+static void test_noise(void **state) {
+    (void)state;
+    static const double added[] = {0.1, 1, 4, 30, 100}, noise[] = {1e-8, 1e-5, 1e-3, 1e-2};
+    for (int scene = FLOW_CYLINDER; scene <= FLOW_CHANNEL; scene++) {
+        for (size_t a = 0; a < sizeof added / sizeof *added; a++) {
+            for (size_t k = 0; k < sizeof noise / sizeof *noise; k++) {
+                flow_case c = flow_of(scene, added[a], 0);
+                c.noise = noise[k];
+                c.rtol = fmax(1e-5, 5 * noise[k]);
+                run(&c);
+                assert_true(result.iterations < 4);
+            }
+        }
+    }
+}
+
+/* Drag, which the structure hardly answers, says nothing of the motion: with a tolerance of 1e-3 of all loads the lift
+   is left where it is by steps that end at once; of the motion it is right. */
+static void test_tolerance_is_of_the_motion(void **state) {
+    (void)state;
+    double error[2];
+    flow_case c = flow_of(FLOW_CYLINDER, 4, 0);
+    c.rtol = 1e-10;
+    run(&c);
+    exact = result;
+    for (int k = 0; k < 2; k++) {
+        c = flow_of(FLOW_CYLINDER, 4, 0);
+        c.scheme = SPAR_COUPLING_FIXED_POINT;
+        c.omega = 0.2;
+        c.rtol = 1e-3;
+        c.option[0][0] = "coupling.norm", c.option[0][1] = k ? "loads" : "motion";
+        run(&c);
+        error[k] = flow_distance(&result, &exact);
+    }
+    print_message("rtol 1e-3: error %.1e by motion, %.1e by loads\n", error[0], error[1]);
+    assert_true(error[0] < 1e-3 && error[0] < 0.5 * error[1]);
+}
+
+/* Nobody pushes at t = 0: the second step begins with the first one's loads, not with twice as much. */
+static void test_start(void **state) {
+    (void)state;
+    flow_case c = flow_of(FLOW_CYLINDER, 1, 0);
+    run(&c);
+    NEAR(result.predicted[0], result.force[0][0], 1e-12);
+    c.pushed = c.ramp = 1; /* nothing before the stream, and that is a load to extrapolate from */
+    run(&c);
+    NEAR(result.predicted[0], 2 * result.force[0][0], 1e-2);
+}
+
+/* An explicit scheme that dies is told of within the first third of the steps that it lasts; one that lives is not. */
+static void test_warning_in_time(void **state) {
+    (void)state;
+    static const struct {
+        int scene, order;
+        double added;
+    } cases[] = {{FLOW_CYLINDER, 1, 1}, {FLOW_CYLINDER, 0, 4}, {FLOW_CYLINDER, 1, 4}, {FLOW_CHANNEL, 1, 4}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        flow_case c = flow_of(cases[k].scene, cases[k].added, 0);
+        c.scheme = SPAR_COUPLING_EXPLICIT;
+        c.predictor = cases[k].order;
+        c.steps = 400;
+        assert_int_equal(flow_run(&c, &result), SPAR_OK);
+        assert_int_equal(result.status, SPAR_ERR_NUMERIC);
+        assert_true(result.warned > 0 && 3 * result.warned <= result.steps);
+    }
+    flow_case c = flow_of(FLOW_CYLINDER, 0.2, 0);
+    c.scheme = SPAR_COUPLING_EXPLICIT;
+    c.steps = 400;
+    run(&c);
+    assert_int_equal(result.complaints, 0);
+}
+
+/* Loads that grow from iteration to iteration are told as that. */
+static void test_divergence_is_named(void **state) {
+    (void)state;
+    flow_case c = flow_of(FLOW_CYLINDER, 4, 1);
+    c.scheme = SPAR_COUPLING_FIXED_POINT;
+    assert_int_equal(flow_run(&c, &result), SPAR_OK);
+    assert_int_equal(result.status, SPAR_ERR_NUMERIC);
+    assert_non_null(strstr(result.message, "the coupling diverges"));
+    assert_non_null(strstr(result.message, "grown by a factor"));
+}
+
+/* What has not converged is accepted twice on end and told each time; the third is an error, unless patience is given.
+ */
+static void test_patience(void **state) {
+    (void)state;
+    flow_case c = flow_of(FLOW_CYLINDER, 4, 1);
+    c.most = 3;
+    c.option[0][0] = "coupling.unconverged", c.option[0][1] = "accept";
+    assert_int_equal(flow_run(&c, &result), SPAR_OK);
+    assert_int_equal(result.status, SPAR_ERR_NUMERIC);
+    assert_int_equal(result.steps, 2);
+    assert_int_equal(result.complaints, 2);
+    c.option[1][0] = "coupling.patience", c.option[1][1] = "1000";
+    run(&c);
+    assert_int_equal(result.steps, 40);
+    assert_int_equal(result.complaints, result.unconverged);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_partly_converged),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_tolerance_is_of_the_motion),
+        cmocka_unit_test(test_start),
+        cmocka_unit_test(test_warning_in_time),
+        cmocka_unit_test(test_divergence_is_named),
+        cmocka_unit_test(test_patience),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
