@@ -12,7 +12,8 @@
 !
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
-! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam. spar_status_text,
+! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_line_create and
+! spar_line_set_spring joint%create_line and %set_line_spring; a joint to the ground is created without b. spar_status_text,
 ! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
@@ -31,7 +32,7 @@
 ! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
 ! To destroy twice, or what was never created, does nothing. Members and fluids belong to their session and go with it: their
 ! variables are views, are not finalised, and must not be used when the session is gone; fluid%destroy takes a fluid out of
-! a living session. The variable of a member may be copied. To assign any of the others stops the program, since two owners
+! a living session. The variable of a member or a joint may be copied. To assign any of the others stops the program, since two owners
 ! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
 ! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
 module spar
@@ -42,7 +43,7 @@ module spar
   implicit none
   private
 
-  public :: spar_session, spar_member, spar_fluid, spar_polar, spar_aero
+  public :: spar_session, spar_member, spar_joint, spar_fluid, spar_polar, spar_aero
   public :: spar_fluid_solver, spar_before_step, spar_log
   public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
 
@@ -53,6 +54,7 @@ module spar
   public :: SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS, SPAR_ROOT_FREE, SPAR_ROOT_FIXED
   public :: SPAR_FIDELITY_PRESCRIBED, SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL
   public :: SPAR_FIDELITY_EXACT
+  public :: SPAR_FREE_X, SPAR_FREE_Y, SPAR_FREE_Z, SPAR_FREE_RX, SPAR_FREE_RY, SPAR_FREE_RZ
   public :: SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN, SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO
   public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
   public :: SPAR_INTERPOLATE_CONSISTENT, SPAR_NODES_MOTION, SPAR_NODES_FORCE, SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
@@ -184,6 +186,26 @@ module spar
     procedure :: get_damping => member_get_damping
     procedure :: write_vtk => member_write_vtk
   end type spar_member
+
+  type :: spar_joint
+    private
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
+  contains
+    procedure, private :: joint_create_64, joint_create_32
+    generic :: create => joint_create_64, joint_create_32
+    procedure, private :: joint_create_line_64, joint_create_line_32
+    generic :: create_line => joint_create_line_64, joint_create_line_32
+    procedure :: exists => joint_exists
+    procedure :: c_handle => joint_handle
+    procedure :: set_frame => joint_set_frame
+    procedure :: set_spring => joint_set_spring
+    procedure :: set_line_spring => joint_set_line_spring
+    procedure :: set_driven => joint_set_driven
+    procedure :: drive => joint_drive
+    procedure :: set_load => joint_set_load
+    procedure :: get_motion => joint_get_motion
+    procedure :: get_load => joint_get_load
+  end type spar_joint
 
   type :: spar_fluid
     private
@@ -1583,6 +1605,199 @@ contains
   end subroutine member_write_vtk
 
   ! ---- fluids ----
+
+  ! node_a and node_b from 1; without b: to the ground.
+  subroutine joint_create_64(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int64_t), intent(in) :: node_a
+    integer(c_int), intent(in) :: free_motions
+    class(spar_member), intent(in), optional :: b
+    integer(c_int64_t), intent(in), optional :: node_b
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made, other
+    integer(c_int64_t) :: node
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    call joint_end(b, node_b, other, node)
+    status = spar_joint_create(session%handle, c_text(name), a%handle, node_a - 1, other, node, free_motions, made)
+    call joint_take(self, made, session%handle, status)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine joint_create_64
+
+  subroutine joint_create_32(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int), intent(in) :: node_a, free_motions
+    class(spar_member), intent(in), optional :: b
+    integer(c_int), intent(in), optional :: node_b
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: node
+
+    node = 1
+    if (present(node_b)) node = node_b
+    call joint_create_64(self, session, name, a, int(node_a, c_int64_t), free_motions, b, node, stat, errmsg)
+  end subroutine joint_create_32
+
+  subroutine joint_create_line_64(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int64_t), intent(in) :: node_a
+    real(c_double), intent(in) :: point_a(3), point_b(3)
+    class(spar_member), intent(in), optional :: b
+    integer(c_int64_t), intent(in), optional :: node_b
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made, other
+    integer(c_int64_t) :: node
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    call joint_end(b, node_b, other, node)
+    status = spar_line_create(session%handle, c_text(name), a%handle, node_a - 1, point_a, other, node, point_b, made)
+    call joint_take(self, made, session%handle, status)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine joint_create_line_64
+
+  subroutine joint_create_line_32(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int), intent(in) :: node_a
+    real(c_double), intent(in) :: point_a(3), point_b(3)
+    class(spar_member), intent(in), optional :: b
+    integer(c_int), intent(in), optional :: node_b
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: node
+
+    node = 1
+    if (present(node_b)) node = node_b
+    call joint_create_line_64(self, session, name, a, int(node_a, c_int64_t), point_a, point_b, b, node, stat, errmsg)
+  end subroutine joint_create_line_32
+
+  ! What C is handed for the end at b: no member is the ground.
+  subroutine joint_end(b, node_b, other, node)
+    class(spar_member), intent(in), optional :: b
+    integer(c_int64_t), intent(in), optional :: node_b
+    type(c_ptr), intent(out) :: other
+    integer(c_int64_t), intent(out) :: node
+
+    other = c_null_ptr
+    node = 0
+    if (present(b)) other = b%handle
+    if (present(node_b)) node = node_b - 1
+  end subroutine joint_end
+
+  subroutine joint_take(self, made, session, status)
+    class(spar_joint), intent(inout) :: self
+    type(c_ptr), intent(in) :: made, session
+    integer(c_int), intent(in) :: status
+
+    if (status /= SPAR_OK) return
+    self%handle = made
+    self%session = session
+  end subroutine joint_take
+
+  logical function joint_exists(self) result(there)
+    class(spar_joint), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function joint_exists
+
+  type(c_ptr) function joint_handle(self) result(handle)
+    class(spar_joint), intent(in) :: self
+
+    handle = self%handle
+  end function joint_handle
+
+  subroutine joint_set_frame(self, x, q, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: x(3)
+    real(c_double), intent(in), optional :: q(4)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_frame(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine joint_set_frame
+
+  subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
+  end subroutine joint_set_spring
+
+  subroutine joint_set_line_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: stiffness, damping, length
+    logical, intent(in), optional :: tension_only
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: slack
+
+    slack = 0
+    if (present(tension_only)) slack = merge(1_c_int, 0_c_int, tension_only)
+    call finish(spar_line_set_spring(self%handle, stiffness, damping, length, slack), self%session, stat, errmsg)
+  end subroutine joint_set_line_spring
+
+  subroutine joint_set_driven(self, mask, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    integer(c_int), intent(in) :: mask
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_driven(self%handle, mask), self%session, stat, errmsg)
+  end subroutine joint_set_driven
+
+  subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: motion(6)
+    real(c_double), intent(in), optional :: rate(6), acceleration(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_drive(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
+  end subroutine joint_drive
+
+  subroutine joint_set_load(self, load, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
+  end subroutine joint_set_load
+
+  subroutine joint_get_motion(self, motion, rate, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), intent(inout), optional :: motion(6), rate(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_motion(self%handle, motion, rate), self%session, stat, errmsg)
+  end subroutine joint_get_motion
+
+  subroutine joint_get_load(self, load, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), intent(inout) :: load(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
+  end subroutine joint_get_load
 
   subroutine fluid_create(self, member, name, stat, errmsg)
     class(spar_fluid), intent(inout) :: self

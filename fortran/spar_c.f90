@@ -26,6 +26,8 @@ module spar_c
       SPAR_FIDELITY_LINEAR = 2, SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
       SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
+      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
   integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
@@ -581,6 +583,83 @@ module spar_c
       real(c_double), intent(inout), optional :: frequency_hz(*), shapes(*)
       integer(c_int) :: status
     end function spar_member_solve_modes
+
+    function spar_joint_create(session, name, a, node_a, b, node_b, free_motions, joint) bind(c) result(status)
+      import :: c_char, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session, a, b
+      character(kind=c_char), intent(in), optional :: name(*)
+      integer(c_int64_t), value :: node_a, node_b
+      integer(c_int), value :: free_motions
+      type(c_ptr), intent(inout) :: joint
+      integer(c_int) :: status
+    end function spar_joint_create
+
+    function spar_joint_set_frame(joint, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(in), optional :: x(3), q(4)
+      integer(c_int) :: status
+    end function spar_joint_set_frame
+
+    function spar_joint_set_spring(joint, stiffness, damping, preload) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+      integer(c_int) :: status
+    end function spar_joint_set_spring
+
+    function spar_joint_set_driven(joint, mask) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: joint
+      integer(c_int), value :: mask
+      integer(c_int) :: status
+    end function spar_joint_set_driven
+
+    function spar_joint_drive(joint, motion, rate, acceleration) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(in), optional :: motion(6), rate(6), acceleration(6)
+      integer(c_int) :: status
+    end function spar_joint_drive
+
+    function spar_joint_set_load(joint, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(in), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_joint_set_load
+
+    function spar_line_create(session, name, a, node_a, point_a, b, node_b, point_b, joint) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session, a, b
+      character(kind=c_char), intent(in), optional :: name(*)
+      integer(c_int64_t), value :: node_a, node_b
+      real(c_double), intent(in), optional :: point_a(3), point_b(3)
+      type(c_ptr), intent(inout) :: joint
+      integer(c_int) :: status
+    end function spar_line_create
+
+    function spar_line_set_spring(joint, stiffness, damping, length, tension_only) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), value :: stiffness, damping, length
+      integer(c_int), value :: tension_only
+      integer(c_int) :: status
+    end function spar_line_set_spring
+
+    function spar_joint_get_motion(joint, motion, rate) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(inout), optional :: motion(6), rate(6)
+      integer(c_int) :: status
+    end function spar_joint_get_motion
+
+    function spar_joint_get_load(joint, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: joint
+      real(c_double), intent(inout), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_joint_get_load
 
     function spar_fluid_create(member, name, fluid) bind(c) result(status)
       import :: c_char, c_int, c_ptr

@@ -103,6 +103,7 @@ extern "C" {
 
 typedef struct spar_session spar_session; /* one clock, its members, one communicator */
 typedef struct spar_member spar_member;   /* a structure; belongs to its session */
+typedef struct spar_joint spar_joint;     /* what ties two nodes; belongs to its session */
 typedef struct spar_fluid
     spar_fluid; /* a fluid model's nodes on this rank, tied to one member; belongs to the session */
 
@@ -283,6 +284,8 @@ enum {
     SPAR_ROOT_PINNED = 2, /* turns freely about a fixed place */
     SPAR_ROOT_DRIVEN = 3  /* follows spar_member_drive_root */
 };
+/* Relative motions of a joint that are free, in its own axes; or-ed. */
+enum { SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32 };
 enum { SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1 };
 enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
 /* Effects: what is off is not computed, stored or sent. */
@@ -544,6 +547,83 @@ SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *fre
    SPAR_ERR_ARGUMENT: both modes are of one kind; SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a
    free or pinned beam as a rigid body). */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
+
+/* ---- joints ------------------------------------------------------------------------------------------------------ */
+
+/* A joint ties node a of a member to node b of another (or of the same), or to the ground. In axes of its own it has
+   six motions, of a relative to b, each held, free, driven, or on a spring and damper: displacements x, y, z of a's end
+   in b's axes, and rotations. These are, to first order, turns about x, y, z; of a hinge (one rotation free) the angle,
+   which counts its turns, and how far a's axis leaves b's; where more are free the rotation vector, below half a turn.
+   Members that joints tie are solved together, as one system, on one rank; members without joints are solved as if
+   there were none. Constraints hold in place and velocity at the end of every step, whatever dt is. A hold that follows
+   from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
+   In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
+   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, several
+   ranks, save, trials, modes and spar_session_solve_static answer SPAR_ERR_UNSUPPORTED with joints.
+   spar_member_solve_static solves for all that a member is tied to. spar_member_get_work leaves out what joints do. */
+
+/* A joint of two nodes. It goes with its session. Before the first step.
+     name: in, unique in the session, not empty, copied
+     a, node_a: in
+     b, node_b: in, b NULL: the ground, node_b unused
+     free_motions: in, SPAR_FREE_* or-ed: 0 a weld, RX a hinge, RX|RY|RZ a ball, X a slider, X|RX a cylinder, X|Y|RZ a
+           plane, all six for springs alone
+     joint: out
+   Local, but made on every rank alike and in the same order. SPAR_ERR_ARGUMENT: a node that is not there, or tied to
+   itself; members of two sessions. */
+SPAR_API int spar_joint_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, spar_member *b,
+                               int64_t node_b, int free_motions, spar_joint **joint);
+/* Where the joint is. By default it is where node a is, where node b must be too, in the section axes of node a. Before
+   the first step.
+     x[3]: in, m, its place in the reference, to which rigid arms lead from both nodes
+     q[4]: in, unit, its axes there, NULL: the section axes of node a
+   Local. */
+SPAR_API int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]);
+/* Spring and damper between a and b on the free motions z: load on a = preload - stiffness z - damping dz/dt. Replaces
+   what was set before.
+     stiffness[36], damping[36]: in, symmetric, N/m, N, N m/rad (times s), 0 on what is held, NULL: 0
+     preload[6]: in, N, N m, NULL: 0
+   Local, the same on every rank. */
+SPAR_API int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
+                                   const double preload[6]);
+/* Which of the free motions spar_joint_drive moves. They begin as the members do. Before the first step.
+     mask: in, SPAR_FREE_* or-ed, of the free ones
+   Local. */
+SPAR_API int spar_joint_set_driven(spar_joint *joint, int mask);
+/* Driven motions at the end of the step begun next; not driven anew, they stay where they are. Entries of what is not
+   driven are not looked at. Between steps.
+     motion[6]: in, m, rad; a hinge's angle with its turns
+     rate[6], acceleration[6]: in, of them, NULL: 0
+   Local, the same on every rank. */
+SPAR_API int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6],
+                              const double acceleration[6]);
+/* A load between the two nodes, kept until it is set anew: a motor, a generator, a brake.
+     load[6]: in, N, N m, on a from b, on the free motions
+   Local, the same on every rank. */
+SPAR_API int spar_joint_set_load(spar_joint *joint, const double load[6]);
+/* A joint whose one motion, the first of six, is the distance of two points, which their nodes carry. It is held (a
+   rod), or driven (an actuator, motion[0] its length), or on a spring. Else as spar_joint_create.
+     point_a[3], point_b[3]: in, m, global, in the reference; not the same
+     b NULL: the ground carries point_b */
+SPAR_API int spar_line_create(spar_session *session, const char *name, spar_member *a, int64_t node_a,
+                              const double point_a[3], spar_member *b, int64_t node_b, const double point_b[3],
+                              spar_joint **joint);
+/* The spring of a line. Before the first step.
+     stiffness: in, N/m, >= 0
+     damping: in, N s/m, >= 0
+     length: in, m, unstretched, >= 0
+     tension_only: in, 1: it pulls or is slack (a taut mooring, a rope), 0: both ways (a strut)
+   Local. */
+SPAR_API int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only);
+/* Relative motion of the latest iterate, t^n between steps; 0 before the first step or static solution.
+     motion[6], rate[6]: out, NULL: not wanted; a line has its distance in the first
+   Local, the same on every rank. */
+SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6]);
+/* The load that the joint puts on a, in its axes and at a's end of it; b takes the opposite.
+     load[6]: out, N, N m: of what is held the constraint's, of what is free those of spring, damper and
+           spar_joint_set_load
+   Local, the same on every rank. */
+SPAR_API int spar_joint_get_load(const spar_joint *joint, double load[6]);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
 

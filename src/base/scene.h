@@ -38,8 +38,10 @@ struct spar_session {
     int64_t failures; /* messages written so far: tells whether a callback has left one */
     spar_log log;
     void *log_context;
-    spar_member *members; /* list, in order of creation */
-    spar_fluid *fluids;   /* list, this rank's */
+    spar_member *members;              /* list, in order of creation */
+    spar_fluid *fluids;                /* list, this rank's */
+    spar_joint *joints;                /* list, in order of creation */
+    struct spari_assembly *assemblies; /* list: members that are solved as one */
     int member_count;
 
     double gravity[3];

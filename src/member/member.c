@@ -4,6 +4,7 @@
 #include "applied.h"
 #include "body.h"
 #include "edge.h"
+#include "joint.h"
 #include "structure.h"
 
 #include <stdlib.h>
@@ -86,6 +87,9 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     }
     if (member->applied) {
         spari_applied_nodal(member, member->after.q, load);
+    }
+    for (int64_t i = 0; i < member->nodes && s->joints && (member->external || member->kind == SPARI_POINT); i++) {
+        spari_joints_on(member, i, load + 6 * i);
     }
     return SPAR_OK;
 }

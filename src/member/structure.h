@@ -20,11 +20,12 @@ typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
-typedef struct spari_beam spari_beam;       /* src/member/beam.h: the description of a beam */
-typedef struct spari_work spari_work;       /* src/solve/work.h: the work done on a member */
-typedef struct spari_applied spari_applied; /* src/member/applied.h: follower loads and loads along the line */
-typedef struct spari_remake spari_remake;   /* src/trial/remake.h: a member made anew for a trial */
-typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
+typedef struct spari_beam spari_beam;         /* src/member/beam.h: the description of a beam */
+typedef struct spari_assembly spari_assembly; /* src/solve/tied.h: members that joints tie together */
+typedef struct spari_work spari_work;         /* src/solve/work.h: the work done on a member */
+typedef struct spari_applied spari_applied;   /* src/member/applied.h: follower loads and loads along the line */
+typedef struct spari_remake spari_remake;     /* src/trial/remake.h: a member made anew for a trial */
+typedef struct spari_body spari_body;         /* src/member/body.h: what of it is solved, on every rank */
 
 /* How the deformation of a member is seen. */
 typedef enum spari_view {
@@ -82,6 +83,7 @@ struct spar_member {
     int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
+    spari_assembly *assembly;           /* it is solved with others; NULL: alone */
     spari_work *work;                   /* NULL: not asked for */
     spari_remake *advice;               /* of spar_session_advise; NULL: none */
 };

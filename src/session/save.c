@@ -15,6 +15,7 @@
 #include "../comm/enter.h"
 
 #include "../member/applied.h"
+#include "../member/joint.h"
 #include "../solve/fidelity.h"
 
 #include <math.h>
@@ -314,6 +315,7 @@ static int write_file(spar_session *s, const double *all, const int64_t *first, 
 static int check_call(spar_session *s, const char *call, const char *path) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
     SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE, "%s: a static solution is under way; save or load after it", call);
+    SPARI_TRY(spari_joints_refuse(s, call));
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,

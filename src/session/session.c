@@ -6,7 +6,9 @@
 #include "../base/quiet.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
+#include "../member/joint.h"
 #include "../member/structure.h"
+#include "../solve/assembly.h"
 #include "../solve/life.h"
 
 #include <stdio.h>
@@ -67,6 +69,11 @@ void spar_session_destroy(spar_session **session) {
     for (spar_fluid *f = s->fluids, *next; f; f = next) {
         next = spari_fluid_next(f);
         spari_fluid_free(f);
+    }
+    spari_assemblies_free(s);
+    for (spar_joint *j = s->joints, *next; j; j = next) {
+        next = j->next;
+        spari_joint_free(j);
     }
     for (spar_member *m = s->members, *next; m; m = next) {
         next = m->next;

@@ -4,6 +4,8 @@
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/edge.h"
+#include "../member/joint.h"
+#include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
 #include "coupling.h"
@@ -23,7 +25,8 @@ static int check_held(const spar_member *m, const char *call) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
                   call, m->name);
-    int loose = m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C);
+    int loose = !spari_member_is_tied(m) &&
+                (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
     SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root",
                   call, m->name);
     return SPAR_OK;
@@ -43,8 +46,20 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
+/* Whether m is one of those that are solved with a member: joints tie them, or it is that one; NULL: all are. */
+static int is_with(const spar_member *member, const spar_member *m) {
+    return !member || m == member || (m->assembly && m->assembly == member->assembly);
+}
+
+static const double *pushed(const spar_member *m) {
+    return m->load_pushed;
+}
+
 /* The motion after of a member that spar solves for, on the rank that does. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
+    if (m->assembly) {
+        return spari_assembly_static(m->assembly, pushed, load_steps);
+    }
     return m->row->rest && spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
 }
 
@@ -57,12 +72,12 @@ static void copy_loads(const spar_member *m, const double *from, double *to) {
 static int put_aside(spar_session *s, const spar_member *only, double **aside) {
     int64_t n = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        n += only && m != only ? 0 : 1 + spari_fidelity_state_size(m);
+        n += is_with(only, m) ? 1 + spari_fidelity_state_size(m) : 0;
     }
     double *at = *aside = spari_zalloc(n, sizeof *at);
     SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
     for (const spar_member *m = s->members; m; m = m->next) {
-        if (only && m != only) {
+        if (!is_with(only, m)) {
             continue;
         }
         *at = (double)spari_fidelity_state_size(m);
@@ -76,7 +91,7 @@ static int put_aside(spar_session *s, const spar_member *only, double **aside) {
 
 static void put_back(spar_session *s, const spar_member *only, const double *aside) {
     for (spar_member *m = s->members; m; m = m->next) {
-        if (only && m != only) {
+        if (!is_with(only, m)) {
             continue;
         }
         if (*aside > 0) {
@@ -97,9 +112,33 @@ static int find_rest(spar_member *m, int load_steps) {
     spar_session *s = m->session;
     if (!s->started) {
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
-        spari_session_take_loads(s, m, m->load_pushed);
+        for (spar_member *with = s->members; with; with = with->next) {
+            if (is_with(m, with)) {
+                spari_session_take_loads(s, with, with->load_pushed);
+            }
+        }
     }
     return spari_session_share_motion(s, solve_member_static(m, m->load_pushed, load_steps, 0));
+}
+
+/* The equilibrium found holds at t^n; or all is as it was. */
+static void end_member_static(spar_member *member, int status, const double *aside) {
+    for (spar_member *m = member->session->members; m; m = m->next) {
+        if (!is_with(member, m)) {
+            continue;
+        }
+        if (status == SPAR_OK) {
+            settle_member(m, m->load_pushed);
+        } else {
+            spari_member_reject(m);
+            copy_loads(m, m->load_before, m->load_pushed);
+        }
+    }
+    if (status != SPAR_OK) {
+        put_back(member->session, member, aside);
+    } else if (member->assembly) {
+        spari_assembly_settle(member->assembly);
+    }
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
@@ -109,17 +148,16 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_member_enter(member, __func__, alike, 1, check_member_static(member, __func__, load_steps)));
     double *aside = NULL;
-    int status = spari_session_seal(s, put_aside(s, member, &aside));
+    int status = s->joints ? spari_enter(s, "joints", spari_assemblies_make(s)) : SPAR_OK;
+    status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, member, &aside)) : status;
     if (status == SPAR_OK) {
-        copy_loads(member, member->load_pushed, member->load_before);
-        status = find_rest(member, load_steps);
-        if (status == SPAR_OK) {
-            settle_member(member, member->load_pushed);
-        } else {
-            spari_member_reject(member);
-            put_back(s, member, aside);
-            copy_loads(member, member->load_before, member->load_pushed);
+        for (spar_member *m = s->members; m; m = m->next) {
+            if (is_with(member, m)) {
+                copy_loads(m, m->load_pushed, m->load_before);
+            }
         }
+        status = find_rest(member, load_steps);
+        end_member_static(member, status, aside);
     }
     free(aside);
     return spari_named(s, __func__, status);
@@ -134,6 +172,7 @@ static int check_session_static(spar_session *s, int load_steps) {
                   session_call);
     SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", session_call,
                   load_steps);
+    SPARI_TRY(spari_joints_refuse(s, session_call));
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, session_call));
     }

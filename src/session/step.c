@@ -1,6 +1,7 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
+#include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
 #include "coupling.h"
@@ -74,6 +75,9 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
+    if (!s->started && s->joints) {
+        SPARI_TRY(spari_named(s, __func__, spari_enter(s, "joints", spari_assemblies_make(s))));
+    }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
         SPARI_TRY(spari_session_seal(s, SPAR_OK));
         int pushed = 0;
@@ -88,6 +92,9 @@ int spar_step_begin(spar_session *session, double dt) {
     for (spar_member *m = s->members; m; m = m->next) {
         hold_root(m);
         predict_loads(m, order, dt, s->dt_last);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_hold(j);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_begin(f, order, dt, s->dt_last);
@@ -135,7 +142,12 @@ int spar_step_solve(spar_session *session) {
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = solve_member(m, s->dt);
+        status = m->assembly ? SPAR_OK : solve_member(m, s->dt);
+    }
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
+        status = spari_assembly_advance(a, s->dt);
+    }
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;
     }
     status = spari_session_share_motion(s, status);
@@ -227,6 +239,9 @@ int spar_step_accept(spar_session *session) {
         shift_history(s, m);
         spari_member_accept(m);
     }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_accept(j);
+    }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
     }
@@ -246,6 +261,9 @@ static void reject(spar_session *s) {
         spari_member_reject(m);
         memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
                (size_t)(6 * m->nodes) * sizeof(double));
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_reject(j);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);

@@ -11,7 +11,7 @@
 
 int spari_weighs_motion(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next) {
-        if (!m->row->moves) { /* how it answers is the host's to know */
+        if (!m->row->moves || m->assembly) { /* how it answers is the host's to know; or that of all it is tied to */
             return 0;
         }
     }

@@ -1,5 +1,6 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
+#include "alpha.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -42,8 +43,8 @@ static spari_rates rates_of(const spari_state *s) {
 }
 
 /* Starting values of Newton. */
-static void predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
-                    spari_ends *e, double *x) {
+void spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
+                         spari_ends *e, double *x) {
     spari_scheme_predict(c, stays, 6 * s->n, rates_of(&e->from), x, rates_of(&e->to));
     for (int i = 0; i < s->n; i++) {
         place_node(c, &e->from, &e->to, x, i);
@@ -52,8 +53,8 @@ static void predict(const spari_solver *s, const spar_member *member, const spar
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
-static void carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
-                  const double turn[4], const spari_ends *e, double *x) {
+void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
+                       const double turn[4], const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
@@ -74,7 +75,7 @@ static void carry(const spari_solver *s, const spar_member *member, const spari_
 }
 
 /* A driven root goes where it is told. */
-static void impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
+void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int end = spari_member_held(member);
     if (end == 0 || e->root) { /* seen from itself a root does not move */
@@ -104,8 +105,8 @@ static void impose_root(const spar_member *member, const spari_pose *root, const
 
 /* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
  * relative to. */
-static double balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
-                      double *r) {
+double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
+                           double *r) {
     const spari_body *body = s->body;
     double scale =
         spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
@@ -126,10 +127,10 @@ static double balance(spari_solver *s, const spar_member *member, const spari_sc
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
    in fixed axes. */
-static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
+void spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
     if (s->body->linear[0]) {
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
-        return spari_linear_solve(s->linear, dx);
+        return;
     }
     for (int i = 0; i < s->n; i++) {
         double back[4], *turn = s->turn + 4 * i;
@@ -138,14 +139,20 @@ static int solve_turned(const spari_solver *s, const double *q, const double *r,
         spari_rotate_back(turn, r + 6 * i, dx + 6 * i);
         spari_rotate_back(turn, r + 6 * i + 3, dx + 6 * i + 3);
     }
-    if (spari_linear_solve(s->linear, dx)) {
-        return 1;
-    }
-    for (int i = 0; i < s->n; i++) {
+}
+
+void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
+    for (int i = 0; i < s->n && !s->body->linear[0]; i++) {
         spari_rotate(s->turn + 4 * i, dx + 6 * i, dx + 6 * i);
         spari_rotate(s->turn + 4 * i, dx + 6 * i + 3, dx + 6 * i + 3);
     }
-    return 0;
+}
+
+static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
+    spari_alpha_turn_back(s, q, r, dx);
+    int singular = spari_linear_solve(s->linear, dx);
+    spari_alpha_turn_forth(s, dx);
+    return singular;
 }
 
 /* T := R T R^T */
@@ -166,8 +173,7 @@ static void turn_matrix(const double q[4], double T[9]) {
 
 /* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
    d x = I - k omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
-static void update_tangent_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e,
-                                     const double *x) {
+void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     double k = c->still ? 0 : c->h * c->h * c->cv / 12;
     for (int i = 0; i < s->n; i++) {
@@ -193,8 +199,8 @@ static void update_tangent_operators(const spari_solver *s, const spari_scheme *
 
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
-static double apply_correction(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                               double longest, double *x, double *dx) {
+double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                           double longest, double *x, double *dx) {
     const spari_state *to = &e->to;
     double largest = 0, length = s->body->length;
     for (int i = 0; i < s->n; i++) {
@@ -218,7 +224,7 @@ static double apply_correction(const spari_solver *s, const spar_member *member,
     return largest;
 }
 
-static double size_of(const spari_solver *s, const double *x) {
+double spari_alpha_size(const spari_solver *s, const double *x) {
     double largest = 0;
     for (int i = 0; i < s->n; i++) {
         largest = fmax(largest, fmax(spari_norm(x + 6 * i) / s->body->length, spari_norm(x + 6 * i + 3)));
@@ -240,13 +246,13 @@ enum { PATIENCE = 5 };
 /* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
 typedef enum effort { KEPT, FRESH, FULL } effort;
 
-static int form_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
+int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
     const double *v = c->still && !s->body->D ? NULL : to->v;
     return spari_solver_factor(s, member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv);
 }
 
 /* A tangent of a slightly other dt contracts as fast (hosts' steps differ in their last bits, or by per mille). */
-static int close_to(double x, double kept) {
+int spari_alpha_close(double x, double kept) {
     return fabs(x - kept) <= 0.01 * fabs(kept);
 }
 
@@ -257,30 +263,31 @@ static const char *attempt(spari_solver *s, const spar_member *member, const spa
                            effort how, spari_ends *e, double *x, int *iterations) {
     const spar_session *session = member->session;
     double last = 0, longest = how == FULL ? 0.5 : INFINITY;
-    s->factored = s->factored && how == KEPT && close_to(c->cm, s->kept_cm) && close_to(c->cv, s->kept_cv);
+    s->factored =
+        s->factored && how == KEPT && spari_alpha_close(c->cm, s->kept_cm) && spari_alpha_close(c->cv, s->kept_cv);
     int fresh = !s->factored;
     for (int it = 1; it <= session->newton_max; it++, ++*iterations) {
-        impose_root(member, root, e, x);
-        double scale = balance(s, member, c, &e->seen, s->r);
+        spari_alpha_impose_root(member, root, e, x);
+        double scale = spari_alpha_balance(s, member, c, &e->seen, s->r);
         if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
             return "met numbers that are not finite";
         }
-        update_tangent_operators(s, c, e, x);
-        if (!s->factored && form_tangent(s, member, c, &e->seen)) {
+        spari_alpha_operators(s, c, e, x);
+        if (!s->factored && spari_alpha_tangent(s, member, c, &e->seen)) {
             return "found a singular tangent";
         }
         if (solve_turned(s, e->seen.q, s->r, s->dx)) {
             return "found a singular tangent";
         }
         double noise = infinity_norm(s->r, 6 * s->n);
-        double correction = apply_correction(s, member, c, e, longest, x, s->dx);
+        double correction = spari_alpha_correct(s, member, c, e, longest, x, s->dx);
         s->newton++;
-        double tolerance = session->newton_atol + session->newton_rtol * (size_of(s, x) + e->carried);
+        double tolerance = session->newton_atol + session->newton_rtol * (spari_alpha_size(s, x) + e->carried);
         double theta = last > 0 ? correction / last : 0;
         double left = last > 0 && theta < 1 && how != FULL ? theta / (1 - theta) * correction : correction;
         int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest);
         if (left <= tolerance || noise <= 16 * DBL_EPSILON * scale || stuck) {
-            impose_root(member, root, e, x);
+            spari_alpha_impose_root(member, root, e, x);
             s->factored = s->factored && (fresh || it <= PATIENCE);
             return NULL;
         }
@@ -310,9 +317,9 @@ static int newton(spari_solver *s, const spar_member *member, const spari_scheme
                     {FULL, SPARI_KEEP_PLACE}};
     for (size_t k = s->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (c->still) {
-            carry(s, member, c, root, turn, e, x);
+            spari_alpha_carry(s, member, c, root, turn, e, x);
         } else {
-            predict(s, member, c, attempts[k].stays, e, x);
+            spari_alpha_predict(s, member, c, attempts[k].stays, e, x);
         }
         wrong = attempt(s, member, c, root, attempts[k].how, e, x, &iterations);
         if (!wrong) {
@@ -327,7 +334,7 @@ static int newton(spari_solver *s, const spar_member *member, const spari_scheme
 }
 
 /* Forces less loads at t^0 with the accelerations a. */
-static void unbalance_at_start(void *self, const spar_member *member, const double *a, double *r) {
+void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r) {
     spari_solver *s = self;
     const spari_state *b = &s->begin;
     spari_body_residual(s->body, b->q, b->v, a, 1, r, NULL);
@@ -352,7 +359,7 @@ static int start(void *self, const spar_member *member, const spari_scheme *c) {
         memset(b->v, 0, (size_t)end * sizeof *b->v);
     }
     int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL) ||
-                   spari_scheme_start(c, s->linear, end, 6 * n, unbalance_at_start, s, member, s->r, b->a);
+                   spari_scheme_start(c, s->linear, end, 6 * n, spari_alpha_unbalance, s, member, s->r, b->a);
     s->factored = 0;
     SPARI_REQUIRE(
         member->session, !singular, SPAR_ERR_NUMERIC,
@@ -431,7 +438,7 @@ static int substep(void *self, const spar_member *member, const spari_scheme *c,
 
 int spari_solver_answer(spari_solver *s, const spar_member *member, double *load, double *motion) {
     spari_scheme c = spari_scheme_of(member, s->body->D != NULL, s->steps.h_solved);
-    if (!s->factored && form_tangent(s, member, &c, &s->to)) {
+    if (!s->factored && spari_alpha_tangent(s, member, &c, &s->to)) {
         return 1;
     }
     memset(load, 0, (size_t)spari_member_held(member) * sizeof *load);

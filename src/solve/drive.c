@@ -3,9 +3,12 @@
 
 #include "../math/rotation.h"
 
-/* Cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1 omega. */
 spari_pose spari_drive_at(const spar_member *member, double s, double dt) {
-    const spari_pose *a = &member->drive[0], *b = &member->drive[1];
+    return spari_drive_between(&member->drive[0], &member->drive[1], s, dt);
+}
+
+/* Cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1 omega. */
+spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double s, double dt) {
     if (s >= 1) {
         return *b;
     }

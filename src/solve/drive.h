@@ -6,6 +6,8 @@
 
 /* Motion of a driven root at the part s in (0, 1] of the step: between t^n and t^{n+1} by cubic Hermite. */
 spari_pose spari_drive_at(const spar_member *member, double s, double dt);
+/* The same of any node that moves as it is told, from a at t^n to b. */
+spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double s, double dt);
 /* What a driven root does from one pose to another, h later, beyond what its accelerations, then its velocities say: a
    jump of velocity at once, and one of place; in the axes of `to`. The nodes have no part in either. Zero to third
    order in h for smooth driving. */

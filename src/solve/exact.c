@@ -41,11 +41,23 @@ static void exact_restart(spar_member *m) {
     spari_solver_restart(s);
 }
 
-static int exact_advance(spar_member *m, double dt) {
-    spari_solver *s = m->solution;
-    spari_scheme_loads(m, &s->steps);
-    SPARI_TRY(spari_solver_advance(s, m, dt));
+static spari_solver *exact_solver(const spar_member *m) {
+    return m->solution;
+}
+
+static void exact_take_loads(spar_member *m) {
+    spari_scheme_loads(m, &exact_solver(m)->steps);
+}
+
+static void exact_publish(spar_member *m) {
+    const spari_solver *s = m->solution;
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
+}
+
+static int exact_advance(spar_member *m, double dt) {
+    exact_take_loads(m);
+    SPARI_TRY(spari_solver_advance(m->solution, m, dt));
+    exact_publish(m);
     return SPAR_OK;
 }
 
@@ -67,15 +79,19 @@ static int exact_answer(spar_member *m, const double *load, double *motion) {
     return 0;
 }
 
-static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+static void exact_take_rest(spar_member *m, const double *fluid) {
     spari_solver *s = m->solution;
     spari_member_gather(m, m->dead, s->steps.load);
     spari_member_gather(m, fluid, s->r);
     for (int i = 0; i < 6 * s->n; i++) {
         s->steps.load[i] += s->r[i];
     }
-    SPARI_TRY(spari_solver_static(s, m, load_steps, onward));
-    spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
+}
+
+static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+    exact_take_rest(m, fluid);
+    SPARI_TRY(spari_solver_static(m->solution, m, load_steps, onward));
+    exact_publish(m);
     return SPAR_OK;
 }
 
@@ -155,6 +171,10 @@ const spari_fidelity spari_fidelity_exact = {
     .unknowns = exact_unknowns,
     .problem = exact_problem,
     .shape = exact_shape,
+    .solver = exact_solver,
+    .take_loads = exact_take_loads,
+    .take_rest = exact_take_rest,
+    .publish = exact_publish,
     .state_size = exact_state_size,
     .save = exact_save,
     .is_state = exact_is_state,

@@ -57,6 +57,14 @@ typedef struct spari_fidelity {
     int (*problem)(const spar_member *m, double *K, double *M);
     void (*shape)(const spar_member *m, const double *x, double *room, double *nodes);
 
+    /* Of members that joints tie to others, and that are solved with them (assembly.h): the solver of the body, on its
+       owner; what goes into it before a step, and before equilibrium under dead and `fluid` loads; what it has found,
+       into m->after. NULL: joints cannot tie it. */
+    struct spari_solver *(*solver)(const spar_member *m);
+    void (*take_loads)(spar_member *m);
+    void (*take_rest)(spar_member *m, const double *fluid);
+    void (*publish)(spar_member *m);
+
     /* All that the next steps depend on beside the member itself, to the last bit, as doubles; whether `count` doubles
        can be that. NULL: nothing is kept. */
     int64_t (*state_size)(const spar_member *m);

@@ -77,12 +77,26 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
     }
 }
 
-void spari_linear_fix(spari_linear *s, int i) {
-    size_t at = (size_t)i, from = 0, to = s->n;
-    if (s->elements > 1) {
-        from = at > s->band ? at - s->band : 0;
-        to = at + s->band + 1 < s->n ? at + s->band + 1 : s->n;
+/* The unknowns [from, to) that unknown i may have entries with */
+static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) {
+    *from = s->elements > 1 && i > s->band ? i - s->band : 0;
+    *to = s->elements > 1 && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
+}
+
+void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
+    size_t at = (size_t)i, from, to;
+    reach_of(s, at, &from, &to);
+    memset(row, 0, s->n * sizeof *row);
+    memset(column, 0, s->n * sizeof *column);
+    for (size_t j = from; j < to; j++) {
+        row[j] = *entry(s, at, j);
+        column[j] = *entry(s, j, at);
     }
+}
+
+void spari_linear_fix(spari_linear *s, int i) {
+    size_t at = (size_t)i, from, to;
+    reach_of(s, at, &from, &to);
     for (size_t j = from; j < to; j++) {
         *entry(s, at, j) = *entry(s, j, at) = 0;
     }

@@ -13,6 +13,8 @@ spari_linear *spari_linear_create(int elements, int block, int overlap);
 void spari_linear_free(spari_linear *system);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
+/* Row and column of unknown i, [unknowns] each. Before factoring. */
+void spari_linear_read(const spari_linear *system, int i, double *row, double *column);
 /* Takes unknown i out: its row and column become those of the identity. Before factoring. */
 void spari_linear_fix(spari_linear *system, int i);
 /* Returns 0, or 1 when the matrix is singular or not finite. */

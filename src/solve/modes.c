@@ -8,6 +8,7 @@
 #include "../base/scene.h"
 #include "../member/body.h"
 #include "../member/edge.h"
+#include "../member/joint.h"
 #include "eigen.h"
 #include "fidelity.h"
 
@@ -131,6 +132,9 @@ int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz
     spar_session *s = member->session;
     SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", __func__, member->name);
+    SPARI_REQUIRE(s, !spari_member_is_tied(member), SPAR_ERR_UNSUPPORTED,
+                  "%s: joints tie '%s'; the modes of members tied together are not there in this release", __func__,
+                  member->name);
     int64_t free_unknowns = member->row->unknowns(member);
     SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", __func__,
                   member->name, (long long)n, (long long)free_unknowns);

@@ -6,6 +6,7 @@
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/edge.h"
+#include "../member/joint.h"
 #include "fidelity.h"
 
 #include <stdlib.h>
@@ -51,8 +52,10 @@ void spari_reaction_at_root(const spar_member *m, double *room, double load[6]) 
     if (m->applied) {
         spari_applied_residual(m, q, 1, r);
     }
-    for (int i = 0; i < held; i++) { /* the root is node 0, which no joint repeats */
-        load[i] = r[i] - m->load_solved[1][i];
+    double tied[6] = {0};
+    spari_joints_on(m, 0, tied);
+    for (int i = 0; i < held; i++) { /* the root is node 0, which no element shares */
+        load[i] = r[i] - m->load_solved[1][i] - tied[i];
     }
 }
 
@@ -89,9 +92,10 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
         }
     }
     for (int64_t i = 0; i < m->nodes; i++) {
-        double r_i[3], moment[3], f[6];
+        double r_i[3], moment[3], f[6], tied[6] = {0};
+        spari_joints_on(m, i, tied);
         for (int k = 0; k < 6; k++) {
-            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k];
+            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - tied[k];
         }
         for (int k = 0; k < 3; k++) {
             r_i[k] = m->xr[3 * i + k] - m->xr[k] + (standing ? 0 : m->after.q[7 * i + k] - m->after.q[k]);

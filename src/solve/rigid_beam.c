@@ -183,6 +183,34 @@ static void rigid_accept(spar_member *m) {
     spari_solver_accept(b->solver);
 }
 
+/* ---- tied by joints ---- */
+
+static spari_solver *solver_of(const spar_member *m) {
+    const spari_rigid_beam *b = m->solution;
+    return b->solver;
+}
+
+/* Loads that follow the nodes are those where the last iterate has put them. */
+static void rigid_take_loads(spar_member *m) {
+    spari_rigid_beam *b = m->solution;
+    memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
+    loads_on_root(m, m->load_history[0], m->now.q, b->solver->steps.load0, b->arms.begin);
+    loads_on_root(m, m->load_used, m->after.q, b->solver->steps.load1, b->arms.end);
+}
+
+static void rigid_take_rest(spar_member *m, const double *fluid) {
+    spari_rigid_beam *b = m->solution;
+    memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
+    loads_on_root(m, fluid, m->now.q, b->solver->steps.load, b->arms.end);
+    memset(b->arms.begin, 0, sizeof b->arms.begin);
+}
+
+static void rigid_publish(spar_member *m) {
+    const spari_solver *s = solver_of(m);
+    const spari_pose root = spari_pose_of(s->to.q, s->to.v, s->to.a);
+    spari_carried_move(m, &root, &m->after);
+}
+
 /* ---- energy and modes ---- */
 
 /* A body that does not deform has no strain energy, to the last digit. */
@@ -229,11 +257,6 @@ static void rigid_shape(const spar_member *m, const double *x, double *room, dou
 
 /* ---- save and load ---- */
 
-static spari_solver *solver_of(const spar_member *m) {
-    const spari_rigid_beam *b = m->solution;
-    return b->solver;
-}
-
 static void rigid_effort(const spar_member *m, spari_effort *effort) {
     spari_solver_effort(solver_of(m), effort);
 }
@@ -274,6 +297,10 @@ const spari_fidelity spari_fidelity_rigid = {
     .unknowns = rigid_unknowns,
     .problem = rigid_problem,
     .shape = rigid_shape,
+    .solver = solver_of,
+    .take_loads = rigid_take_loads,
+    .take_rest = rigid_take_rest,
+    .publish = rigid_publish,
     .state_size = rigid_state_size,
     .save = rigid_save,
     .is_state = rigid_is_state,

@@ -39,9 +39,8 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     }
 }
 
-/* Without this a sequence of uneven steps is of first order. A much larger step gets no more than four times the
-   distance: it is mostly what an unresolved part left there. */
-static double ratio_of_steps(double before, double h) {
+/* A much larger step gets no more than four times the distance: it is mostly what an unresolved part left there. */
+double spari_scheme_ratio(double before, double h) {
     return before > 0 && h != before ? fmin(h / before, 4) : 1;
 }
 
@@ -59,7 +58,7 @@ int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t,
         SPARI_TRY(how->start(self, m, &c));
         t->started = 1;
     }
-    spari_part part = {.root = m->drive[0], .ratio = ratio_of_steps(t->h_begin, c.h)};
+    spari_part part = {.root = m->drive[0], .ratio = spari_scheme_ratio(t->h_begin, c.h)};
     part.leaps = !c.still && is_leap(t->h_begin, c.h);
     t->h_solved = c.h;
     m->dissipated_step = 0;

@@ -56,8 +56,11 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps);
 int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *steps, int loads, spar_member *member,
                          int damped, double dt);
 
+/* Of a step h to the one before (0: none), for spari_scheme_stretch. */
+double spari_scheme_ratio(double before, double h);
 /* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its
-   distance from a^n is multiplied by the ratio of the steps. b := a + ratio (b - a) */
+   distance from a^n is multiplied by the ratio of the steps; without this uneven steps are of first order. b := a +
+   ratio (b - a) */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
 
 /* What stays over the step in the starting values of Newton. Smooth motion: the acceleration. Where stiff parts ring,

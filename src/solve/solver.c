@@ -75,6 +75,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->element);
     free(s->best);
     spari_linear_free(s->linear);
+    spari_condensed_free(s->condensed);
     free(s);
 }
 
@@ -110,11 +111,14 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
         }
         spari_linear_add(s->linear, e, s->element);
     }
+    if (s->condensed) {
+        spari_condensed_take(s->condensed, s->linear, end);
+    }
     for (int i = 0; i < end; i++) {
         spari_linear_fix(s->linear, i);
     }
     s->factors++;
-    if (spari_linear_factor(s->linear)) {
+    if (spari_linear_factor(s->linear) || (s->condensed && spari_condensed_form(s->condensed, s->linear))) {
         return 1;
     }
     s->factored = 1;

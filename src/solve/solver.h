@@ -7,6 +7,7 @@
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "arms.h"
+#include "condense.h"
 #include "effort.h"
 #include "scheme.h"
 
@@ -16,7 +17,8 @@ typedef struct spari_state {
     double *q, *v, *a, *b;
 } spari_state;
 
-typedef struct spari_solver {
+typedef struct spari_solver spari_solver;
+struct spari_solver {
     const spari_body *body;
     spari_arms *arms;     /* of a body that carries a rigid beam: its loads along the line come so too; or NULL */
     int n;                /* unique nodes */
@@ -32,6 +34,7 @@ typedef struct spari_solver {
     double h_leapt; /* 0: none */
     double *best;   /* static: state to go back to */
     spari_linear *linear;
+    spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
     /* the factored tangent, kept while it contracts */
     int factored;
     double kept_cm, kept_cv;   /* its coefficients */
@@ -39,7 +42,7 @@ typedef struct spari_solver {
     double *turn;              /* [n][4] their turn since */
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
     int64_t newton, factors;   /* totals: iterations, factorisations */
-} spari_solver;
+};
 
 /* `arms`, which may be NULL, and `body` are kept. */
 spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms);
@@ -55,6 +58,8 @@ int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
 int spari_solver_answer(spari_solver *solver, const spar_member *member, double *load, double *motion);
 /* The step is accepted: t^{n+1} becomes t^n. */
 void spari_solver_accept(spari_solver *solver);
+/* q [n][7] less the correction dx [n][6], shortened by `cut` */
+void spari_static_shift(int n, double cut, const double *dx, double *q);
 /* Equilibrium under steps.load, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
    the last call found, if that leads there; else from t^n. */
 int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);

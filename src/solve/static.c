@@ -67,8 +67,7 @@ static void form_static_tangent(const spari_solver *s, const spar_member *m, loa
     }
 }
 
-/* q less the correction dx, shortened by `cut` */
-static void shift(int n, double cut, const double *dx, double *q) {
+void spari_static_shift(int n, double cut, const double *dx, double *q) {
     for (int i = 0; i < n; i++) {
         double turn[3], p[4];
         for (int k = 0; k < 3; k++) {
@@ -120,7 +119,7 @@ static outcome equilibrium(spari_solver *s, const spar_member *member, loading *
             largest = fmax(largest, fmax(spari_norm(s->dx + 6 * i) / length, spari_norm(s->dx + 6 * i + 3)));
         }
         double cut = largest > longest ? longest / largest : 1;
-        shift(n, cut, s->dx, q);
+        spari_static_shift(n, cut, s->dx, q);
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
         if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
                          (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {

@@ -83,6 +83,18 @@ program test_bindings
   call refused(spar_member_solve_static(none, 0_c_int), 'spar_member_solve_static')
   call refused(spar_beam_set_modal_damping(none), 'spar_beam_set_modal_damping')
   call refused(spar_member_solve_modes(none, 0_c_int64_t), 'spar_member_solve_modes')
+  call refused(spar_joint_create(none, a=none, node_a=0_c_int64_t, b=none, node_b=0_c_int64_t, free_motions=0_c_int, &
+      joint=made), 'spar_joint_create')
+  call refused(spar_line_create(none, a=none, node_a=0_c_int64_t, b=none, node_b=0_c_int64_t, joint=made), &
+      'spar_line_create')
+  call refused(spar_joint_set_frame(none), 'spar_joint_set_frame')
+  call refused(spar_joint_set_spring(none), 'spar_joint_set_spring')
+  call refused(spar_line_set_spring(none, 0.0_c_double, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_line_set_spring')
+  call refused(spar_joint_set_driven(none, 0_c_int), 'spar_joint_set_driven')
+  call refused(spar_joint_drive(none), 'spar_joint_drive')
+  call refused(spar_joint_set_load(none), 'spar_joint_set_load')
+  call refused(spar_joint_get_motion(none), 'spar_joint_get_motion')
+  call refused(spar_joint_get_load(none), 'spar_joint_get_load')
   call refused(spar_fluid_create(none, fluid=made), 'spar_fluid_create')
   made = c_null_ptr
   call spar_fluid_destroy(made)

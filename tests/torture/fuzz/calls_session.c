@@ -75,6 +75,11 @@ void do_spar_session_create_fcomm(call *c) {
 
 /* What was made from it is dead. */
 static void forget_session(world *w, int session) {
+    for (int i = 0; i < JOINTS; i++) {
+        if (w->joint[i].session == session) {
+            w->joint[i].j = NULL;
+        }
+    }
     for (int i = 0; i < MEMBERS; i++) {
         if (w->member[i].session == session) {
             w->member[i].m = NULL;

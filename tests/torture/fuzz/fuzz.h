@@ -103,6 +103,16 @@ enum {
     CALL(spar_member_solve_modes, 60, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_advice, 20, FUZZ_PURE)                                                                        \
     CALL(spar_member_write_vtk, 10, FUZZ_PURE)                                                                         \
+    CALL(spar_joint_create, 80, FUZZ_CHANGES)                                                                          \
+    CALL(spar_line_create, 40, FUZZ_CHANGES)                                                                           \
+    CALL(spar_joint_set_frame, 60, FUZZ_CHANGES)                                                                       \
+    CALL(spar_joint_set_spring, 50, FUZZ_CHANGES)                                                                      \
+    CALL(spar_line_set_spring, 50, FUZZ_CHANGES)                                                                       \
+    CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
+    CALL(spar_joint_drive, 60, FUZZ_CHANGES)                                                                           \
+    CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
+    CALL(spar_joint_get_motion, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_joint_get_load, 20, FUZZ_PURE)                                                                           \
     CALL(spar_fluid_create, 50, FUZZ_CHANGES)                                                                          \
     CALL(spar_fluid_destroy, 20, FUZZ_TEXT)                                                                            \
     CALL(spar_fluid_set_motion_nodes, 60, FUZZ_CHANGES)                                                                \
@@ -199,7 +209,7 @@ uint64_t fuzz_next(uint64_t *state);
 
 /* ---- the world: what is alive ---- */
 
-enum { SESSIONS = 3, MEMBERS = 10, FLUIDS = 8, POLARS = 3, AEROS = 3, BLADES = 3 };
+enum { SESSIONS = 3, MEMBERS = 10, JOINTS = 6, FLUIDS = 8, POLARS = 3, AEROS = 3, BLADES = 3 };
 enum { KIND_POINT, KIND_RIGID, KIND_BEAM };
 typedef struct live_session {
     spar_session *s;
@@ -213,6 +223,11 @@ typedef struct live_member {
     int session, kind, elements, per_element, committed;
     int64_t made; /* when, to know the latest */
 } live_member;
+typedef struct live_joint {
+    spar_joint *j;
+    int session, line, free_motions, driven;
+    int64_t made;
+} live_joint;
 typedef struct live_fluid {
     spar_fluid *f;
     int session, member;
@@ -226,6 +241,7 @@ typedef struct live_aero {
 typedef struct world {
     live_session session[SESSIONS];
     live_member member[MEMBERS];
+    live_joint joint[JOINTS];
     live_fluid fluid[FLUIDS];
     live_aero aero[AEROS];
     spar_polar *polar[POLARS];
@@ -306,6 +322,8 @@ void text(call *c, const char *format, ...) __attribute__((format(printf, 2, 3))
 
 live_session *arg_session(call *c);
 live_member *arg_member(call *c, int kind); /* kind -1: any; .m NULL: none */
+enum { JOINT_ANY, JOINT_PLAIN, JOINT_LINE, JOINT_DRIVEN };
+live_joint *arg_joint(call *c, int kind); /* .j NULL: none */
 live_fluid *arg_fluid(call *c);
 live_aero *arg_aero(call *c);
 spar_polar *arg_polar(call *c);

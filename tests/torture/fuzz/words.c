@@ -394,6 +394,23 @@ live_member *arg_member(call *c, int kind) {
     return found;
 }
 
+live_joint *arg_joint(call *c, int kind) {
+    static live_joint none;
+    live_joint *found = &none;
+    int first = below(c, JOINTS);
+    for (int k = 0; k < JOINTS; k++) {
+        live_joint *j = c->w->joint + (first + k) % JOINTS;
+        int fits = kind == JOINT_ANY || (kind == JOINT_LINE ? j->line : kind == JOINT_DRIVEN ? j->driven : !j->line);
+        if (j->j && (fits || odd(c)) && (!found->j || ((c->style & STYLE_RECENT) && j->made > found->made))) {
+            found = j;
+        }
+    }
+    found = odd(c) ? &none : found;
+    whom(c, found->j ? found->session : -1);
+    text(c, found->j ? "%sj%d" : "%sNULL", comma(c), (int)(found - c->w->joint));
+    return found;
+}
+
 live_fluid *arg_fluid(call *c) {
     static live_fluid none;
     live_fluid *found = &none;

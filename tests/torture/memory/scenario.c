@@ -587,6 +587,44 @@ static void act_equilibrium(void) {
     }
 }
 
+/* Two bodies on a hinge, a spring and a line; redundant holds in the loop they make. */
+static void act_joints(void) {
+    const double here[3] = {0, 0, 0}, there[3] = {0.5, 0, 0}, load[6] = {0, 0, 1, 0, 0, 0}, none[6] = {0};
+    double stiffness[36] = {0}, x[6];
+    host h = {0};
+    if (run.ranks > 1) { /* not there yet */
+        return;
+    }
+    spar_session *s = h.session = begin_session();
+    spar_member *b[2];
+    spar_joint *hinge = NULL, *spring = NULL, *line = NULL;
+    stiffness[0] = stiffness[7] = stiffness[14] = 100;
+    for (int k = 0; k < 2; k++) {
+        b[k] = begin_beam(s, k ? "second" : "first", 1, 3, k);
+        CALL(spar_member_set_root, b[k], k ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED);
+        CALL(spar_member_commit, b[k]);
+    }
+    CALL(spar_joint_create, s, "hinge", b[1], 0, b[0], 2, SPAR_FREE_RY, &hinge);
+    CALL(spar_joint_set_frame, hinge, there, NULL);
+    CALL(spar_joint_set_driven, hinge, SPAR_FREE_RY);
+    CALL(spar_joint_create, s, "spring", b[1], 2, NULL, 0, 7, &spring);
+    CALL(spar_joint_set_frame, spring, there, NULL);
+    CALL(spar_joint_set_spring, spring, stiffness, NULL, NULL);
+    CALL(spar_line_create, s, "line", b[1], 1, there, NULL, 0, here, &line);
+    CALL(spar_line_set_spring, line, 100, 1, 0.5, 1);
+    CALL(spar_joint_set_load, spring, load);
+    CALL(spar_member_solve_static, b[1], 2);
+    for (int k = 0; k < 2; k++) {
+        CALL(spar_joint_drive, hinge, none, NULL, NULL);
+        CALL(spar_step, s, 1e-3, NULL, NULL, NULL);
+        CALL(spar_joint_get_motion, hinge, x, NULL);
+        note(x, sizeof x);
+        CALL(spar_joint_get_load, hinge, x);
+        note(x, sizeof x);
+    }
+    end_session(&h.session);
+}
+
 static void act_save(void) {
     char path[400];
     host h = {0}, other = {0};
@@ -767,9 +805,9 @@ static void act_aero(void) {
     end_session(&s);
 }
 
-const act acts[] = {{"describe", act_describe, 1},      {"step", act_step, 1},     {"fidelities", act_fidelities, 1},
-                    {"fluids", act_fluids, 1},          {"static", act_static, 1}, {"save", act_save, 1},
-                    {"output", act_output, 1},          {"try", act_try, 1},       {"effects", act_effects, 1},
-                    {"beamdyn", act_beamdyn, 1},        {"aero", act_aero, 1},     {"advise", act_advise, 0},
-                    {"equilibrium", act_equilibrium, 1}};
+const act acts[] = {{"describe", act_describe, 1},       {"step", act_step, 1},     {"fidelities", act_fidelities, 1},
+                    {"fluids", act_fluids, 1},           {"static", act_static, 1}, {"save", act_save, 1},
+                    {"output", act_output, 1},           {"try", act_try, 1},       {"effects", act_effects, 1},
+                    {"beamdyn", act_beamdyn, 1},         {"aero", act_aero, 1},     {"advise", act_advise, 0},
+                    {"equilibrium", act_equilibrium, 1}, {"joints", act_joints, 1}};
 const int act_count = (int)(sizeof acts / sizeof *acts);

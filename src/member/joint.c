@@ -1,0 +1,405 @@
+/* Joints: described by the host, placed when the members are there, and what their springs and drives say. */
+#include "joint.h"
+
+#include "../base/quiet.h"
+#include "../comm/comm.h"
+#include "../math/rotation.h"
+#include "edge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const motion_name[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+enum { ALL_FREE = 63 };
+
+/* ---- create ---- */
+
+static int check_node(const spar_session *s, const char *call, const char *name, const char *which,
+                      const spar_member *m, int64_t node) {
+    spar_session *to = (spar_session *)(uintptr_t)s;
+    SPARI_REQUIRE(to, m->session == s, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': member %s, '%s', is of another session; a joint ties members of one", call, name, which,
+                  m->name);
+    SPARI_REQUIRE(to, node >= 0 && node < m->nodes, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': '%s' has nodes 0 to %lld; there is no node %lld", call, name, m->name,
+                  (long long)m->nodes - 1, (long long)node);
+    return SPAR_OK;
+}
+
+static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
+                        spar_member *b, int64_t node_b, spar_joint **out) {
+    SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
+    SPARI_REQUIRE(s, out, SPAR_ERR_ARGUMENT, "%s: no place for the new joint (NULL)", call);
+    SPARI_REQUIRE(s, name && name[0], SPAR_ERR_ARGUMENT, "%s: a joint needs a name", call);
+    SPARI_REQUIRE(s, !s->started && !s->trial, SPAR_ERR_STATE,
+                  "%s: '%s': the clock has started; create joints before the first step", call, name);
+    SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; the ground can be b alone", call, name);
+    SPARI_TRY(check_node(s, call, name, "a", a, node_a));
+    if (b) {
+        SPARI_TRY(check_node(s, call, name, "b", b, node_b));
+        SPARI_REQUIRE(s, a != b || node_a != node_b, SPAR_ERR_ARGUMENT,
+                      "%s: '%s' would tie node %lld of '%s' to itself; give two nodes, or b NULL for the ground", call,
+                      name, (long long)node_a, a->name);
+    }
+    SPARI_REQUIRE(s, spari_comm_size(s->comm) == 1, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s': joints on several ranks are not there in this release", call, name);
+    spar_joint **end = &s->joints;
+    for (; *end; end = &(*end)->next) {
+        SPARI_REQUIRE(s, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
+                      "%s: there is a joint '%s' already; names are unique in a session", call, name);
+    }
+    spar_joint *j = spari_zalloc(1, sizeof *j);
+    size_t size = strlen(name) + 1;
+    if (!j || !(j->name = spari_zalloc((int64_t)size, 1))) {
+        free(j);
+        return spari_fail(s, SPAR_ERR_MEMORY, "%s: '%s': no memory for the joint", call, name);
+    }
+    memcpy(j->name, name, size);
+    j->session = s;
+    j->member[0] = a, j->member[1] = b;
+    j->node[0] = node_a, j->node[1] = b ? node_b : 0;
+    j->axes[0] = 1;
+    *end = j;
+    *out = j;
+    return SPAR_OK;
+}
+
+int spar_joint_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, spar_member *b,
+                      int64_t node_b, int free_motions, spar_joint **joint) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(session, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name ? name : "", free_motions);
+    spar_joint *j = NULL;
+    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint ? &j : NULL));
+    j->tie.free = free_motions;
+    *joint = j;
+    return SPAR_OK;
+}
+
+int spar_line_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, const double point_a[3],
+                     spar_member *b, int64_t node_b, const double point_b[3], spar_joint **joint) {
+    SPARI_QUIET;
+    const char *label = name ? name : "";
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_finite(session, __func__, label, "point_a", 3, point_a));
+    SPARI_TRY(spari_need_finite(session, __func__, label, "point_b", 3, point_b));
+    double way[3];
+    for (int k = 0; k < 3; k++) {
+        way[k] = point_a[k] - point_b[k];
+    }
+    SPARI_REQUIRE(session, spari_norm(way) > 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': its two points are one, (%g, %g, %g); a line needs a direction in the reference", __func__,
+                  label, point_a[0], point_a[1], point_a[2]);
+    spar_joint *j = NULL;
+    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint ? &j : NULL));
+    memcpy(j->point[0], point_a, sizeof j->point[0]);
+    memcpy(j->point[1], point_b, sizeof j->point[1]);
+    j->tie.line = 1;
+    j->tie.free = SPAR_FREE_X;
+    j->length = spari_norm(way);
+    j->drive[0].z[0] = j->drive[1].z[0] = j->length;
+    *joint = j;
+    return SPAR_OK;
+}
+
+void spari_joint_free(spar_joint *j) {
+    if (j) {
+        free(j->name);
+        free(j);
+    }
+}
+
+/* ---- describe ---- */
+
+/* A joint that may still be described. */
+static int need_joint(const spar_joint *j, const char *call) {
+    SPARI_REQUIRE(NULL, j, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", call);
+    return SPAR_OK;
+}
+
+static int need_before_start(const spar_joint *j, const char *call) {
+    SPARI_TRY(need_joint(j, call));
+    SPARI_REQUIRE(j->session, !j->session->started && !j->session->trial, SPAR_ERR_STATE,
+                  "%s: '%s': the clock has started; describe joints before the first step", call, j->name);
+    return SPAR_OK;
+}
+
+int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]) {
+    SPARI_QUIET;
+    SPARI_TRY(need_before_start(joint, __func__));
+    spar_session *s = joint->session;
+    SPARI_REQUIRE(s, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line, whose points are its places", __func__,
+                  joint->name);
+    SPARI_TRY(spari_need_finite(s, __func__, joint->name, "x", 3, x));
+    if (q) {
+        SPARI_TRY(spari_need_finite(s, __func__, joint->name, "q", 4, q));
+        SPARI_TRY(spari_need_unit(s, __func__, joint->name, "q", 1, q, 4));
+    }
+    memcpy(joint->place, x, sizeof joint->place);
+    joint->frame_given = q ? 2 : 1;
+    if (q) {
+        memcpy(joint->axes, q, sizeof joint->axes);
+        spari_quat_normalise(joint->axes);
+    }
+    return SPAR_OK;
+}
+
+/* Symmetric, and nothing of it on motions that are held. */
+static int check_spring(const spar_joint *j, const char *call, const char *what, const double *K) {
+    double size = 0;
+    if (!K) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(spari_need_finite(j->session, call, j->name, what, 36, K));
+    for (int i = 0; i < 36; i++) {
+        size = fmax(size, fabs(K[i]));
+    }
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < 6; k++) {
+            SPARI_REQUIRE(j->session, fabs(K[6 * i + k] - K[6 * k + i]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
+                          "%s: '%s': %s is not symmetric: entries (%d,%d) and (%d,%d) are %g and %g", call, j->name,
+                          what, i, k, k, i, K[6 * i + k], K[6 * k + i]);
+            SPARI_REQUIRE(j->session, K[6 * i + k] == 0 || (j->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+                          "%s: '%s': %s has %g on %s, which the joint holds; springs act on free motions", call,
+                          j->name, what, K[6 * i + k], motion_name[i]);
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
+                          const double preload[6]) {
+    SPARI_QUIET;
+    SPARI_TRY(need_joint(joint, __func__));
+    spar_session *s = joint->session;
+    SPARI_REQUIRE(s, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line; call spar_line_set_spring", __func__,
+                  joint->name);
+    SPARI_TRY(check_spring(joint, __func__, "stiffness", stiffness));
+    SPARI_TRY(check_spring(joint, __func__, "damping", damping));
+    if (preload) {
+        SPARI_TRY(spari_need_finite(s, __func__, joint->name, "preload", 6, preload));
+        for (int i = 0; i < 6; i++) {
+            SPARI_REQUIRE(s, preload[i] == 0 || (joint->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+                          "%s: '%s': preload has %g on %s, which the joint holds", __func__, joint->name, preload[i],
+                          motion_name[i]);
+        }
+    }
+    static const double none[36] = {0};
+    memcpy(joint->stiffness, stiffness ? stiffness : none, sizeof joint->stiffness);
+    memcpy(joint->damping, damping ? damping : none, sizeof joint->damping);
+    memcpy(joint->preload, preload ? preload : none, sizeof joint->preload);
+    joint->sprung = stiffness || damping || preload;
+    return SPAR_OK;
+}
+
+int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only) {
+    SPARI_QUIET;
+    SPARI_TRY(need_before_start(joint, __func__));
+    spar_session *s = joint->session;
+    SPARI_REQUIRE(s, joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is no line; call spar_joint_set_spring", __func__,
+                  joint->name);
+    const double in[3] = {stiffness, damping, length};
+    static const char *const name[3] = {"stiffness", "damping", "length"};
+    for (int k = 0; k < 3; k++) {
+        SPARI_REQUIRE(s, isfinite(in[k]) && in[k] >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %s is %g; give 0 or more",
+                      __func__, joint->name, name[k], in[k]);
+    }
+    joint->stiffness[0] = stiffness;
+    joint->damping[0] = damping;
+    joint->length = length;
+    joint->sprung = 1;
+    joint->slack = tension_only != 0;
+    return SPAR_OK;
+}
+
+int spar_joint_set_driven(spar_joint *joint, int mask) {
+    SPARI_QUIET;
+    SPARI_TRY(need_before_start(joint, __func__));
+    SPARI_REQUIRE(joint->session, mask >= 0 && mask <= ALL_FREE && (mask & ~joint->tie.free) == 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': mask is %d, free is %d: what is driven must be among what the joint leaves free", __func__,
+                  joint->name, mask, joint->tie.free);
+    joint->driven = mask;
+    return SPAR_OK;
+}
+
+int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6], const double acceleration[6]) {
+    SPARI_QUIET;
+    static const double rest[6] = {0};
+    SPARI_TRY(need_joint(joint, __func__));
+    spar_session *s = joint->session;
+    SPARI_REQUIRE(s, joint->driven, SPAR_ERR_STATE,
+                  "%s: '%s' is not driven; call spar_joint_set_driven before the first step", __func__, joint->name);
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: '%s': a step is under way; the motion at its end is given before spar_step_begin", __func__,
+                  joint->name);
+    const double *in[3] = {motion, rate ? rate : rest, acceleration ? acceleration : rest};
+    static const char *const name[3] = {"motion", "rate", "acceleration"};
+    for (int k = 0; k < 3; k++) {
+        SPARI_TRY(spari_need_finite(s, __func__, joint->name, name[k], 6, in[k]));
+    }
+    memcpy(joint->drive[1].z, in[0], 6 * sizeof **in);
+    memcpy(joint->drive[1].rate, in[1], 6 * sizeof **in);
+    memcpy(joint->drive[1].acceleration, in[2], 6 * sizeof **in);
+    joint->drive_given = 1;
+    return SPAR_OK;
+}
+
+int spar_joint_set_load(spar_joint *joint, const double load[6]) {
+    SPARI_QUIET;
+    SPARI_TRY(need_joint(joint, __func__));
+    SPARI_TRY(spari_need_finite(joint->session, __func__, joint->name, "load", 6, load));
+    for (int i = 0; i < 6; i++) {
+        SPARI_REQUIRE(joint->session, load[i] == 0 || (joint->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+                      "%s: '%s': load has %g on %s, which the joint holds", __func__, joint->name, load[i],
+                      motion_name[i]);
+    }
+    memcpy(joint->given, load, sizeof joint->given);
+    return SPAR_OK;
+}
+
+/* ---- read ---- */
+
+static void give_six(double *to, const double from[6]) {
+    if (to) {
+        memcpy(to, from, 6 * sizeof *to);
+    }
+}
+
+int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6]) {
+    SPARI_TRY(need_joint(joint, __func__));
+    give_six(motion, joint->after.z);
+    give_six(rate, joint->after.rate);
+    return SPAR_OK;
+}
+
+int spar_joint_get_load(const spar_joint *joint, double load[6]) {
+    SPARI_TRY(need_joint(joint, __func__));
+    give_six(load, joint->after.load);
+    return SPAR_OK;
+}
+
+/* ---- what the solution asks ---- */
+
+int spari_joint_is_slack(const spar_joint *j, const spari_relative *r) {
+    return j->slack && j->stiffness[0] * (r->z[0] - j->length) + j->damping[0] * r->rate[0] < 0;
+}
+
+int spari_member_unique(const spar_member *m, int64_t node) {
+    return (int)(m->elements == 1 ? node : node - node / m->per_element);
+}
+
+int spari_member_is_tied(const spar_member *m) {
+    for (const spar_joint *j = m->session->joints; j; j = j->next) {
+        if (j->member[0] == m || j->member[1] == m) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int spari_joint_given(const spar_joint *j) {
+    return j->tie.line ? !j->sprung || j->driven : (~j->tie.free & ALL_FREE) | j->driven;
+}
+
+void spari_joint_spring(const spar_joint *j, const double z[6], const double rate[6], double factor, double load[6]) {
+    int given = spari_joint_given(j);
+    if (j->tie.line) {
+        double pull = j->stiffness[0] * (z[0] - j->length) + j->damping[0] * rate[0];
+        if (!given) {
+            load[0] = factor * j->given[0] - (j->slack && pull < 0 ? 0 : pull);
+        }
+        return;
+    }
+    for (int i = 0; i < 6; i++) {
+        if (given >> i & 1) {
+            continue;
+        }
+        load[i] = factor * (j->given[i] + j->preload[i]);
+        for (int k = 0; k < 6 && j->sprung; k++) {
+            load[i] -= j->stiffness[6 * i + k] * z[k] + j->damping[6 * i + k] * rate[k];
+        }
+    }
+}
+
+int spari_joint_place(spar_joint *j) {
+    const spar_member *a = j->member[0], *b = j->member[1];
+    static const double origin[3] = {0};
+    const double *x[2] = {a->xr + 3 * j->node[0], b ? b->xr + 3 * j->node[1] : origin};
+    double apart = 0, size = 0;
+    for (int side = 0; side < 2; side++) {
+        j->seat[side] = j->node[side];
+        j->unique[side] = j->member[side] ? spari_member_unique(j->member[side], j->node[side]) : 0;
+    }
+    if (!j->tie.line && j->frame_given < 2) {
+        memcpy(j->axes, a->qr + 4 * j->node[0], sizeof j->axes);
+    }
+    if (!j->tie.line && !j->frame_given) {
+        memcpy(j->place, x[0], sizeof j->place);
+        for (int k = 0; k < 3 && b; k++) {
+            apart = hypot(apart, x[1][k] - x[0][k]);
+            size = fmax(size, fabs(x[0][k]));
+        }
+        double length = spari_member_length(a);
+        SPARI_REQUIRE(j->session, apart <= 1e-6 * fmax(length, size), SPAR_ERR_ARGUMENT,
+                      "joint '%s': node %lld of '%s' and node %lld of '%s' are %g m apart in the reference; place them "
+                      "together, or say by spar_joint_set_frame where the joint is, to which rigid arms then lead",
+                      j->name, (long long)j->node[0], a->name, (long long)j->node[1], b ? b->name : "", apart);
+    }
+    for (int side = 0; side < 2; side++) {
+        const double *to = j->tie.line ? j->point[side] : j->place;
+        for (int k = 0; k < 3; k++) {
+            j->tie.arm[side][k] = to[k] - x[side][k];
+        }
+        memcpy(j->tie.axes[side], j->axes, sizeof j->axes);
+    }
+    j->placed = 1;
+    return SPAR_OK;
+}
+
+void spari_joint_count_turns(const spar_joint *j, const double near[6], double z[6]) {
+    int axis = j->tie.line ? -1 : spari_tie_axis(j->tie.free);
+    const double turn = 6.283185307179586476925;
+    if (axis >= 0) {
+        z[3 + axis] += turn * round((near[3 + axis] - z[3 + axis]) / turn);
+    }
+}
+
+void spari_joint_drive_at(const spar_joint *j, double s, double dt, spari_driven *at) {
+    const spari_driven *a = &j->drive[0], *b = &j->drive[1];
+    if (s >= 1) {
+        *at = *b;
+        return;
+    }
+    double h01 = s * s * (3 - 2 * s), h00 = 1 - h01, h10 = s * (1 - s) * (1 - s), h11 = -s * s * (1 - s),
+           d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s), d11 = s * (3 * s - 2);
+    for (int k = 0; k < 6; k++) {
+        at->z[k] = h00 * a->z[k] + h01 * b->z[k] + dt * (h10 * a->rate[k] + h11 * b->rate[k]);
+        at->rate[k] = d01 * (b->z[k] - a->z[k]) / dt + d10 * a->rate[k] + d11 * b->rate[k];
+        at->acceleration[k] = (1 - s) * a->acceleration[k] + s * b->acceleration[k];
+    }
+}
+
+int spari_joints_refuse(spar_session *s, const char *call) {
+    SPARI_REQUIRE(s, !s->joints, SPAR_ERR_UNSUPPORTED,
+                  "%s: the session has joints ('%s' is one), with which this does not work in this release", call,
+                  s->joints->name);
+    return SPAR_OK;
+}
+
+void spari_joint_hold(spar_joint *j) {
+    if (j->driven && !j->drive_given) {
+        memcpy(j->drive[1].z, j->drive[0].z, sizeof j->drive[1].z);
+        memset(j->drive[1].rate, 0, sizeof j->drive[1].rate);
+        memset(j->drive[1].acceleration, 0, sizeof j->drive[1].acceleration);
+    }
+}
+
+void spari_joint_accept(spar_joint *j) {
+    j->now = j->after;
+    j->drive[0] = j->drive[1];
+    j->drive_given = 0;
+}
+
+void spari_joint_reject(spar_joint *j) {
+    j->after = j->now;
+}

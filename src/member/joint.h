@@ -1,0 +1,76 @@
+/* A joint: what ties a node of a member to a node of another, or to the ground. What it is stands here; how the members
+   it ties are solved, in solve/assembly.h. */
+#ifndef SPARI_JOINT_H
+#define SPARI_JOINT_H
+
+#include "structure.h"
+#include "tie.h"
+
+/* Relative motion at one time: coordinates (a hinge's angle counts its turns), rates, and the load on a, in the joint's
+   axes on its six motions: of what is held the constraint's, of what is free the spring's, the damper's and the host's.
+ */
+typedef struct spari_relative {
+    double z[6], rate[6], load[6];
+} spari_relative;
+
+/* Of chosen free motions, at one time. */
+typedef struct spari_driven {
+    double z[6], rate[6], acceleration[6];
+} spari_driven;
+
+struct spar_joint {
+    spar_session *session;
+    spar_joint *next; /* in order of creation, the same on every rank */
+    char *name;
+    spar_member *member[2]; /* a and b; b NULL: the ground */
+    int64_t node[2];
+    int64_t seat[2]; /* the nodes whose motion carries the ends: those, or the root where one body carries a beam */
+    int unique[2];   /* the same of the unknowns' nodes; after the members are committed */
+    int placed;      /* seats, arms and axes are known */
+    spari_tie tie;   /* arms and axes: then too */
+    int frame_given;
+    double place[3], axes[4]; /* of spar_joint_set_frame */
+    double point[2][3];       /* of a line */
+
+    int sprung, slack;                             /* slack: a line that only pulls */
+    double stiffness[36], damping[36], preload[6]; /* on the free motions */
+    double length;                                 /* a line's, unstretched */
+    double given[6];                               /* spar_joint_set_load */
+    int driven;                                    /* mask of free motions */
+    spari_driven drive[2];                         /* at t^n and t^{n+1} */
+    int drive_given;
+    int held; /* mask of motions that are constraints: not free, or driven, and not redundant */
+
+    spari_relative now, after; /* at t^n and t^{n+1} */
+};
+
+/* The unknowns' node of a node of the public numbering. */
+int spari_member_unique(const spar_member *member, int64_t node);
+/* Whether a joint ties it to something. */
+int spari_member_is_tied(const spar_member *member);
+/* Mask of the motions that a joint gives: those not free and the driven ones. */
+int spari_joint_given(const spar_joint *joint);
+/* Loads on the free motions, from springs, dampers, and `factor` of preloads and the host's: load[k] of motions that
+   are not free stays as it is. */
+void spari_joint_spring(const spar_joint *joint, const double z[6], const double rate[6], double factor,
+                        double load[6]);
+/* Whether a line that only pulls does not. */
+int spari_joint_is_slack(const spar_joint *joint, const spari_relative *at);
+/* Places arms and axes. After both members are committed. A status and a message. */
+int spari_joint_place(spar_joint *joint);
+/* z with a hinge's angle brought to the turn nearest to `near`. */
+void spari_joint_count_turns(const spar_joint *joint, const double near[6], double z[6]);
+/* Driven motions at the part s of the step dt: cubic Hermite. */
+void spari_joint_drive_at(const spar_joint *joint, double s, double dt, spari_driven *at);
+/* A driven joint that was not driven for this step stays where it is. */
+void spari_joint_hold(spar_joint *joint);
+/* The step under way is accepted, or given up. */
+void spari_joint_accept(spar_joint *joint);
+void spari_joint_reject(spar_joint *joint);
+/* load[6] += what the joints put on a node of a member, in the motion after. */
+void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
+/* SPAR_ERR_UNSUPPORTED where the session has joints: what does not know them yet. */
+int spari_joints_refuse(spar_session *session, const char *call);
+void spari_joint_free(spar_joint *joint);
+
+#endif

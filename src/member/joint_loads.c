@@ -1,0 +1,35 @@
+/* What joints put on the nodes of a member, in the motion after. */
+#include "joint.h"
+
+#include <string.h>
+
+static void place_of_seat(const spar_joint *j, int side, spari_place *p) {
+    const spar_member *m = j->member[side];
+    *p = (spari_place){.q = {1, 0, 0, 0}};
+    if (m) {
+        const double *q = m->after.q + 7 * j->seat[side];
+        for (int k = 0; k < 3; k++) {
+            p->x[k] = m->xr[3 * j->seat[side] + k] + q[k];
+        }
+        memcpy(p->q, q + 3, sizeof p->q);
+    }
+}
+
+void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
+    for (const spar_joint *j = m->session->joints; j; j = j->next) {
+        for (int side = 0; side < 2; side++) {
+            if (!j->placed || j->member[side] != m || j->seat[side] != node) {
+                continue;
+            }
+            spari_place place[2];
+            double z[6], B[6][12], f[12];
+            place_of_seat(j, 0, &place[0]);
+            place_of_seat(j, 1, &place[1]);
+            spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
+            spari_tie_forces(B, j->after.load, f);
+            for (int k = 0; k < 6; k++) {
+                load[k] += f[6 * side + k];
+            }
+        }
+    }
+}

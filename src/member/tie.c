@@ -1,0 +1,202 @@
+/* The geometry of a joint: see tie.h. */
+#include "tie.h"
+
+#include "../math/rotation.h"
+
+#include <spar/spar.h>
+#include <string.h>
+
+int spari_tie_axis(int free) {
+    switch (free & (SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ)) {
+    case SPAR_FREE_RX:
+        return 0;
+    case SPAR_FREE_RY:
+        return 1;
+    case SPAR_FREE_RZ:
+        return 2;
+    default:
+        return -1;
+    }
+}
+
+/* Where a node has its end of the joint. */
+typedef struct tie_end {
+    double arm[3], axes[4]; /* from the node, now */
+} tie_end;
+
+static void carry_end(const spari_tie *t, int side, const spari_place *at, tie_end *e) {
+    spari_rotate(at->q, t->arm[side], e->arm);
+    spari_quat_mul(at->q, t->axes[side], e->axes);
+}
+
+/* rows of B: z-dot[k] = sum over sides of (force axis) . u-dot + (turn axis) . omega */
+static void set_row(double row[12], const double axis[3], const double turn_a[3], const double turn_b[3]) {
+    for (int k = 0; k < 3; k++) {
+        row[k] = axis[k];
+        row[3 + k] = turn_a[k];
+        row[6 + k] = -axis[k];
+        row[9 + k] = -turn_b[k];
+    }
+}
+
+/* Along `axis` (global), of the point at arm_a from a and at arm_b from b: axis . (omega x arm) = (arm x axis) . omega
+ */
+static void set_way(double row[12], const double axis[3], const double arm_a[3], const double arm_b[3]) {
+    double turn_a[3], turn_b[3];
+    spari_cross(arm_a, axis, turn_a);
+    spari_cross(arm_b, axis, turn_b);
+    set_row(row, axis, turn_a, turn_b);
+}
+
+/* D[3][3]: the change of the three rotations z with a small turn phi of a relative to b, in b's axes, and z. */
+static void rotations(const spari_tie *t, const double r[4], double z[3], double D[9]) {
+    int i = spari_tie_axis(t->free), rotations_free = t->free & (SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ);
+    double sign = r[0] < 0 ? -1 : 1;
+    if (rotations_free == 0) { /* z = 2 r_v, dr_v = (r0 phi + phi x r_v) / 2 */
+        for (int k = 0; k < 3; k++) {
+            z[k] = 2 * sign * r[1 + k];
+        }
+        spari_skew(z, D);
+        for (int k = 0; k < 9; k++) {
+            D[k] = -0.5 * D[k] + (k % 4 == 0 ? sign * r[0] : 0);
+        }
+    } else if (i >= 0) { /* c = a's axis i in b's axes, dc = phi x c; about j and k it leaves b's by -c_k and c_j */
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double e[3] = {0}, c[3], s2 = r[0] * r[0] + r[1 + i] * r[1 + i];
+        e[i] = 1;
+        spari_rotate(r, e, c);
+        z[j] = -c[k], z[k] = c[j];
+        z[i] = 2 * atan2(r[1 + i], r[0]);
+        memset(D, 0, 9 * sizeof *D);
+        D[3 * j + j] = c[i], D[3 * j + i] = -c[j]; /* -(phi x c)_k = -(phi_i c_j - phi_j c_i) */
+        D[3 * k + k] = c[i], D[3 * k + i] = -c[k]; /* (phi x c)_j = phi_k c_i - phi_i c_k */
+        for (int m = 0; m < 3; m++) {              /* dr = (0, phi) r / 2 */
+            double p[4] = {0, 0, 0, 0}, d[4];
+            p[1 + m] = 1;
+            spari_quat_mul(p, r, d);
+            D[3 * i + m] = (r[0] * d[1 + i] - r[1 + i] * d[0]) / s2;
+        }
+    } else {
+        spari_quat_log(r, z);
+        spari_tangent_inverse(z, D);
+    }
+}
+
+static void line_motion(const tie_end e[2], const double w[3], double z[6], double B[6][12]) {
+    double n[3];
+    memset(z, 0, 6 * sizeof *z);
+    z[0] = spari_norm(w);
+    if (B) {
+        for (int k = 0; k < 3; k++) {
+            n[k] = z[0] > 0 ? w[k] / z[0] : 0;
+        }
+        memset(B, 0, 6 * sizeof *B);
+        set_way(B[0], n, e[0].arm, e[1].arm);
+    }
+}
+
+void spari_tie_motion(const spari_tie *t, const spari_place *a, const spari_place *b, double z[6], double B[6][12]) {
+    tie_end e[2];
+    double w[3], back[4], r[4], D[9], reach[3];
+    carry_end(t, 0, a, &e[0]);
+    carry_end(t, 1, b, &e[1]);
+    for (int k = 0; k < 3; k++) {
+        reach[k] = a->x[k] + e[0].arm[k] - b->x[k]; /* a's point from node b */
+        w[k] = reach[k] - e[1].arm[k];
+    }
+    if (t->line) {
+        line_motion(e, w, z, B);
+        return;
+    }
+    spari_rotate_back(e[1].axes, w, z);
+    spari_quat_conj(e[1].axes, back);
+    spari_quat_mul(back, e[0].axes, r);
+    rotations(t, r, z + 3, D);
+    for (int m = 0; m < 3 && B; m++) {
+        const double none[3] = {0};
+        double axis[3] = {0}, turn[3];
+        axis[m] = 1;
+        spari_rotate(e[1].axes, axis, axis);
+        set_way(B[m], axis, e[0].arm, reach); /* seen from b's axes, which turn: a's point goes along with b */
+        spari_rotate(e[1].axes, D + 3 * m, turn);
+        set_row(B[3 + m], none, turn, turn);
+    }
+}
+
+void spari_tie_forces(double B[6][12], const double load[6], double f[12]) {
+    for (int j = 0; j < 12; j++) {
+        f[j] = 0;
+        for (int k = 0; k < 6; k++) {
+            f[j] += B[k][j] * load[k];
+        }
+    }
+}
+
+/* (du, dtheta) of one of the two nodes, as the entries of K and B are counted */
+static void nudge(spari_place *a, spari_place *b, int j, double by) {
+    spari_place *at = j < 6 ? a : b;
+    if (j % 6 < 3) {
+        at->x[j % 6] += by;
+    } else {
+        double psi[3] = {0}, p[4];
+        psi[j % 6 - 3] = by;
+        spari_quat_exp(psi, p);
+        spari_quat_mul(p, at->q, at->q);
+    }
+}
+
+/* How far a nudge goes: the geometry's own size, so that central differences are good to some 1e-10. */
+static double size_of_tie(const spari_tie *t, const spari_place *a, const spari_place *b) {
+    double w[3];
+    for (int k = 0; k < 3; k++) {
+        w[k] = a->x[k] - b->x[k];
+    }
+    double size = spari_norm(w) + spari_norm(t->arm[0]) + spari_norm(t->arm[1]);
+    return size > 0 ? size : 1;
+}
+
+void spari_tie_tangent(const spari_tie *t, const spari_place *a, const spari_place *b, const double load[6],
+                       double K[12][12]) {
+    const double turn = 1e-5, way = turn * size_of_tie(t, a, b);
+    for (int j = 0; j < 12; j++) {
+        double f[2][12], z[6], B[6][12], by = j % 6 < 3 ? way : turn;
+        for (int side = 0; side < 2; side++) {
+            spari_place at = *a, bt = *b;
+            nudge(&at, &bt, j, side ? -by : by);
+            spari_tie_motion(t, &at, &bt, z, B);
+            spari_tie_forces(B, load, f[side]);
+        }
+        for (int i = 0; i < 12; i++) {
+            K[i][j] += (f[0][i] - f[1][i]) / (2 * by);
+        }
+    }
+}
+
+void spari_tie_drift(const spari_tie *t, const spari_place *a, const spari_place *b, const double v[12],
+                     double rate[6]) {
+    double fastest = 0, size = size_of_tie(t, a, b), z[6], B[2][6][12];
+    for (int j = 0; j < 12; j++) {
+        fastest = fmax(fastest, fabs(v[j]) / (j % 6 < 3 ? size : 1));
+    }
+    double s = fastest > 0 ? 1e-5 / fastest : 0;
+    for (int side = 0; side < 2; side++) {
+        spari_place at = *a, bt = *b;
+        for (int n = 0; n < 2; n++) {
+            spari_place *p = n ? &bt : &at;
+            double psi[3], turn[4], by = side ? -s : s;
+            for (int k = 0; k < 3; k++) {
+                p->x[k] += by * v[6 * n + k];
+                psi[k] = by * v[6 * n + 3 + k];
+            }
+            spari_quat_exp(psi, turn);
+            spari_quat_mul(turn, p->q, p->q);
+        }
+        spari_tie_motion(t, &at, &bt, z, B[side]);
+    }
+    for (int k = 0; k < 6; k++) {
+        rate[k] = 0;
+        for (int j = 0; j < 12 && s > 0; j++) {
+            rate[k] += (B[0][k][j] - B[1][k][j]) / (2 * s) * v[j];
+        }
+    }
+}

@@ -1,0 +1,202 @@
+/* Members that joints tie together, in equilibrium: Newton with exact tangents, in load steps that halve where it
+ * fails. */
+#include "assembly.h"
+
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "alpha.h"
+#include "arms.h"
+#include "fidelity.h"
+#include "tied.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { REST_ITERATIONS = 60, REST_HALVINGS = 14 };
+
+/* A system whose weakest pivot is smaller than so much of its largest stiffness holds a motion by rounding alone. */
+static const double loose = 1e-13;
+
+/* Forces less loads at the factor f, gaps with driven motions so far on their way. */
+static double balance_at_rest(spari_assembly *a, double f, double *noise) {
+    double scale = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        spar_member *m = a->limb[i].member;
+        spari_solver *s = a->limb[i].solver;
+        scale = fmax(scale, spari_body_residual(s->body, s->to.q, NULL, NULL, f, s->r, NULL));
+        for (int k = 0; k < 6 * s->n; k++) {
+            s->r[k] -= f * s->steps.load[k];
+            scale = fmax(scale, fabs(f * s->steps.load[k]));
+        }
+        if (spari_solver_has_applied(s, m)) {
+            scale = fmax(scale, spari_applied_residual(m, s->to.q, f, s->r));
+        }
+        if (s->arms) {
+            spari_arms_at(s->arms, f);
+            spari_arms_residual(s->arms, s->to.q + 3, s->r + 3);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        const spar_joint *j = l->joint;
+        spari_link_find(l, 1, 1, f);
+        for (int k = 0; k < 6; k++) {
+            l->drive.z[k] = j->now.z[k] + f * (j->drive[1].z[k] - j->now.z[k]);
+            l->gap[k] = l->row[k] >= 0 ? spari_link_gap(l, k) : 0;
+            scale = fmax(scale, fabs(j->after.load[k]));
+        }
+    }
+    spari_links_add(a);
+    *noise = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_solver *s = a->limb[i].solver;
+        for (int k = 0; k < 6 * s->n; k++) {
+            *noise = fmax(*noise, fabs(s->r[k]));
+            scale += 0 * s->r[k];
+        }
+    }
+    return scale;
+}
+
+/* Corrections of all parts at rest; 0, or 1 where something is not held. */
+static int solve_at_rest(spari_assembly *a, double f) {
+    for (int i = 0; i < a->limbs; i++) {
+        spar_member *m = a->limb[i].member;
+        spari_solver *s = a->limb[i].solver;
+        if (spari_solver_factor(s, m, s->to.q, NULL, NULL, f, 0, 0, NULL)) {
+            return 1;
+        }
+        spari_alpha_turn_back(s, s->to.q, s->r, s->dx);
+    }
+    spari_tied_keep(a);
+    return spari_tied_solve(a, 0);
+}
+
+/* Shortened corrections come off; their size before. */
+static double shift_parts(spari_assembly *a, double longest, double *cut) {
+    double largest = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        largest = fmax(largest, spari_alpha_size(a->limb[i].solver, a->limb[i].solver->dx));
+    }
+    *cut = largest > longest ? longest / largest : 1;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_solver *s = a->limb[i].solver;
+        spari_static_shift(s->n, *cut, s->dx, s->to.q);
+    }
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->link[i].joint->after.load[k] -= *cut * a->link[i].correction[k];
+        }
+    }
+    return largest;
+}
+
+/* Equilibrium at the factor f from the states `to`; 0 or 1. */
+static int find_rest_at(spari_assembly *a, double f, int *weak) {
+    double last = 0;
+    for (int it = 0; it < REST_ITERATIONS; it++) {
+        char text[8];
+        double noise, cut, scale = balance_at_rest(a, f, &noise);
+        *weak = 0;
+        if (!isfinite(scale) || solve_at_rest(a, f)) {
+            *weak = isfinite(scale) != 0;
+            return 1;
+        }
+        if (spari_tied_weakest(a, text, sizeof text) < loose) {
+            *weak = 1;
+            return 1;
+        }
+        double largest = shift_parts(a, 0.8, &cut);
+        if (cut == 1 && (largest < 1e-9 || (noise <= 16 * DBL_EPSILON * scale && largest < 1e-7) ||
+                         (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
+            return 0;
+        }
+        last = largest;
+    }
+    return 1;
+}
+
+/* The states and multipliers of the last point found. */
+static void keep_point(spari_assembly *a, int back) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_solver *s = a->limb[i].solver;
+        memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, (size_t)(7 * s->n) * sizeof(double));
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        *(back ? &l->joint->after : &l->begin) = back ? l->begin : l->joint->after;
+    }
+}
+
+static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *)) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        spari_solver *s = p->solver;
+        p->member->row->take_rest(p->member, fluid(p->member));
+        memcpy(s->to.q, s->begin.q, (size_t)(7 * s->n) * sizeof *s->to.q);
+        memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof *s->to.v);
+        p->state = &s->to;
+        p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].joint->after = a->link[i].joint->now;
+    }
+    keep_point(a, 0);
+}
+
+int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps) {
+    double done = 0, step = 1.0 / load_steps;
+    int halvings = 0, weak = 0;
+    char text[160] = "";
+    begin_rest(a, fluid);
+    while (done < 1 && halvings <= REST_HALVINGS) {
+        double f = done + step > 1 - 1e-12 ? 1 : done + step;
+        if (find_rest_at(a, f, &weak) == 0) {
+            done = f;
+            keep_point(a, 0);
+            continue;
+        }
+        if (weak) {
+            (void)spari_tied_weakest(a, text, sizeof text);
+        }
+        keep_point(a, 1);
+        step *= 0.5;
+        halvings += weak && done == 0 ? REST_HALVINGS : 1;
+    }
+    a->factored = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_solver *s = a->limb[i].solver;
+        s->factored = 0;
+        memcpy(s->to.q, done < 1 ? s->begin.q : s->best, (size_t)(7 * s->n) * sizeof(double));
+        if (done < 1) {
+            memcpy(s->to.v, s->begin.v, (size_t)(18 * s->n) * sizeof(double));
+        }
+    }
+    if (done < 1) {
+        for (int i = 0; i < a->links; i++) {
+            spari_joint_reject(a->link[i].joint);
+        }
+        return spari_fail(
+            a->session, SPAR_ERR_NUMERIC,
+            "the members that joint '%s' ties together: no equilibrium found beyond %.6g of the loads%s%s; "
+            "the state is as it was",
+            a->link[0].joint->name, done, text[0] ? ": nothing holds " : "", text);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].member->row->publish(a->limb[i].member);
+    }
+    for (int i = 0; i < a->links; i++) {
+        memset(a->link[i].joint->after.rate, 0, sizeof a->link[i].joint->after.rate);
+    }
+    return SPAR_OK;
+}
+
+void spari_assembly_settle(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        j->now = j->after;
+        j->drive[0] = j->drive[1];
+    }
+}

@@ -1,0 +1,127 @@
+/* A member seen from its ends: see condense.h. */
+#include "condense.h"
+
+#include "../base/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns) {
+    spari_condensed *c = spari_zalloc(1, sizeof *c);
+    int64_t m = 6 * (int64_t)ends, n = unknowns;
+    if (!c) {
+        return NULL;
+    }
+    c->ends = ends, c->n = unknowns;
+    c->node = spari_zalloc(ends, sizeof *c->node);
+    c->W = spari_zalloc(m * n, sizeof *c->W);
+    c->rows = spari_zalloc(m * n, sizeof *c->rows);
+    c->K = spari_zalloc(m * m, sizeof *c->K);
+    c->held = spari_zalloc(m, sizeof *c->held);
+    if (!c->node || !c->W || !c->rows || !c->K || !c->held) {
+        spari_condensed_free(c);
+        return NULL;
+    }
+    memcpy(c->node, node, (size_t)ends * sizeof *node);
+    return c;
+}
+
+void spari_condensed_free(spari_condensed *c) {
+    if (c) {
+        free(c->node);
+        free(c->W);
+        free(c->rows);
+        free(c->K);
+        free(c->held);
+        free(c);
+    }
+}
+
+/* The unknown of the member that is number j of the ends' */
+static int unknown_of(const spari_condensed *c, int j) {
+    return 6 * c->node[j / 6] + j % 6;
+}
+
+static int is_fixed(const spari_condensed *c, int unknown) {
+    return unknown < c->fixed;
+}
+
+void spari_condensed_take(spari_condensed *c, spari_linear *tangent, int fixed) {
+    int m = 6 * c->ends;
+    size_t n = (size_t)c->n;
+    c->fixed = fixed;
+    for (int j = 0; j < m; j++) {
+        spari_linear_read(tangent, unknown_of(c, j), c->rows + n * (size_t)j, c->W + n * (size_t)j);
+    }
+    for (int j = 0; j < m; j++) {
+        double *row = c->rows + n * (size_t)j, *column = c->W + n * (size_t)j;
+        for (int k = 0; k < m; k++) {
+            int u = unknown_of(c, k), out = is_fixed(c, u) || is_fixed(c, unknown_of(c, j));
+            c->K[m * j + k] = out ? k == j : row[u];
+            row[u] = column[u] = 0;
+        }
+        for (int i = 0; i < fixed; i++) {
+            row[i] = column[i] = 0;
+        }
+        if (is_fixed(c, unknown_of(c, j))) {
+            memset(row, 0, n * sizeof *row);
+            memset(column, 0, n * sizeof *column);
+        }
+    }
+    for (int j = 0; j < m; j++) {
+        spari_linear_fix(tangent, unknown_of(c, j));
+    }
+}
+
+/* x . y over the unknowns */
+static double dot_of(int n, const double *x, const double *y) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
+int spari_condensed_form(spari_condensed *c, spari_linear *factors) {
+    int m = 6 * c->ends, n = c->n;
+    for (int k = 0; k < m; k++) {
+        double *column = c->W + (int64_t)n * k;
+        if (spari_linear_solve(factors, column)) {
+            return 1;
+        }
+        for (int j = 0; j < m; j++) {
+            c->K[m * j + k] -= dot_of(n, c->rows + (int64_t)n * j, column);
+        }
+    }
+    return spari_first_nonfinite(c->K, (int64_t)m * m) >= 0;
+}
+
+int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, double *r) {
+    int m = 6 * c->ends;
+    for (int j = 0; j < m; j++) {
+        int u = unknown_of(c, j);
+        c->held[j] = is_fixed(c, u) ? 0 : r[u];
+        r[u] = 0;
+    }
+    if (spari_linear_solve(factors, r)) {
+        return 1;
+    }
+    for (int j = 0; j < m; j++) {
+        c->held[j] -= dot_of(c->n, c->rows + (int64_t)c->n * j, r);
+    }
+    for (int j = 0; j < m; j++) {
+        r[unknown_of(c, j)] = c->held[j];
+    }
+    return 0;
+}
+
+void spari_condensed_expand(const spari_condensed *c, double *x) {
+    int m = 6 * c->ends;
+    for (int j = 0; j < m; j++) {
+        double by = x[unknown_of(c, j)];
+        const double *column = c->W + (int64_t)c->n * j;
+        for (int i = 0; i < c->n; i++) {
+            x[i] -= by * column[i];
+        }
+    }
+}

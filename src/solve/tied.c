@@ -1,0 +1,332 @@
+/* The banded system of an assembly: see tied.h. */
+#include "tied.h"
+
+#include "../base/blas.h"
+#include "../math/rotation.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* entry (i, j), as gsl_linalg_LU_band wants it */
+static double *entry_at(const spari_assembly *a, int i, int j) {
+    return a->A->data + (size_t)j * a->A->tda + (size_t)(2 * a->band + i - j);
+}
+
+/* The unknown of the system for motion k (0 to 11) of a link's nodes; -1: it is given. */
+static int unknown_of_link(const spari_link *l, int k) {
+    int side = k / 6;
+    if (!l->limb[side]) {
+        return -1;
+    }
+    const spari_condensed *c = l->limb[side]->solver->condensed;
+    int own = 6 * l->joint->unique[side] + k % 6;
+    return own < c->fixed ? -1 : l->at[side] + k % 6;
+}
+
+/* How the node at unknown `unique` of a part has turned since its tangent was formed; NULL: its axes stand. */
+static const double *turn_of(const spari_limb *p, int unique) {
+    return p->solver->body->linear[0] ? NULL : p->solver->turn + 4 * unique;
+}
+
+static const double *turn_of_side(const spari_link *l, int side) {
+    return l->limb[side] ? turn_of(l->limb[side], l->joint->unique[side]) : NULL;
+}
+
+static void turn_three(const double *turn, double x[3]) {
+    if (turn) {
+        spari_rotate(turn, x, x);
+    }
+}
+
+/* K [3][3] of row stride `stride` := R(row) K R(column)^T */
+static void turn_block(const double *row, const double *column, int stride, double *K) {
+    for (int i = 0; i < 3 && column; i++) {
+        spari_rotate(column, K + i * stride, K + i * stride);
+    }
+    for (int j = 0; j < 3 && row; j++) {
+        double x[3] = {K[j], K[stride + j], K[2 * stride + j]};
+        spari_rotate(row, x, x);
+        K[j] = x[0], K[stride + j] = x[1], K[2 * stride + j] = x[2];
+    }
+}
+
+void spari_tied_keep(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        memset(l->turning, 0, sizeof l->turning);
+        spari_tie_tangent(&l->joint->tie, &l->place[0], &l->place[1], l->joint->after.load, l->turning);
+    }
+}
+
+/* K[12][12] := what the link adds to the tangent: the turning of its load, springs and dampers. */
+static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
+    const spar_joint *j = l->joint;
+    int given = spari_joint_given(j);
+    for (int i = 0; i < 144; i++) {
+        K[i / 12][i % 12] = -l->turning[i / 12][i % 12];
+    }
+    for (int i = 0; i < 12; i += 3) {
+        for (int k = 0; k < 12; k += 3) {
+            turn_block(turn_of_side(l, i / 6), turn_of_side(l, k / 6), 12, &K[i][k]);
+        }
+    }
+    if (!j->sprung || spari_joint_is_slack(j, &j->after)) {
+        return;
+    }
+    for (int p = 0; p < 6; p++) {
+        for (int q = 0; q < 6; q++) {
+            double stiff = j->stiffness[6 * p + q] + cv * j->damping[6 * p + q];
+            if ((given >> p & 1) || (given >> q & 1) || stiff == 0) {
+                continue;
+            }
+            for (int i = 0; i < 144; i++) {
+                K[i / 12][i % 12] += stiff * l->B[p][i / 12] * l->B[q][i % 12];
+            }
+        }
+    }
+}
+
+static void add_part(spari_assembly *a, const spari_limb *p) {
+    const spari_condensed *c = p->solver->condensed;
+    int m = 6 * c->ends;
+    for (int i = 0; i < m; i += 3) {
+        for (int j = 0; j < m; j += 3) {
+            double K[9];
+            for (int k = 0; k < 9; k++) {
+                K[k] = c->K[m * (i + k / 3) + j + k % 3];
+            }
+            turn_block(turn_of(p, c->node[i / 6]), turn_of(p, c->node[j / 6]), 3, K);
+            for (int k = 0; k < 9; k++) {
+                *entry_at(a, p->at + i + k / 3, p->at + j + k % 3) += K[k];
+            }
+        }
+    }
+    for (int i = 0; i < m; i++) {
+        a->scale = fmax(a->scale, fabs(c->K[m * i + i]));
+    }
+}
+
+static void add_link(spari_assembly *a, const spari_link *l, double cv) {
+    double K[12][12];
+    int to[12];
+    link_tangent(l, cv, K);
+    for (int i = 0; i < 12; i++) {
+        to[i] = unknown_of_link(l, i);
+    }
+    for (int i = 0; i < 12; i++) {
+        for (int j = 0; j < 12 && to[i] >= 0; j++) {
+            if (to[j] >= 0) {
+                *entry_at(a, to[i], to[j]) += K[i][j];
+            }
+        }
+        for (int k = 0; k < 6 && to[i] >= 0; k++) {
+            if (l->row[k] >= 0) {
+                *entry_at(a, to[i], l->row[k]) = *entry_at(a, l->row[k], to[i]) = -a->scale * l->B[k][i];
+            }
+        }
+    }
+}
+
+/* Forms and factors the system. 0 or 1. */
+static int form_system(spari_assembly *a, double cv) {
+    int status;
+    gsl_matrix_set_zero(a->A);
+    a->scale = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        add_part(a, a->limb + i);
+    }
+    a->scale = a->scale > 0 ? a->scale : 1;
+    for (int i = 0; i < a->links; i++) {
+        add_link(a, a->link + i, cv);
+    }
+    if (spari_first_nonfinite(a->A->data, (int64_t)(a->A->size1 * a->A->tda)) >= 0) {
+        return 1;
+    }
+    size_t band = (size_t)a->band;
+    SPARI_BLAS(status = gsl_linalg_LU_band_decomp((size_t)a->n, band, band, a->A, a->swap));
+    for (int i = 0; i < a->n && status == GSL_SUCCESS; i++) {
+        double pivot = fabs(*entry_at(a, i, i));
+        if (!(pivot > 0) || !isfinite(pivot)) {
+            return 1;
+        }
+    }
+    return status != GSL_SUCCESS;
+}
+
+int spari_tied_solve(spari_assembly *a, double cv) {
+    size_t band = (size_t)a->band;
+    if (form_system(a, cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        spari_solver *s = p->solver;
+        if (spari_condensed_reduce(s->condensed, s->linear, s->dx)) {
+            return 1;
+        }
+        for (int e = 0; e < s->condensed->ends; e++) {
+            double *x = a->x + p->at + 6 * e;
+            memcpy(x, s->dx + 6 * s->condensed->node[e], 6 * sizeof *x);
+            turn_three(turn_of(p, s->condensed->node[e]), x);
+            turn_three(turn_of(p, s->condensed->node[e]), x + 3);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        for (int k = 0; k < 6; k++) {
+            if (l->row[k] >= 0) {
+                a->x[l->row[k]] = -a->scale * l->gap[k];
+            }
+        }
+    }
+    gsl_vector_view v = gsl_vector_view_array(a->x, (size_t)a->n);
+    SPARI_BLAS(gsl_linalg_LU_band_svx(band, band, a->A, a->swap, &v.vector));
+    if (spari_first_nonfinite(a->x, a->n) >= 0) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        spari_solver *s = p->solver;
+        for (int e = 0; e < s->condensed->ends; e++) {
+            double back[4], *x = a->x + p->at + 6 * e;
+            const double *turn = turn_of(p, s->condensed->node[e]);
+            if (turn) {
+                spari_quat_conj(turn, back);
+                turn_three(back, x);
+                turn_three(back, x + 3);
+            }
+            memcpy(s->dx + 6 * s->condensed->node[e], x, 6 * sizeof *x);
+        }
+        spari_condensed_expand(s->condensed, s->dx);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        for (int k = 0; k < 6; k++) {
+            l->correction[k] = l->row[k] >= 0 ? a->scale * a->x[l->row[k]] : 0;
+        }
+    }
+    return 0;
+}
+
+double spari_tied_weakest(const spari_assembly *a, char *text, int size) {
+    static const char *const direction[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+    double least = INFINITY;
+    int weak = 0;
+    for (int i = 0; i < a->n; i++) {
+        double pivot = fabs(*entry_at(a, i, i));
+        weak = pivot < least ? i : weak;
+        least = fmin(least, pivot);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        const spari_condensed *c = p->solver->condensed;
+        if (p->at <= weak && weak < p->at + 6 * c->ends) {
+            (void)snprintf(text, (size_t)size, "%s of the node of '%.80s' that a joint holds",
+                           direction[(weak - p->at) % 6], p->member->name);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            if (a->link[i].row[k] == weak) {
+                (void)snprintf(text, (size_t)size, "%s at joint '%.80s'", direction[k], a->link[i].joint->name);
+            }
+        }
+    }
+    return least / a->scale;
+}
+
+/* ---- size ---- */
+
+static void reach(int *band, int i, int j) {
+    int d = i > j ? i - j : j - i;
+    *band = d > *band ? d : *band;
+}
+
+/* Half the bandwidth: parts' ends among each other, links' nodes and rows. */
+static int bandwidth(const spari_assembly *a) {
+    int band = 1;
+    for (int i = 0; i < a->limbs; i++) {
+        reach(&band, 0, 6 * a->limb[i].solver->condensed->ends - 1);
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        int all[18], n = 0;
+        for (int side = 0; side < 2; side++) {
+            for (int k = 0; k < 6 && l->at[side] >= 0; k++) {
+                all[n++] = l->at[side] + k;
+            }
+        }
+        for (int k = 0; k < 6; k++) {
+            if (l->row[k] >= 0) {
+                all[n++] = l->row[k];
+            }
+        }
+        for (int p = 0; p < n; p++) {
+            for (int q = 0; q < p; q++) {
+                reach(&band, all[p], all[q]);
+            }
+        }
+    }
+    return band;
+}
+
+static int is_placed(const spari_link *l, const spari_limb *newest) {
+    int placed = 1;
+    for (int side = 0; side < 2; side++) {
+        placed = placed && (!l->limb[side] || l->limb[side] <= newest);
+    }
+    return placed && (l->limb[0] == newest || l->limb[1] == newest);
+}
+
+/* Where side of a link has its six unknowns in the system */
+static int place_of_end(const spari_link *l, int side) {
+    const spari_limb *p = l->limb[side];
+    if (!p) {
+        return -1;
+    }
+    const spari_condensed *c = p->solver->condensed;
+    int e = 0;
+    while (c->node[e] != l->joint->unique[side]) {
+        e++;
+    }
+    return p->at + 6 * e;
+}
+
+/* Parts stand in the order in which links reach them; the rows of a link after the later of its parts. */
+void spari_tied_place(spari_assembly *a) {
+    a->n = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        p->at = a->n;
+        a->n += 6 * p->solver->condensed->ends;
+        for (int k = 0; k < a->links; k++) {
+            spari_link *l = a->link + k;
+            for (int m = 0; m < 6 && is_placed(l, p); m++) {
+                l->row[m] = l->joint->held >> m & 1 ? a->n++ : -1;
+            }
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        for (int side = 0; side < 2; side++) {
+            a->link[i].at[side] = place_of_end(a->link + i, side);
+        }
+    }
+}
+
+int spari_tied_room(spari_assembly *a) {
+    a->band = bandwidth(a);
+    a->band = a->band < a->n ? a->band : a->n - 1;
+    a->A = gsl_matrix_calloc((size_t)a->n, (size_t)(3 * a->band + 1));
+    a->swap = gsl_vector_uint_alloc((size_t)a->n);
+    a->x = spari_zalloc(a->n, sizeof *a->x);
+    return a->A && a->swap && a->x ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+void spari_tied_free(spari_assembly *a) {
+    gsl_matrix_free(a->A);
+    gsl_vector_uint_free(a->swap);
+    free(a->x);
+}

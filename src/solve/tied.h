@@ -1,0 +1,77 @@
+/* The system of an assembly: what remains of its members at the joints' nodes, and the constraints, in a band. */
+#ifndef SPARI_TIED_H
+#define SPARI_TIED_H
+
+#include "../member/joint.h"
+#include "root.h"
+
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_vector.h>
+
+/* A member of an assembly that is solved for, and its substep. */
+typedef struct spari_limb {
+    spar_member *member;
+    spari_solver *solver;     /* of its body */
+    int at;                   /* where the unknowns of its ends begin in the system */
+    const spari_state *state; /* the motion that the links see */
+    spari_scheme scheme;
+    spari_ends ends;
+    spari_pose root, before; /* a driven root at the substep's ends */
+    double turn[4], power;
+} spari_limb;
+
+/* A joint of an assembly, as it stands in the system. */
+typedef struct spari_link {
+    spar_joint *joint;
+    spari_limb *limb[2]; /* NULL: the ground, or a node that moves as it is told */
+    int at[2];           /* the six unknowns of its nodes in the system; -1: none */
+    int row[6];          /* of the multipliers of what is held; -1: free */
+    spari_driven drive;  /* at the end of the substep */
+    spari_relative begin;
+    spari_place place[2];
+    double v[12], a[12], B[6][12];
+    double turning[12][12]; /* what the turning of its load adds to the tangent, in the axes of the kept tangents */
+    double gap[6], correction[6]; /* of the constraints; of the multipliers */
+} spari_link;
+
+struct spari_assembly {
+    spar_session *session;
+    spari_assembly *next;
+    int limbs, links;
+    spari_limb *limb;
+    spari_link *link;
+    int n, band, factored;
+    double scale; /* of the constraints' rows */
+    gsl_matrix *A;
+    gsl_vector_uint *swap;
+    double *x;
+};
+
+/* The relative motion of a link in the states of its parts, at the part s of the step dt where a node moves as it is
+   told, and the loads on what is free; those on what is held are the multipliers, which stay. factor: of the loads that
+   the host and preloads give. */
+void spari_link_find(spari_link *l, double s, double dt, double factor);
+/* B v */
+void spari_link_times(double B[6][12], const double v[12], double rate[6]);
+/* How far a held motion, or its rate, is from where it has to be. */
+double spari_link_gap(const spari_link *l, int k);
+double spari_link_rate_gap(const spari_link *l, int k);
+/* The links' forces, taken from the parts' residuals; fixed unknowns out. */
+void spari_links_add(spari_assembly *a);
+/* Of the system solved last: the smallest pivot by the largest stiffness, and where it stands: what nothing holds. */
+double spari_tied_weakest(const spari_assembly *a, char *text, int size);
+/* Keeps what the links' loads add to the tangent, with the parts' tangents as they have just been formed. */
+void spari_tied_keep(spari_assembly *a);
+/* Of the parts' forces in the axes of their tangents, in the solvers' dx, and the links' gaps: dx and `correction` that
+   take both away. The constraints are those of the links as they stand; the parts' tangents, kept, go along with their
+   nodes. cv: as for the tangents. 0 or 1. */
+int spari_tied_solve(spari_assembly *a, double cv);
+/* Takes out of the joints' holds what others say already, with a word to the log; the links' B are those of the
+   reference. 0, or SPAR_ERR_MEMORY. */
+int spari_tied_drop_redundant(spari_assembly *a);
+/* Counts and places the unknowns; makes room for the system. 0, or SPAR_ERR_MEMORY. */
+void spari_tied_place(spari_assembly *a);
+int spari_tied_room(spari_assembly *a);
+void spari_tied_free(spari_assembly *a);
+
+#endif

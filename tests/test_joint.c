@@ -1,0 +1,677 @@
+/* Members tied by joints, in time: closed forms, invariants, and two ways to say one thing. */
+#include "scene.h"
+
+#include <stdio.h>
+
+static const double rest[4] = {1, 0, 0, 0}, origin[3] = {0};
+
+static spar_member *add_body(spar_session *s, const char *name, const double x[3], double m, const double c[3],
+                             const double J[3]) {
+    double mass[36];
+    spar_member *b = NULL;
+    scene_mass(mass, m, c, J);
+    OK(s, spar_rigid_create(s, name, x, rest, mass, &b));
+    OK(s, spar_member_commit(b));
+    return b;
+}
+
+static spar_joint *add_joint(spar_session *s, const char *name, spar_member *a, int64_t node_a, spar_member *b,
+                             int64_t node_b, int free_motions, const double x[3]) {
+    spar_joint *j = NULL;
+    OK(s, spar_joint_create(s, name, a, node_a, b, node_b, free_motions, &j));
+    if (x) {
+        OK(s, spar_joint_set_frame(j, x, rest));
+    }
+    return j;
+}
+
+static double order_of(double coarse, double fine) {
+    return log(fabs(coarse / fine)) / log(2);
+}
+
+/* What is held stays, and its rate: the worst of all. */
+static double gap_of(const spar_joint *j, int free_motions) {
+    double z[6], rate[6], worst = 0;
+    assert_int_equal(spar_joint_get_motion(j, z, rate), SPAR_OK);
+    for (int k = 0; k < 6; k++) {
+        worst = free_motions >> k & 1 ? worst : fmax(worst, fmax(fabs(z[k]), fabs(rate[k])));
+    }
+    return worst;
+}
+
+/* ---- a pendulum ---- */
+
+typedef struct swing {
+    double angle, energy, load, gap;
+} swing;
+
+/* A body of m = 2 kg, J = 0.3 kg m^2 about its centre, L = 1.5 m below a hinge along y, from 1 rad at rest:
+   (J + m L^2) w^2 / 2 = m g L (cos theta - cos 1), and along the pendulum the hinge pulls with m g cos theta + m L w^2.
+   The body's node is at the hinge, or at its centre, from which a rigid arm leads there. */
+static swing pendulum(int at_centre, double rho, double dt, double T) {
+    const double g = 9.81, m = 2, J = 0.3, L = 1.5, theta0 = 1, I = J + m * L * L;
+    const double centre[3] = {-L * sin(theta0), 0, -L * cos(theta0)}, inertia[3] = {J, J, J};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    OK(s, spar_session_set_integrator(s, rho, 1));
+    spar_member *b = add_body(s, "bob", at_centre ? centre : origin, m, at_centre ? origin : centre, inertia);
+    spar_joint *j = add_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY, origin);
+    swing w = {0};
+    double z[6], rate[6], load[6];
+    for (int i = 0, n = (int)lround(T / dt); i < n; i++) {
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        OK(s, spar_joint_get_motion(j, z, rate));
+        OK(s, spar_joint_get_load(j, load));
+        double theta = theta0 + z[4], along = load[0] * sin(theta) + load[2] * cos(theta);
+        double e = 0.5 * I * rate[4] * rate[4] - m * g * L * (cos(theta) - cos(theta0));
+        w.energy = fmax(w.energy, fabs(e) / (m * g * L));
+        w.load = fmax(w.load, fabs(along - m * g * cos(theta) - m * L * rate[4] * rate[4]) / (m * g));
+        w.gap = fmax(w.gap, gap_of(j, SPAR_FREE_RY));
+        w.angle = theta;
+    }
+    spar_session_destroy(&s);
+    return w;
+}
+
+/* Order 2 in motion and energy; the load is that of the motion to what its acceleration is off, dt^2 too. The reference
+   is the same pendulum in steps of 1e-4 s of Runge and Kutta's method of order 4. */
+static void test_pendulum(void **state) {
+    (void)state;
+    const double T = 3, k = 9.81 * 2 * 1.5 / (0.3 + 2 * 1.5 * 1.5), h = 1e-4;
+    double theta = 1, w = 0;
+    for (int i = 0; i < (int)lround(T / h); i++) {
+        double k1 = w, l1 = -k * sin(theta), k2 = w + h / 2 * l1, l2 = -k * sin(theta + h / 2 * k1),
+               k3 = w + h / 2 * l2, l3 = -k * sin(theta + h / 2 * k2), k4 = w + h * l3, l4 = -k * sin(theta + h * k3);
+        theta += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+        w += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+    }
+    for (int at_centre = 0; at_centre <= 1; at_centre++) {
+        for (int damped = 0; damped <= 1; damped++) {
+            swing a = pendulum(at_centre, damped ? 0.8 : 1, 0.01, T),
+                  b = pendulum(at_centre, damped ? 0.8 : 1, 0.005, T);
+            NEAR(order_of(a.angle - theta, b.angle - theta), 2, 0.05);
+            NEAR(order_of(a.energy, b.energy), 2, 0.1);
+            assert_true(at_centre ? fabs(order_of(a.load, b.load) - 2) < 0.1 : b.load < 1e-7);
+            assert_true(fabs(b.angle - theta) < 1e-3);
+            assert_true(b.gap < 1e-12);
+        }
+    }
+}
+
+/* ---- a double pendulum ---- */
+
+/* Two rods of 1 m and 1 kg, hinged along y at their ends, from the horizontal: energy is kept to dt^2, constraints to
+   rounding. */
+static void double_pendulum(double dt, double *energy, double *gap) {
+    const double g = 9.81, half[3] = {0.5, 0, 0}, J[3] = {0, 1. / 12, 1. / 12}, elbow[3] = {1, 0, 0};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    OK(s, spar_session_set_integrator(s, 1, 1));
+    spar_member *upper = add_body(s, "upper", origin, 1, half, J), *lower = add_body(s, "lower", elbow, 1, half, J);
+    spar_joint *shoulder = add_joint(s, "shoulder", upper, 0, NULL, 0, SPAR_FREE_RY, origin);
+    spar_joint *joint = add_joint(s, "elbow", lower, 0, upper, 0, SPAR_FREE_RY, elbow);
+    *energy = *gap = 0;
+    for (int i = 0; i < (int)lround(2 / dt); i++) {
+        double e[2][4];
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        OK(s, spar_member_get_energy(upper, 4, e[0]));
+        OK(s, spar_member_get_energy(lower, 4, e[1]));
+        *energy = fmax(*energy, fabs(e[0][0] + e[0][2] + e[1][0] + e[1][2]) / (2 * g));
+        *gap = fmax(*gap, fmax(gap_of(shoulder, SPAR_FREE_RY), gap_of(joint, SPAR_FREE_RY)));
+    }
+    spar_session_destroy(&s);
+}
+
+static void test_double_pendulum(void **state) {
+    (void)state;
+    double coarse, fine, gap;
+    double_pendulum(0.002, &coarse, &gap);
+    double_pendulum(0.001, &fine, &gap);
+    NEAR(order_of(coarse, fine), 2, 0.2);
+    assert_true(gap < 1e-12);
+}
+
+/* ---- a weld ---- */
+
+/* A cantilever of two elements against two beams of one, welded: the same motion to rounding. Parts that a step does
+   not resolve ring as their start rounds, so the tip's load grows from nothing. */
+static void test_weld(void **state) {
+    (void)state;
+    double K[36], M[36], tip[2][7], place[3] = {1, 0, 0};
+    scene_diagonal(K, 1e6, 1e6, 1e6, 200, 300, 400);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    for (int welded = 0; welded <= 1; welded++) {
+        spar_session *s = scene_session();
+        OK(s, spar_session_set_integrator(s, 0.8, 1));
+        spar_member *first = scene_beam(s, "first", welded ? 1 : 2, 5, welded ? 1 : 2, K, M), *last = first;
+        OK(s, spar_member_commit(first));
+        if (welded) {
+            last = scene_beam(s, "second", 1, 5, 1, K, M);
+            OK(s, spar_member_set_placement(last, place, NULL));
+            OK(s, spar_member_set_root(last, SPAR_ROOT_FREE));
+            OK(s, spar_member_commit(last));
+            (void)add_joint(s, "weld", last, 0, first, 4, 0, NULL);
+        }
+        int64_t n;
+        OK(s, spar_member_get_count(last, &n));
+        for (int i = 0; i < 200; i++) {
+            double load[6] = {0, 0.3 * i, 0.5 * i, 0.02 * i, 0, 0}, q[7 * 20];
+            OK(s, spar_member_set_load(last, n - 1, SPAR_LOAD_DEAD, load));
+            OK(s, spar_step(s, 0.002, NULL, NULL, NULL));
+            OK(s, spar_member_get_motion(last, q, NULL, NULL));
+            memcpy(tip[welded], q + 7 * (n - 1), sizeof tip[0]);
+        }
+        spar_session_destroy(&s);
+    }
+    for (int k = 0; k < 7; k++) {
+        NEAR(tip[1][k], tip[0][k], 1e-10);
+    }
+}
+
+/* ---- springs ---- */
+
+/* A body on a spring and damper in each of six directions in turn: z = exp(-d t) (cos w t + d / w sin w t) z0, with d =
+   c / 2m and w^2 = k/m - d^2, m the mass or the inertia; order 2. */
+static double sprung(int direction, double dt) {
+    const double inertia[3] = {0.4, 0.7, 1.1}, m = direction < 3 ? 3 : inertia[direction - 3], k = 50, c = 0.8;
+    double K[36] = {0}, C[36] = {0}, z[6], d = c / (2 * m), w = sqrt(k / m - d * d), v0[3] = {0}, o0[3] = {0};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_integrator(s, 1, 1));
+    double mass[36];
+    spar_member *b = NULL;
+    scene_mass(mass, 3, origin, inertia);
+    OK(s, spar_rigid_create(s, "body", origin, rest, mass, &b));
+    (direction < 3 ? v0 : o0)[direction % 3] = 0.2;
+    OK(s, spar_member_set_initial_velocity(b, origin, v0, o0));
+    OK(s, spar_member_commit(b));
+    spar_joint *j = add_joint(s, "spring", b, 0, NULL, 0, 1 << direction, origin);
+    K[7 * direction] = k, C[7 * direction] = c;
+    OK(s, spar_joint_set_spring(j, K, C, NULL));
+    int n = (int)lround(2 / dt);
+    for (int i = 0; i < n; i++) {
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+    }
+    OK(s, spar_joint_get_motion(j, z, NULL));
+    spar_session_destroy(&s);
+    return z[direction] - 0.2 / w * exp(-d * 2) * sin(w * 2);
+}
+
+static void test_springs(void **state) {
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        double a = sprung(k, 0.01), b = sprung(k, 0.005);
+        NEAR(order_of(a, b), 2, 0.05);
+        assert_true(fabs(b) < 1e-4);
+    }
+}
+
+/* ---- a top ---- */
+
+/* A top on a ball joint, nutation and precession: energy, the moment about the vertical and (symmetric) the spin about
+   its axis are kept. */
+static void top(double dt, double *energy, double *moment, double *spin) {
+    const double g = 9.81, m = 1, L = 0.4, centre[3] = {L * sin(0.5), 0, L * cos(0.5)}, J1 = 0.02, J3 = 0.01;
+    const double axis[3] = {sin(0.5), 0, cos(0.5)}, w0 = 60;
+    double M[36] = {0}, J[9], v[36];
+    (void)v;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            J[3 * i + k] = (i == k ? J1 : 0) + (J3 - J1) * axis[i] * axis[k];
+        }
+    }
+    scene_mass(M, m, centre, (double[]){0, 0, 0});
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            M[6 * (3 + i) + 3 + k] += J[3 * i + k];
+        }
+    }
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    OK(s, spar_session_set_integrator(s, 1, 1));
+    spar_member *b = NULL;
+    OK(s, spar_rigid_create(s, "top", origin, rest, M, &b));
+    OK(s, spar_member_set_initial_velocity(b, origin, origin, (double[]){w0 * axis[0], 0, w0 * axis[2]}));
+    OK(s, spar_member_commit(b));
+    spar_joint *j = add_joint(s, "ball", b, 0, NULL, 0, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ, origin);
+    double e0 = 0.5 * J3 * w0 * w0, h0 = J3 * w0 * axis[2];
+    *energy = *moment = *spin = 0;
+    for (int i = 0; i < (int)lround(1 / dt); i++) {
+        double e[4], q[7], u[6], a[3], c[3];
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        OK(s, spar_member_get_energy(b, 4, e));
+        OK(s, spar_member_get_motion(b, q, u, NULL));
+        spari_rotate(q + 3, axis, a);
+        spari_rotate(q + 3, centre, c);
+        double n = spari_dot(a, u + 3), across = J1 + m * L * L, h[3];
+        for (int k = 0; k < 3; k++) {
+            h[k] = across * u[3 + k] + (J3 - across) * n * a[k];
+        }
+        *energy = fmax(*energy, fabs(e[0] + e[2] - e0) / e0);
+        *moment = fmax(*moment, fabs(h[2] - h0) / h0);
+        *spin = fmax(*spin, fabs(n - w0) / w0);
+    }
+    assert_true(gap_of(j, 56) < 1e-12);
+    spar_session_destroy(&s);
+}
+
+static void test_top(void **state) {
+    (void)state;
+    double e[2], h[2], n[2];
+    top(2e-3, &e[0], &h[0], &n[0]);
+    top(1e-3, &e[1], &h[1], &n[1]);
+    NEAR(order_of(e[0], e[1]), 2, 0.1);
+    NEAR(order_of(h[0], h[1]), 2, 0.1);
+    NEAR(order_of(n[0], n[1]), 2, 0.1);
+    assert_true(e[1] < 1e-4 && h[1] < 1e-3 && n[1] < 2e-5);
+}
+
+/* ---- a chain ---- */
+
+static void test_chain(void **state) {
+    (void)state;
+    for (int links = 10; links <= 100; links *= 10) {
+        const double half[3] = {0.05, 0, 0}, J[3] = {1e-5, 1. / 1200, 1. / 1200};
+        spar_session *s = scene_session();
+        OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
+        OK(s, spar_session_set_integrator(s, 0.9, 1));
+        spar_member *last = NULL;
+        for (int i = 0; i < links; i++) {
+            char name[16];
+            double x[3] = {0.1 * i, 0, 0};
+            snprintf(name, sizeof name, "link%d", i);
+            spar_member *b = add_body(s, name, x, 1, half, J);
+            (void)add_joint(s, name, b, 0, last, 0, 56, x);
+            last = b;
+        }
+        for (int i = 0; i < 100; i++) {
+            OK(s, spar_step(s, 0.002, NULL, NULL, NULL));
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* ---- loops ---- */
+
+static int warnings;
+
+static void hear(const spar_session *s, int level, const char *text, void *context) {
+    (void)s, (void)context;
+    if (level == SPAR_LOG_WARNING) {
+        warnings++;
+        assert_non_null(strstr(text, "follows from the other joints"));
+    }
+}
+
+/* Reference: theta'' = f(theta) by Runge and Kutta, order 4, in steps of 1e-4 s. */
+static double oscillate(double theta, double k, double T) {
+    const double h = 1e-4;
+    double w = 0;
+    for (int i = 0; i < (int)lround(T / h); i++) {
+        double k1 = w, l1 = -k * cos(theta), k2 = w + h / 2 * l1, l2 = -k * cos(theta + h / 2 * k1),
+               k3 = w + h / 2 * l2, l3 = -k * cos(theta + h / 2 * k2), k4 = w + h * l3, l4 = -k * cos(theta + h * k3);
+        theta += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+        w += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+    }
+    return theta;
+}
+
+/* A parallelogram of rods of 1 kg a metre: cranks of L = 1 m, 2 m apart, a coupler of 2 m. Four parallel hinges say 20
+   things about 3 bodies that have one motion: 3 of them twice, all of which are named. With the crank's angle theta
+   from the horizontal (2 m L^2 / 3 + 2 L^2) theta'' = -(2 L / 2 + 2 L) g cos theta. */
+static double parallelogram(double dt, double T, double *gap) {
+    const double g = 9.81, theta = -1, c = cos(theta), d = sin(theta);
+    const double foot[3] = {0}, foot2[3] = {2, 0, 0}, top[3] = {c, 0, d}, top2[3] = {2 + c, 0, d};
+    const double half[3] = {c / 2, 0, d / 2}, bar[3] = {1, 0, 0}, thin[3] = {1. / 12, 1. / 12, 1. / 12},
+                 thick[3] = {8. / 12, 8. / 12, 8. / 12};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_log(s, hear, NULL));
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    OK(s, spar_session_set_integrator(s, 0.95, 1));
+    spar_member *a = add_body(s, "crank", foot, 1, half, thin), *b = add_body(s, "rocker", foot2, 1, half, thin),
+                *k = add_body(s, "coupler", top, 2, bar, thick);
+    spar_joint *j[4] = {add_joint(s, "foot", a, 0, NULL, 0, SPAR_FREE_RY, foot),
+                        add_joint(s, "foot2", b, 0, NULL, 0, SPAR_FREE_RY, foot2),
+                        add_joint(s, "top", k, 0, a, 0, SPAR_FREE_RY, top),
+                        add_joint(s, "top2", k, 0, b, 0, SPAR_FREE_RY, top2)};
+    double z[6];
+    warnings = 0;
+    *gap = 0;
+    for (int i = 0; i < (int)lround(T / dt); i++) {
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        for (int n = 0; n < 4; n++) {
+            *gap = fmax(*gap, gap_of(j[n], SPAR_FREE_RY));
+        }
+    }
+    assert_int_equal(warnings, 3);
+    OK(s, spar_joint_get_motion(j[0], z, NULL));
+    spar_session_destroy(&s);
+    return theta - z[4]; /* a turn about y takes x to -z */
+}
+
+static void test_parallelogram(void **state) {
+    (void)state;
+    double T = 1.5, exact = oscillate(-1, 3 * 9.81 / (2. / 3 + 2), T), gap[2];
+    double a = parallelogram(0.005, T, &gap[0]) - exact, b = parallelogram(0.0025, T, &gap[1]) - exact;
+    NEAR(order_of(a, b), 2, 0.05);
+    assert_true(fabs(b) < 1e-3 && gap[1] < 1e-11);
+}
+
+/* A slider-crank whose crank of r = 0.3 m is driven at 7 rad/s over several turns: the slider on the x axis is at r cos
+   + sqrt(l^2 - r^2 sin^2) with l = 1 m, its velocity the derivative, to rounding whatever dt is. */
+static void test_slider_crank(void **state) {
+    (void)state;
+    const double r = 0.3, l = 1, w = 7, at = 1, c = r * cos(at), h = r * sin(at), far = sqrt(l * l - h * h);
+    const double wrist[3] = {c, 0, -h}, pin[3] = {c + far, 0, 0}, half[3] = {c / 2, 0, -h / 2},
+                 rod[3] = {far / 2, 0, h / 2}, J[3] = {0.1, 0.1, 0.1};
+    spar_session *s = scene_session();
+    double mass[36];
+    spar_member *crank = NULL, *con = add_body(s, "rod", wrist, 1, rod, J),
+                *slider = add_body(s, "slider", pin, 2, origin, J);
+    scene_mass(mass, 1, half, J);
+    OK(s, spar_rigid_create(s, "crank", origin, rest, mass, &crank));
+    OK(s, spar_member_set_initial_velocity(crank, origin, origin, (double[]){0, w, 0}));
+    OK(s, spar_member_commit(crank));
+    spar_joint *shaft = add_joint(s, "shaft", crank, 0, NULL, 0, SPAR_FREE_RY, origin);
+    (void)add_joint(s, "wrist", con, 0, crank, 0, SPAR_FREE_RY, wrist);
+    (void)add_joint(s, "pin", con, 0, slider, 0, SPAR_FREE_RY, pin);
+    spar_joint *way = add_joint(s, "way", slider, 0, NULL, 0, SPAR_FREE_X, pin);
+    OK(s, spar_joint_set_driven(shaft, SPAR_FREE_RY));
+    for (int i = 1; i <= 150; i++) {
+        double t = 0.03 * i, a = at + w * t, motion[6] = {0, 0, 0, 0, w * t, 0}, rate[6] = {0, 0, 0, 0, w, 0}, z[6],
+               v[6], root = sqrt(l * l - r * r * sin(a) * sin(a));
+        OK(s, spar_joint_drive(shaft, motion, rate, NULL));
+        OK(s, spar_step(s, 0.03, NULL, NULL, NULL));
+        OK(s, spar_joint_get_motion(way, z, v));
+        NEAR(z[0], r * cos(a) + root - pin[0], 1e-12);
+        NEAR(v[0], -r * w * sin(a) - r * r * w * sin(a) * cos(a) / root, 1e-11);
+        OK(s, spar_joint_get_motion(shaft, z, v));
+        NEAR(z[4], w * t, 1e-12); /* it counts its turns: 31.5 rad at the end */
+    }
+    spar_session_destroy(&s);
+}
+
+/* ---- lines ---- */
+
+/* A ball of 1 kg on a rope of 1 m that only pulls (no mass, 1e4 N/m), thrown up from its hang at 3 m/s: it flies as if
+   there were no rope, z = 3 t - g t^2 / 2, up to the scheme's dt^2; then the rope holds it. */
+static void test_rope(void **state) {
+    (void)state;
+    const double g = 9.81, hang[3] = {0, 0, -1}, J[3] = {0.01, 0.01, 0.01}, dt = 1e-3;
+    double mass[36], q[7], lowest = 0;
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    spar_member *ball = NULL;
+    scene_mass(mass, 1, origin, J);
+    OK(s, spar_rigid_create(s, "ball", hang, rest, mass, &ball));
+    OK(s, spar_member_set_initial_velocity(ball, hang, (double[]){0, 0, 3}, origin));
+    OK(s, spar_member_commit(ball));
+    spar_joint *rope = NULL;
+    OK(s, spar_line_create(s, "rope", ball, 0, hang, NULL, 0, origin, &rope));
+    OK(s, spar_line_set_spring(rope, 1e4, 10, 1, 1));
+    for (int i = 1; i <= 900; i++) {
+        double t = dt * i;
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        OK(s, spar_member_get_motion(ball, q, NULL, NULL));
+        if (t < 0.6) {
+            NEAR(q[2], 3 * t - 0.5 * g * t * t, 1e-9);
+        }
+        lowest = fmin(lowest, q[2]);
+    }
+    assert_true(lowest < 0 && lowest > -0.05); /* sqrt(m / k) v = 0.03 m */
+    spar_session_destroy(&s);
+}
+
+/* Two balls on a rod of 2 m, free in space, spinning about their middle: the rod's load is m w^2 L / 2, the distance
+   stays, and so does the middle. */
+static void test_rod(void **state) {
+    (void)state;
+    const double left[3] = {-1, 0, 0}, right[3] = {1, 0, 0}, J[3] = {0.01, 0.01, 0.01}, w = 2;
+    double mass[36], z[6], load[6], q[2][7];
+    spar_session *s = scene_session();
+    spar_member *b[2] = {NULL, NULL};
+    scene_mass(mass, 3, origin, J);
+    for (int k = 0; k < 2; k++) {
+        OK(s, spar_rigid_create(s, k ? "right" : "left", k ? right : left, rest, mass, &b[k]));
+        OK(s, spar_member_set_initial_velocity(b[k], origin, origin, (double[]){0, w, 0}));
+        OK(s, spar_member_commit(b[k]));
+    }
+    spar_joint *rod = NULL;
+    OK(s, spar_line_create(s, "rod", b[1], 0, right, b[0], 0, left, &rod));
+    for (int i = 0; i < 500; i++) {
+        OK(s, spar_step(s, 2e-3, NULL, NULL, NULL));
+        OK(s, spar_joint_get_motion(rod, z, NULL));
+        OK(s, spar_joint_get_load(rod, load));
+        NEAR(z[0], 2, 1e-12);
+        NEAR(load[0], -3 * w * w, 1e-4); /* it pulls the right one to the left */
+    }
+    for (int k = 0; k < 2; k++) {
+        OK(s, spar_member_get_motion(b[k], q[k], NULL, NULL));
+    }
+    for (int k = 0; k < 3; k++) {
+        NEAR(q[0][k] + q[1][k], 0, 1e-12);
+    }
+    NEAR(1 + q[1][0], cos(2 * w * 0.5), 1e-4);
+    spar_session_destroy(&s);
+}
+
+/* ---- nodes that move as they are told ---- */
+
+/* A pendulum on a cart that accelerates at 3 m/s^2, hanging at the angle at which it stands still beside it. */
+static void test_cart(void **state) {
+    (void)state;
+    const double g = 9.81, accel = 3, lean = atan(accel / g), L = 0.7, J[3] = {0.01, 0.01, 0.01},
+                 centre[3] = {-L * sin(lean), 0, -L * cos(lean)};
+    double load[6], z[6], on_cart[6];
+    for (int substeps = 1; substeps <= 3; substeps += 2) {
+        spar_session *s = scene_session();
+        OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+        OK(s, spar_session_set_integrator(s, 0.9, substeps));
+        spar_member *cart = NULL, *bob = NULL;
+        OK(s, spar_point_create(s, "cart", origin, rest, &cart));
+        OK(s, spar_member_commit(cart));
+        bob = add_body(s, "bob", origin, 2, centre, J);
+        spar_joint *j = add_joint(s, "hinge", bob, 0, cart, 0, SPAR_FREE_RY, origin);
+        double at0[7] = {0, 0, 0, 1, 0, 0, 0}, v0[6] = {0}, a0[6] = {accel, 0, 0, 0, 0, 0};
+        OK(s, spar_member_set_motion(cart, at0, v0, a0));
+        for (int i = 1; i <= 100; i++) {
+            double t = 0.01 * i, q[7] = {0.5 * accel * t * t, 0, 0, 1, 0, 0, 0}, v[6] = {accel * t, 0, 0, 0, 0, 0};
+            OK(s, spar_step_begin(s, 0.01));
+            OK(s, spar_member_set_motion(cart, q, v, a0));
+            OK(s, spar_step_solve(s));
+            OK(s, spar_step_accept(s));
+            OK(s, spar_joint_get_motion(j, z, NULL));
+            OK(s, spar_joint_get_load(j, load));
+            NEAR(z[4], 0, 1e-10);
+            NEAR(load[0], 2 * accel, 1e-8);
+            NEAR(load[2], 2 * g, 1e-8);
+            OK(s, spar_member_get_loads(cart, on_cart)); /* the bob hangs on it */
+            for (int k = 0; k < 6; k++) {
+                NEAR(on_cart[k], -load[k], 1e-12);
+            }
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* ---- a beam that one body carries ---- */
+
+/* A rigid beam of 2 m and 3 kg, hinged at its far end: J = m L^2 / 3, so theta'' = -3 g / (2 L) cos theta from the
+   horizontal; at its root nothing holds it. */
+static void test_rigid_beam(void **state) {
+    (void)state;
+    const double g = 9.81, L = 2, far[3] = {L, 0, 0}, T = 1;
+    double K[36], M[36], z[6], error[2], loads[6];
+    scene_diagonal(K, 1, 1, 1, 1, 1, 1);
+    scene_diagonal(M, 1.5, 1.5, 1.5, 0, 0, 0);
+    for (int k = 0; k < 2; k++) {
+        double dt = k ? 0.005 : 0.01;
+        spar_session *s = scene_session();
+        OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+        OK(s, spar_session_set_integrator(s, 1, 1));
+        spar_member *b = scene_beam(s, "beam", 1, 4, L, K, M);
+        OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
+        OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
+        OK(s, spar_member_commit(b));
+        spar_joint *j = add_joint(s, "hinge", b, 3, NULL, 0, SPAR_FREE_RY, far);
+        for (int i = 0; i < (int)lround(T / dt); i++) {
+            OK(s, spar_step(s, dt, NULL, NULL, NULL));
+            assert_true(gap_of(j, SPAR_FREE_RY) < 1e-12);
+        }
+        OK(s, spar_joint_get_motion(j, z, NULL));
+        OK(s, spar_member_get_reaction(b, loads));
+        for (int i = 0; i < 6; i++) {
+            NEAR(loads[i], 0, 1e-12);
+        }
+        error[k] = z[4] - oscillate(0, 1.5 * g / L, T); /* its free end, at -x, falls: a turn about -y */
+        spar_session_destroy(&s);
+    }
+    NEAR(order_of(error[0], error[1]), 2, 0.05);
+    assert_true(fabs(error[1]) < 1e-3);
+}
+
+/* ---- at rest ---- */
+
+/* A body of 5 kg, its centre 0.2 m beside its node, on springs in six directions with a preload: k z = weight + preload
+   about the node, small enough to be linear; and a step after it stays. */
+static void test_sprung_at_rest(void **state) {
+    (void)state;
+    const double centre[3] = {0.2, 0, 0}, J[3] = {1, 1, 1}, g = 9.81;
+    double K[36], preload[6] = {3, -2, 4, 0.5, 0, -0.2}, z[6], load[6];
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    spar_member *b = add_body(s, "body", origin, 5, centre, J);
+    spar_joint *j = add_joint(s, "spring", b, 0, NULL, 0, 63, origin);
+    scene_diagonal(K, 1e5, 2e5, 3e5, 4e7, 5e7, 6e7);
+    OK(s, spar_joint_set_spring(j, K, NULL, preload));
+    OK(s, spar_member_solve_static(b, 1));
+    OK(s, spar_joint_get_motion(j, z, NULL));
+    OK(s, spar_joint_get_load(j, load));
+    const double expected[6] = {0, 0, -5 * g, 0, 5 * g * 0.2, 0};
+    for (int k = 0; k < 6; k++) {
+        NEAR(z[k], (preload[k] + expected[k]) / K[7 * k], 1e-11);
+        NEAR(load[k], -expected[k], 1e-6);
+    }
+    for (int i = 0; i < 5; i++) {
+        double z2[6];
+        OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+        OK(s, spar_joint_get_motion(j, z2, NULL));
+        for (int k = 0; k < 6; k++) {
+            NEAR(z2[k], z[k], 1e-14);
+        }
+    }
+    spar_session_destroy(&s);
+}
+
+/* A cantilever of two elements under a large tip load, against two beams welded: the same shape to rounding; the weld
+   carries the tip's load and its moment about the weld. */
+static void test_weld_at_rest(void **state) {
+    (void)state;
+    const double place[3] = {1, 0, 0};
+    double K[36], tip[2][7], load[6] = {0, 0, 400, 30, 0, 0}, weld_load[6], q[7 * 20];
+    scene_diagonal(K, 1e6, 1e6, 1e6, 200, 300, 400);
+    for (int welded = 0; welded <= 1; welded++) {
+        spar_session *s = scene_session();
+        spar_member *first = scene_beam(s, "first", welded ? 1 : 2, 6, welded ? 1 : 2, K, NULL), *last = first;
+        OK(s, spar_member_commit(first));
+        spar_joint *weld = NULL;
+        if (welded) {
+            last = scene_beam(s, "second", 1, 6, 1, K, NULL);
+            OK(s, spar_member_set_placement(last, place, NULL));
+            OK(s, spar_member_set_root(last, SPAR_ROOT_FREE));
+            OK(s, spar_member_commit(last));
+            weld = add_joint(s, "weld", last, 0, first, 5, 0, NULL);
+        }
+        int64_t n;
+        OK(s, spar_member_get_count(last, &n));
+        OK(s, spar_member_set_load(last, n - 1, SPAR_LOAD_DEAD, load));
+        OK(s, spar_member_solve_static(first, 10));
+        OK(s, spar_member_get_motion(last, q, NULL, NULL));
+        memcpy(tip[welded], q + 7 * (n - 1), sizeof tip[0]);
+        if (welded) {
+            double force[3], back[3], frame[4];
+            OK(s, spar_joint_get_load(weld, weld_load));
+            memcpy(frame, q + 3, sizeof frame);
+            spari_rotate(frame, weld_load, force); /* the weld's axes are those of the first beam's tip */
+            spari_rotate_back(frame, (double[]){0, 0, 0}, back);
+            NEAR(force[0], 0, 1e-6);
+            NEAR(force[1], 0, 1e-6);
+            NEAR(force[2], -400, 1e-6);
+        }
+        spar_session_destroy(&s);
+    }
+    for (int k = 0; k < 7; k++) {
+        NEAR(tip[1][k], tip[0][k], 1e-12);
+    }
+}
+
+/* Lee's frame (Lee, Manuel & Rossow, J. Eng. Mech. Div. ASCE 94 (1968)): two legs of 1.2 m, EA = 4320 kN, EI = 14.4 N
+   m^2 by 1e4, hinged at both feet, a force down at 0.24 m from the corner. The published limit load is 18.55 kN (within
+   0.5 % over the literature); beyond it there is no equilibrium near. Out of the plane the legs are stiff. */
+enum { LEE = 6 }; /* nodes of an element */
+
+static int lee(double P, double *down) {
+    const double E = 7.2e10, A = 6e-4, I = 2e-8, L = 1.2, foot[3] = {0}, far[3] = {L, 0, L};
+    const double eta[2] = {0, 1}, up[6] = {0, 0, 0, 0, 0, L}, across[6] = {0, 0, L, L, 0, L};
+    double K[36], q[7 * 40], load[6] = {0, 0, -P, 0, 0, 0};
+    scene_diagonal(K, E * A, 0.32 * E * A, 0.32 * E * A, 100 * E * I, E * I, 100 * E * I);
+    spar_session *s = scene_session();
+    spar_member *leg[2];
+    for (int k = 0; k < 2; k++) {
+        OK(s, spar_beam_create(s, k ? "beam" : "column", k ? 5 : 3, LEE, &leg[k]));
+        OK(s, spar_beam_set_axis(leg[k], 2, eta, k ? across : up, NULL));
+        OK(s, spar_beam_set_sections(leg[k], 1, eta, K, NULL));
+        OK(s, spar_member_set_root(leg[k], SPAR_ROOT_FREE));
+        OK(s, spar_member_commit(leg[k]));
+    }
+    (void)add_joint(s, "foot", leg[0], 0, NULL, 0, SPAR_FREE_RY, foot);
+    (void)add_joint(s, "corner", leg[1], 0, leg[0], 3 * LEE - 1, 0, NULL);
+    (void)add_joint(s, "far foot", leg[1], 5 * LEE - 1, NULL, 0, SPAR_FREE_RY, far);
+    OK(s, spar_member_set_load(leg[1], LEE, SPAR_LOAD_DEAD, load));
+    int status = spar_member_solve_static(leg[0], 10);
+    OK(s, spar_member_get_motion(leg[1], q, NULL, NULL));
+    *down = -q[7 * LEE + 2];
+    spar_session_destroy(&s);
+    return status;
+}
+
+static void test_lee(void **state) {
+    (void)state;
+    double low = 10e3, high = 30e3, down, last = 0;
+    while (high - low > 10) {
+        double P = 0.5 * (low + high);
+        if (lee(P, &down) == SPAR_OK && down < 0.7) {
+            low = P, last = down;
+        } else {
+            high = P;
+        }
+    }
+    NEAR(low, 18.55e3, 0.005 * 18.55e3);
+    NEAR(last, 0.48, 0.02);
+}
+
+/* Nothing holds a hinge without spring in a plane without gravity: the message names it. */
+static void test_nothing_holds(void **state) {
+    (void)state;
+    const double centre[3] = {0.2, 0, 0}, J[3] = {1, 1, 1}, load[6] = {0, 0, 1, 0, 0, 0};
+    spar_session *s = scene_session();
+    spar_member *b = add_body(s, "body", origin, 5, centre, J);
+    (void)add_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RX, origin);
+    OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, load));
+    assert_int_equal(spar_member_solve_static(b, 1), SPAR_ERR_NUMERIC);
+    assert_non_null(strstr(spar_session_message(s), "the turn about x"));
+    spar_session_destroy(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_double_pendulum),
+        cmocka_unit_test(test_weld),          cmocka_unit_test(test_springs),
+        cmocka_unit_test(test_top),           cmocka_unit_test(test_chain),
+        cmocka_unit_test(test_parallelogram), cmocka_unit_test(test_slider_crank),
+        cmocka_unit_test(test_rope),          cmocka_unit_test(test_rod),
+        cmocka_unit_test(test_cart),          cmocka_unit_test(test_sprung_at_rest),
+        cmocka_unit_test(test_weld_at_rest),  cmocka_unit_test(test_nothing_holds),
+        cmocka_unit_test(test_lee),           cmocka_unit_test(test_rigid_beam),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
