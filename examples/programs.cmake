@@ -32,6 +32,15 @@ if(TARGET test_rotor)
   spar_set_test(test_rotor unit 300 ${spar_example_environment})
 endif()
 
+# The sprung cylinder locks in at a reduced speed of 5 to 6; the floating body heaves on its water line, 8e6 kg on 5.05e5 N/m
+# (25.0 s), a little stiffer by its moorings.
+add_test(NAME example_sprung_cylinder COMMAND examples_sprung_cylinder)
+spar_set_test(example_sprung_cylinder stability 120 ${spar_example_environment})
+set_tests_properties(example_sprung_cylinder PROPERTIES PASS_REGULAR_EXPRESSION "5\\.5    0\\.217")
+add_test(NAME example_floating COMMAND examples_floating)
+spar_set_test(example_floating stability 120 ${spar_example_environment})
+set_tests_properties(example_floating PROPERTIES PASS_REGULAR_EXPRESSION "heave .* 24\\.2. s")
+
 # A gust of 50 m/s on the rotor when it stands still: the run ends, each step converged.
 add_test(NAME example_rotor_gust
   COMMAND examples_rotor --rpm 0 --wind 15 --gust 35 --gust-start 1 --gust-length 10 --seconds 14 --coupling iqn --vtk-every 0
