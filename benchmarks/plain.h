@@ -1,5 +1,5 @@
-/* The transfer as it is written first: the sums (T4) to (T9) node by node over stored weights, [n][p], and that of a rigid
-   body. Compiled with the library's flags (portable) and with the vectors of this machine (native). */
+/* The transfer as it is written first: the sums (T4) to (T9) node by node over stored weights, [n][p], and that of a
+   rigid body. Compiled with the library's flags (portable) and with the vectors of this machine (native). */
 #ifndef BENCH_PLAIN_H
 #define BENCH_PLAIN_H
 

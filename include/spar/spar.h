@@ -241,7 +241,7 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
                             the trials, their errors count for as much more as they grow with time
      advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
                             what its nodes lead one to expect; where the solutions of the reference run take more than
-                            ten times that, their time in powers of a hundred of it */
+                            thirty times that, their time in powers of 900 of it */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The value of an option as a text that spar_session_set_option takes.
      key: in
@@ -948,14 +948,14 @@ SPAR_API int spar_session_advise(spar_session *session, double tolerance, double
                                  double *advice);
 /* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of
    beams fidelity, modes, nodes per element and quadrature points. dt stays the host's to take. Beams for which
-   something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the work done on
-   them, and their motion, which goes over by the element's own interpolation (loads by its transpose: their sum stays);
-   accelerations begin from the balance of forces. Their fluids keep handles and nodes and are mapped again. Counts
-   change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set from now on, is the
-   host's to say anew. All else stays to the last bit. What the advice does not have stays: rho_inf, the coupling's atol,
-   limits and options, Newton's atol, elements, effects asked for. A beam whose nodes the host has given has its line
-   through the new ones from then on; of the motion a lower fidelity keeps what it can show. Sections of fluids keep
-   places and frames. Called again it does nothing.
+   something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the work done
+   on them, and their motion, which goes over by the element's own interpolation (loads by its transpose: their sum
+   stays); accelerations begin from the balance of forces. Their fluids keep handles and nodes and are mapped again.
+   Counts change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set from now on, is
+   the host's to say anew. All else stays to the last bit. What the advice does not have stays: rho_inf, the coupling's
+   atol, limits and options, Newton's atol, elements, effects asked for. A beam whose nodes the host has given has its
+   line through the new ones from then on; of the motion a lower fidelity keeps what it can show. Sections of fluids
+   keep places and frames. Called again it does nothing.
      dt: out, SPAR_ADVICE_DT, s; NULL: not wanted
    Collective. SPAR_ERR_STATE: a step or a trial is under way, there is no advice, members have been added or described
    otherwise since, or a fluid has nodes that are not mapped. After a failure all is as it was. */

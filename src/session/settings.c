@@ -336,6 +336,7 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
         write_number(x, value, sizeof value);
     }
     int64_t needed = (int64_t)strlen(value) + 1;
+    SPARI_TRY(spari_need_capacity(s, __func__, capacity));
     SPARI_REQUIRE(s, capacity >= needed, SPAR_ERR_ARGUMENT, "%s: the value of '%s' takes %lld characters, not %lld",
                   __func__, key, (long long)needed, (long long)capacity);
     memcpy(text, value, (size_t)needed);

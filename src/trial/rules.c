@@ -48,5 +48,5 @@ const spari_rules spari_rule = {.reference_ends = 0.25,
                                           .fluid = 1000,
                                           .fluid_node = 400,
                                           .fluid_section = 4000,
-                                          .believed = 10,
+                                          .believed = 30,
                                           .second = 2e9}};
