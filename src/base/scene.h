@@ -42,6 +42,7 @@ struct spar_session {
     spar_fluid *fluids;                /* list, this rank's */
     spar_joint *joints;                /* list, in order of creation */
     struct spari_assembly *assemblies; /* list: members that are solved as one */
+    int joints_stale;                  /* joints were described since the assemblies were made */
     int member_count;
 
     double gravity[3];

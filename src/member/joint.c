@@ -61,6 +61,7 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     j->axes[0] = 1;
     *end = j;
     *out = j;
+    s->joints_stale = 1;
     return SPAR_OK;
 }
 
@@ -97,7 +98,7 @@ int spar_line_create(spar_session *session, const char *name, spar_member *a, in
     j->tie.line = 1;
     j->tie.free = SPAR_FREE_X;
     j->length = spari_norm(way);
-    j->drive[0].z[0] = j->drive[1].z[0] = j->length;
+    j->drive[0].z[0] = j->drive[1].z[0] = j->now.z[0] = j->after.z[0] = j->length;
     *joint = j;
     return SPAR_OK;
 }
@@ -135,6 +136,7 @@ int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]
         SPARI_TRY(spari_need_finite(s, __func__, joint->name, "q", 4, q));
         SPARI_TRY(spari_need_unit(s, __func__, joint->name, "q", 1, q, 4));
     }
+    s->joints_stale = 1;
     memcpy(joint->place, x, sizeof joint->place);
     joint->frame_given = q ? 2 : 1;
     if (q) {
@@ -204,6 +206,7 @@ int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, do
         SPARI_REQUIRE(s, isfinite(in[k]) && in[k] >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %s is %g; give 0 or more",
                       __func__, joint->name, name[k], in[k]);
     }
+    s->joints_stale = 1;
     joint->stiffness[0] = stiffness;
     joint->damping[0] = damping;
     joint->length = length;
@@ -218,6 +221,7 @@ int spar_joint_set_driven(spar_joint *joint, int mask) {
     SPARI_REQUIRE(joint->session, mask >= 0 && mask <= ALL_FREE && (mask & ~joint->tie.free) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': mask is %d, free is %d: what is driven must be among what the joint leaves free", __func__,
                   joint->name, mask, joint->tie.free);
+    joint->session->joints_stale = 1;
     joint->driven = mask;
     return SPAR_OK;
 }
@@ -398,8 +402,19 @@ void spari_joint_accept(spar_joint *j) {
     j->now = j->after;
     j->drive[0] = j->drive[1];
     j->drive_given = 0;
+    j->balanced = 0;
+}
+
+void spari_joint_balance(spar_joint *j) {
+    j->described = j->now;
+    j->balanced = 1;
+    j->now = j->after;
 }
 
 void spari_joint_reject(spar_joint *j) {
+    if (j->balanced) {
+        j->now = j->described;
+        j->balanced = 0;
+    }
     j->after = j->now;
 }

@@ -42,6 +42,8 @@ struct spar_joint {
     int held; /* mask of motions that are constraints: not free, or driven, and not redundant */
 
     spari_relative now, after; /* at t^n and t^{n+1} */
+    spari_relative described;  /* now, before the balance at t^0 was found; while `balanced` */
+    int balanced;
 };
 
 /* The unknowns' node of a node of the public numbering. */
@@ -64,7 +66,9 @@ void spari_joint_count_turns(const spar_joint *joint, const double near[6], doub
 void spari_joint_drive_at(const spar_joint *joint, double s, double dt, spari_driven *at);
 /* A driven joint that was not driven for this step stays where it is. */
 void spari_joint_hold(spar_joint *joint);
-/* The step under way is accepted, or given up. */
+/* `after` is what belongs to the balance of forces at t^0: the step begins with it, if it is not rejected. */
+void spari_joint_balance(spar_joint *joint);
+/* The step under way is accepted, or given up: the first one with the balance at t^0. */
 void spari_joint_accept(spar_joint *joint);
 void spari_joint_reject(spar_joint *joint);
 /* load[6] += what the joints put on a node of a member, in the motion after. */

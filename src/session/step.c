@@ -157,6 +157,9 @@ int spar_step_solve(spar_session *session) {
                 spari_member_reject(m);
             }
         }
+        for (spar_joint *j = s->joints; j; j = j->next) {
+            spari_joint_reject(j);
+        }
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, spari_named(s, __func__, status));
     }

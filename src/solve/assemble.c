@@ -172,9 +172,10 @@ static void lead_to_bodies(spar_joint *j) {
 
 int spari_assemblies_make(spar_session *s) {
     int status = SPAR_OK;
-    if (s->assemblies) {
+    if (!s->joints_stale) {
         return SPAR_OK;
     }
+    spari_assemblies_free(s);
     for (spar_joint *j = s->joints; j; j = j->next) {
         SPARI_TRY(check_members(j));
         SPARI_TRY(spari_joint_place(j));
@@ -190,6 +191,7 @@ int spari_assemblies_make(spar_session *s) {
         spari_assemblies_free(s);
         return spari_fail(s, status, "no memory for the members that joints tie together");
     }
+    s->joints_stale = 0;
     return SPAR_OK;
 }
 

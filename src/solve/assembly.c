@@ -344,7 +344,7 @@ static int start_all(spari_assembly *a) {
         s->steps.started = 1;
     }
     for (int i = 0; i < a->links; i++) {
-        a->link[i].joint->now = a->link[i].joint->after;
+        spari_joint_balance(a->link[i].joint);
     }
     return SPAR_OK;
 }
