@@ -454,4 +454,10 @@ void do_spar_session_apply_advice(call *c) {
     live_session *l = arg_session(c);
     double *dt = OUT_OR_NULL(c, 1);
     RUN(c, spar_session_apply_advice(l->s, dt));
+    for (int i = 0; i < MEMBERS; i++) { /* beams may have other nodes now */
+        live_member *m = c->w->member + i;
+        if (m->m && m->kind == KIND_BEAM && c->w->session[m->session].s == l->s) {
+            (void)spar_beam_get_elements(m->m, &m->elements, &m->per_element);
+        }
+    }
 }
