@@ -559,8 +559,9 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
    move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, several
-   ranks, save, trials, modes and spar_session_solve_static answer SPAR_ERR_UNSUPPORTED with joints.
-   spar_member_solve_static solves for all that a member is tied to. spar_member_get_work leaves out what joints do. */
+   ranks, save, trials and modes answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a
+   member is tied to; where nothing holds an assembly, the message names the motion that is free.
+   spar_member_get_work leaves out what joints do. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied

@@ -55,10 +55,14 @@ static const double *pushed(const spar_member *m) {
     return m->load_pushed;
 }
 
+static const double *used(const spar_member *m) {
+    return m->load_used;
+}
+
 /* The motion after of a member that spar solves for, on the rank that does. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
     if (m->assembly) {
-        return spari_assembly_static(m->assembly, pushed, load_steps);
+        return spari_assembly_static(m->assembly, pushed, load_steps, onward);
     }
     return m->row->rest && spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
 }
@@ -172,7 +176,6 @@ static int check_session_static(spar_session *s, int load_steps) {
                   session_call);
     SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", session_call,
                   load_steps);
-    SPARI_TRY(spari_joints_refuse(s, session_call));
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, session_call));
     }
@@ -264,6 +267,9 @@ static void settle_all(spar_session *s) {
         m->motion_given = 0;
         settle_member(m, m->load_pushed);
     }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_settle(a);
+    }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_settle(f);
     }
@@ -276,6 +282,9 @@ static void leave_as_it_was(spar_session *s, const double *aside) {
         copy_loads(m, m->load_before, m->load_pushed);
     }
     put_back(s, NULL, aside);
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_leave(a);
+    }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
     }
@@ -285,7 +294,10 @@ static void leave_as_it_was(spar_session *s, const double *aside) {
 static int solve_all(spar_session *s, int load_steps, int onward) {
     int status = SPAR_OK;
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = solve_member_static(m, m->load_used, load_steps, onward);
+        status = m->assembly ? SPAR_OK : solve_member_static(m, m->load_used, load_steps, onward);
+    }
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
+        status = spari_assembly_static(a, used, load_steps, onward);
     }
     SPARI_TRY(spari_session_share_motion(s, status));
     for (spar_member *m = s->members; m; m = m->next) {
@@ -432,7 +444,8 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, load_steps)));
     spari_coupling *of_steps = NULL;
     double *aside = NULL;
-    int status = spari_session_seal(s, put_aside(s, NULL, &aside));
+    int status = s->joints ? spari_enter(s, "joints", spari_assemblies_make(s)) : SPAR_OK;
+    status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;
     status = status == SPAR_OK ? prepare_coupling(s, &of_steps) : status;
     if (status != SPAR_OK) {
         free(aside);

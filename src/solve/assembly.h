@@ -15,9 +15,13 @@ spari_assembly *spari_assembly_next(const spari_assembly *assembly);
 /* From t^n to t^n + dt: all of its members. */
 int spari_assembly_advance(spari_assembly *assembly, double dt);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
-   [nodes][6]; driven motions where they were driven last. Writes the motions after, or leaves all as it was. */
-int spari_assembly_static(spari_assembly *assembly, const double *(*fluid)(const spar_member *), int load_steps);
+   [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that
+   leads there; else from t^n. Writes the motions after, or leaves all as it was. */
+int spari_assembly_static(spari_assembly *assembly, const double *(*fluid)(const spar_member *), int load_steps,
+                          int onward);
 /* The motions after become those the clock stands at. */
 void spari_assembly_settle(spari_assembly *assembly);
+/* Those found are given up: the joints are at t^n again. */
+void spari_assembly_leave(spari_assembly *assembly);
 
 #endif

@@ -93,24 +93,41 @@ static double shift_parts(spari_assembly *a, double longest, double *cut) {
     return largest;
 }
 
+/* The largest correction of a joint's load. */
+static double change_of_loads(const spari_assembly *a) {
+    double largest = 0;
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            largest = fmax(largest, fabs(a->link[i].correction[k]));
+        }
+    }
+    return largest;
+}
+
+/* Whether an iteration that moves nothing is the last one: joints' loads hold or loosen what they tie, and a tangent
+   with those of before says nothing of it. */
+static int loads_stand(const spari_assembly *a, int it, double scale) {
+    return it >= 3 || change_of_loads(a) <= 1e-6 * scale;
+}
+
 /* Equilibrium at the factor f from the states `to`; 0 or 1. */
 static int find_rest_at(spari_assembly *a, double f, int *weak) {
     double last = 0;
     for (int it = 0; it < REST_ITERATIONS; it++) {
-        char text[8];
         double noise, cut, scale = balance_at_rest(a, f, &noise);
         *weak = 0;
         if (!isfinite(scale) || solve_at_rest(a, f)) {
             *weak = isfinite(scale) != 0;
             return 1;
         }
-        if (spari_tied_weakest(a, text, sizeof text) < loose) {
+        if (spari_tied_weakest(a) < loose) {
             *weak = 1;
             return 1;
         }
         double largest = shift_parts(a, 0.8, &cut);
-        if (cut == 1 && (largest < 1e-9 || (noise <= 16 * DBL_EPSILON * scale && largest < 1e-7) ||
-                         (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
+        if (cut == 1 && loads_stand(a, it, scale) &&
+            (largest < 1e-9 || (noise <= 16 * DBL_EPSILON * scale && largest < 1e-7) ||
+             (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
             return 0;
         }
         last = largest;
@@ -130,27 +147,30 @@ static void keep_point(spari_assembly *a, int back) {
     }
 }
 
-static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *)) {
+/* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
+static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
     for (int i = 0; i < a->limbs; i++) {
         spari_limb *p = a->limb + i;
         spari_solver *s = p->solver;
         p->member->row->take_rest(p->member, fluid(p->member));
-        memcpy(s->to.q, s->begin.q, (size_t)(7 * s->n) * sizeof *s->to.q);
+        if (!onward) {
+            memcpy(s->to.q, s->begin.q, (size_t)(7 * s->n) * sizeof *s->to.q);
+        }
         memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof *s->to.v);
         p->state = &s->to;
         p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
     }
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->links && !onward; i++) {
         a->link[i].joint->after = a->link[i].joint->now;
     }
     keep_point(a, 0);
 }
 
-int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps) {
+/* Load steps from 0 to all of the loads, the last point kept. Returns the part reached; text: of
+   what nothing holds. */
+static double follow_loads(spari_assembly *a, int load_steps, char *text, int size) {
     double done = 0, step = 1.0 / load_steps;
     int halvings = 0, weak = 0;
-    char text[160] = "";
-    begin_rest(a, fluid);
     while (done < 1 && halvings <= REST_HALVINGS) {
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
         if (find_rest_at(a, f, &weak) == 0) {
@@ -159,32 +179,47 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
             continue;
         }
         if (weak) {
-            (void)spari_tied_weakest(a, text, sizeof text);
+            spari_tied_name_free(a, text, size);
         }
         keep_point(a, 1);
         step *= 0.5;
         halvings += weak && done == 0 ? REST_HALVINGS : 1;
     }
-    a->factored = 0;
+    return done;
+}
+
+/* Nothing has been found: all is as it was. */
+static int refuse_rest(spari_assembly *a, double done, const char *text) {
     for (int i = 0; i < a->limbs; i++) {
         spari_solver *s = a->limb[i].solver;
-        s->factored = 0;
-        memcpy(s->to.q, done < 1 ? s->begin.q : s->best, (size_t)(7 * s->n) * sizeof(double));
-        if (done < 1) {
-            memcpy(s->to.v, s->begin.v, (size_t)(18 * s->n) * sizeof(double));
-        }
+        memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof(double));
+    }
+    spari_assembly_leave(a);
+    return spari_fail(a->session, SPAR_ERR_NUMERIC,
+                      "the members that joint '%s' ties together: no equilibrium found beyond %.6g of the loads%s%s; "
+                      "the state is as it was",
+                      a->link[0].joint->name, done, text[0] ? ": nothing holds " : "", text);
+}
+
+int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
+    char text[240] = "";
+    begin_rest(a, fluid, onward);
+    double done = onward ? follow_loads(a, 1, text, sizeof text) : 0;
+    if (done < 1) {
+        begin_rest(a, fluid, 0);
+        text[0] = '\0';
+        done = follow_loads(a, load_steps, text, sizeof text);
+    }
+    a->factored = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].solver->factored = 0;
     }
     if (done < 1) {
-        for (int i = 0; i < a->links; i++) {
-            spari_joint_reject(a->link[i].joint);
-        }
-        return spari_fail(
-            a->session, SPAR_ERR_NUMERIC,
-            "the members that joint '%s' ties together: no equilibrium found beyond %.6g of the loads%s%s; "
-            "the state is as it was",
-            a->link[0].joint->name, done, text[0] ? ": nothing holds " : "", text);
+        return refuse_rest(a, done, text);
     }
     for (int i = 0; i < a->limbs; i++) {
+        spari_solver *s = a->limb[i].solver;
+        memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof(double));
         a->limb[i].member->row->publish(a->limb[i].member);
     }
     for (int i = 0; i < a->links; i++) {
@@ -198,5 +233,11 @@ void spari_assembly_settle(spari_assembly *a) {
         spar_joint *j = a->link[i].joint;
         j->now = j->after;
         j->drive[0] = j->drive[1];
+    }
+}
+
+void spari_assembly_leave(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spari_joint_reject(a->link[i].joint);
     }
 }

@@ -130,9 +130,8 @@ static void add_link(spari_assembly *a, const spari_link *l, double cv) {
     }
 }
 
-/* Forms and factors the system. 0 or 1. */
-static int form_system(spari_assembly *a, double cv) {
-    int status;
+/* The system of the parts and links as they stand. */
+static void fill_system(spari_assembly *a, double cv) {
     gsl_matrix_set_zero(a->A);
     a->scale = 0;
     for (int i = 0; i < a->limbs; i++) {
@@ -142,6 +141,11 @@ static int form_system(spari_assembly *a, double cv) {
     for (int i = 0; i < a->links; i++) {
         add_link(a, a->link + i, cv);
     }
+}
+
+/* 0 or 1. */
+static int factor_system(spari_assembly *a) {
+    int status;
     if (spari_first_nonfinite(a->A->data, (int64_t)(a->A->size1 * a->A->tda)) >= 0) {
         return 1;
     }
@@ -158,7 +162,8 @@ static int form_system(spari_assembly *a, double cv) {
 
 int spari_tied_solve(spari_assembly *a, double cv) {
     size_t band = (size_t)a->band;
-    if (form_system(a, cv)) {
+    fill_system(a, cv);
+    if (factor_system(a)) {
         return 1;
     }
     for (int i = 0; i < a->limbs; i++) {
@@ -211,31 +216,85 @@ int spari_tied_solve(spari_assembly *a, double cv) {
     return 0;
 }
 
-double spari_tied_weakest(const spari_assembly *a, char *text, int size) {
-    static const char *const direction[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+double spari_tied_weakest(const spari_assembly *a) {
     double least = INFINITY;
-    int weak = 0;
     for (int i = 0; i < a->n; i++) {
-        double pivot = fabs(*entry_at(a, i, i));
-        weak = pivot < least ? i : weak;
-        least = fmin(least, pivot);
+        least = fmin(least, fabs(*entry_at(a, i, i)));
+    }
+    return least / a->scale;
+}
+
+/* Relative motion k of a link in the motion x of the system, turns by the length of its member. */
+static double slip_of(const spari_link *l, const double *x, int k) {
+    double slip = 0, length = 1;
+    for (int i = 0; i < 12; i++) {
+        int at = unknown_of_link(l, i);
+        slip += at >= 0 ? l->B[k][i] * x[at] : 0;
+    }
+    for (int side = 0; side < 2; side++) {
+        length = l->limb[side] ? spari_member_length(l->limb[side]->member) : length;
+    }
+    return fabs(slip) * (k < 3 ? 1 : length);
+}
+
+/* The motion x that the system resists least, by two steps of inverse iteration from a motion of no symmetry; every
+   motion is given a little stiffness, so that there are factors. 0 or 1. */
+static int free_motion(spari_assembly *a) {
+    const size_t band = (size_t)a->band;
+    fill_system(a, 0);
+    for (int i = 0; i < a->limbs; i++) {
+        for (int k = 0; k < 6 * a->limb[i].solver->condensed->ends; k++) {
+            *entry_at(a, a->limb[i].at + k, a->limb[i].at + k) += 1e-12 * a->scale;
+        }
+    }
+    if (factor_system(a)) {
+        return 1;
+    }
+    for (int i = 0; i < a->n; i++) {
+        a->x[i] = 1 + 0.37 * sin(2.7 * i);
+    }
+    gsl_vector_view v = gsl_vector_view_array(a->x, (size_t)a->n);
+    for (int pass = 0; pass < 2; pass++) {
+        double largest = 0;
+        SPARI_BLAS(gsl_linalg_LU_band_svx(band, band, a->A, a->swap, &v.vector));
+        for (int i = 0; i < a->n; i++) {
+            largest = fmax(largest, fabs(a->x[i]));
+        }
+        for (int i = 0; i < a->n && largest > 0; i++) {
+            a->x[i] /= largest;
+        }
+    }
+    return spari_first_nonfinite(a->x, a->n) >= 0;
+}
+
+/* Joints that move name it best; where none does, the whole goes, and the farthest motion of a member's node does. */
+void spari_tied_name_free(spari_assembly *a, char *text, int size) {
+    static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+    double most = 0, farthest = 0;
+    if (free_motion(a)) {
+        return;
     }
     for (int i = 0; i < a->limbs; i++) {
         const spari_limb *p = a->limb + i;
-        const spari_condensed *c = p->solver->condensed;
-        if (p->at <= weak && weak < p->at + 6 * c->ends) {
-            (void)snprintf(text, (size_t)size, "%s of the node of '%.80s' that a joint holds",
-                           direction[(weak - p->at) % 6], p->member->name);
-        }
-    }
-    for (int i = 0; i < a->links; i++) {
-        for (int k = 0; k < 6; k++) {
-            if (a->link[i].row[k] == weak) {
-                (void)snprintf(text, (size_t)size, "%s at joint '%.80s'", direction[k], a->link[i].joint->name);
+        for (int k = 0; k < 6 * p->solver->condensed->ends; k++) {
+            double x = fabs(a->x[p->at + k]) * (k % 6 < 3 ? 1 : spari_member_length(p->member));
+            if (x > farthest) {
+                farthest = x;
+                (void)snprintf(text, (size_t)size, "%s of '%.80s' (global axes)", motion[k % 6], p->member->name);
             }
         }
     }
-    return least / a->scale;
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        for (int k = 0; k < (l->joint->tie.line ? 1 : 6); k++) {
+            double slip = slip_of(l, a->x, k);
+            if (slip > 1e-3 * farthest && slip > most) {
+                most = slip;
+                (void)snprintf(text, (size_t)size, "%s of joint '%.80s'", l->joint->tie.line ? "the length" : motion[k],
+                               l->joint->name);
+            }
+        }
+    }
 }
 
 /* ---- size ---- */

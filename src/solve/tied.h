@@ -58,8 +58,11 @@ double spari_link_gap(const spari_link *l, int k);
 double spari_link_rate_gap(const spari_link *l, int k);
 /* The links' forces, taken from the parts' residuals; fixed unknowns out. */
 void spari_links_add(spari_assembly *a);
-/* Of the system solved last: the smallest pivot by the largest stiffness, and where it stands: what nothing holds. */
-double spari_tied_weakest(const spari_assembly *a, char *text, int size);
+/* Of the system factored last: the smallest pivot by the largest stiffness. */
+double spari_tied_weakest(const spari_assembly *a);
+/* What it lets go nearly freely, the motion of a joint, or of a member; text stays where it cannot be told. Spends the
+   factors. */
+void spari_tied_name_free(spari_assembly *a, char *text, int size);
 /* Keeps what the links' loads add to the tangent, with the parts' tangents as they have just been formed. */
 void spari_tied_keep(spari_assembly *a);
 /* Of the parts' forces in the axes of their tangents, in the solvers' dx, and the links' gaps: dx and `correction` that
