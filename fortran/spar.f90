@@ -102,6 +102,7 @@ module spar
     procedure :: set_log => session_set_log
     procedure :: get_time => session_get_time
     procedure :: get_iterations => session_get_iterations
+    procedure :: get_residual => session_get_residual
     procedure :: get_report => session_get_report
     procedure :: get_gravity => session_get_gravity
     procedure :: get_integrator => session_get_integrator
@@ -242,6 +243,8 @@ module spar
     procedure :: pull_forces_f32 => fluid_pull_forces_f32
     procedure :: push_forces_f32 => fluid_push_forces_f32
     procedure :: get_audit => fluid_get_audit
+    procedure :: get_total => fluid_get_total
+    procedure :: get_travel => fluid_get_travel
     procedure :: get_projection => fluid_get_projection
     procedure :: get_interpolation => fluid_get_interpolation
     procedure :: write_vtk => fluid_write_vtk
@@ -783,6 +786,16 @@ contains
     if (status == SPAR_OK .and. present(iterations)) iterations = n
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_iterations
+
+  ! Of the last iteration.
+  subroutine session_get_residual(self, residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: residual, size
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
+  end subroutine session_get_residual
 
   ! Entry SPAR_REPORT_x of the report is report(SPAR_REPORT_x + 1).
   subroutine session_get_report(self, report, stat, errmsg)
@@ -2340,6 +2353,28 @@ contains
 
     call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
   end subroutine fluid_get_audit
+
+  ! Collective. Absent point: about the origin.
+  subroutine fluid_get_total(self, point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in), optional :: point(3)
+    real(c_double), intent(inout), optional :: force(3), moment(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_get_total
+
+  ! node counts from 0, -1: there are none.
+  subroutine fluid_get_travel(self, largest, node, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), intent(inout), optional :: largest
+    integer(c_int64_t), intent(inout), optional :: node
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
+  end subroutine fluid_get_travel
 
   subroutine fluid_write_vtk(self, path, stat, errmsg)
     class(spar_fluid), intent(in) :: self

@@ -330,6 +330,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_iterations
 
+    function spar_session_get_residual(session, residual, size) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: residual, size
+      integer(c_int) :: status
+    end function spar_session_get_residual
+
     function spar_session_get_report(session, capacity, report) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
@@ -863,6 +870,22 @@ module spar_c
       real(c_double), intent(inout), optional :: audit(*)
       integer(c_int) :: status
     end function spar_fluid_get_audit
+
+    function spar_fluid_get_total(fluid, point, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(in), optional :: point(*)
+      real(c_double), intent(inout), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_total
+
+    function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: largest
+      integer(c_int64_t), intent(inout), optional :: node
+      integer(c_int) :: status
+    end function spar_fluid_get_travel
 
     function spar_step_begin(session, dt) bind(c) result(status)
       import :: c_double, c_int, c_ptr

@@ -162,6 +162,36 @@ static void check_goes_on(scene *c) {
     spar_session_destroy(&alone.session);
 }
 
+/* Force and moment of the whole fluid, dealt out over the ranks, are those of the serial run on every rank (to the
+   1e-11 that the loads of the two runs agree to), and each rank gives its own part of the same fluid. */
+static void totals_over_ranks(void **state) {
+    (void)state;
+    static const double point[3] = {1, 2, 3};
+    scene all, alone;
+    double x[6], y[6];
+    create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
+    create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
+    for (int step = 0; step < 3; step++) {
+        OK(all.session, spar_step(all.session, 0.02, solve, &all, NULL));
+        OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
+        OK(all.session, spar_fluid_get_total(all.around, point, x, x + 3));
+        OK(alone.session, spar_fluid_get_total(alone.around, point, y, y + 3));
+        double force = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
+        assert_true(force > 1e-3);
+        for (int k = 0; k < 6; k++) {
+            NEAR(x[k], y[k], 1e-11 * 10 * force);
+        }
+    }
+    int expected = size > 1 ? SPAR_ERR_COMM : SPAR_OK;
+    assert_int_equal(spar_fluid_get_total(rank == 0 ? all.around : all.added, point, x, x + 3), expected);
+    const double own[3] = {rank == 0, 0, 0};
+    assert_int_equal(spar_fluid_get_total(all.around, own, x, x + 3), expected);
+    assert_true(size == 1 || strstr(spar_session_message(all.session), "point (x)"));
+    check_goes_on(&all);
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
+}
+
 static void nan_on_one_rank(void **state) {
     (void)state;
     int carriers = size > 1 ? size - 1 : 1;
@@ -398,6 +428,8 @@ static void refused_files(void **state) {
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_serial),
+        cmocka_unit_test(totals_over_ranks),
+        cmocka_unit_test(totals_over_ranks),
         cmocka_unit_test(nan_on_one_rank),
         cmocka_unit_test(callback_fails_on_one_rank),
         cmocka_unit_test(wrong_calls_on_one_rank),

@@ -107,13 +107,18 @@ static void report(void **state) {
     p.b[0] = 5;
     OK(p.session, spar_session_set_predictor(p.session, 0));
     OK(p.session, spar_session_get_iterations(p.session, &iterations, 100, residual, size));
-    assert_int_equal(iterations, 0);
+    double last[2] = {1, 1};
+    OK(p.session, spar_session_get_residual(p.session, last, last + 1));
+    assert_true(iterations == 0 && last[0] == 0 && last[1] == 0);
     OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 100));
     OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &evaluations));
     OK(p.session, spar_session_get_iterations(p.session, &iterations, 100, residual, size));
     OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
     assert_int_equal(iterations, evaluations);
     assert_true(residual[iterations] == 0 && size[iterations] == 0);
+    OK(p.session, spar_session_get_residual(p.session, last, last + 1));
+    assert_true(last[0] == residual[iterations - 1] && last[1] == size[iterations - 1]);
+    OK(p.session, spar_session_get_residual(p.session, NULL, NULL));
     for (int i = 0; i < iterations; i++) {
         NEAR(residual[i], 5 * pow(0.5, i), 1e-12);
     }

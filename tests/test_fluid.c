@@ -713,6 +713,112 @@ static void far_nodes_are_flagged_or_refused(void **state) {
     rig_end(&r);
 }
 
+/* Force and moment of a whole fluid about a point: the sums over its own nodes, where they are, of what it pushed, to
+   the rounding of 60 nodes with |x| 15; another fluid's loads are not in them. The moment moves with the structure, the
+   loads of which stay on its nodes: of a shift d by d x force. */
+static void totals_are_of_one_fluid(void **state) {
+    (void)state;
+    enum { N = 60 };
+    rig r;
+    unsigned long long seed = 7;
+    double node[N][3], x[N][3], force[2][N][3], want[6] = {0}, got[6], t[3], arm[3], before[6];
+    const double point[3] = {3, -1, 2}, shift[3] = {0.1, 0.2, -0.3};
+    spar_fluid *f[2];
+    rig_start(&r, 0);
+    scatter(node, N, &seed);
+    for (int k = 0; k < 2; k++) {
+        OK(spar_fluid_create(r.member, k ? "b" : "a", &f[k]));
+        OK(spar_fluid_get_total(f[k], NULL, got, got + 3));
+        assert_true(spari_norm(got) + spari_norm(got + 3) == 0);
+        OK(spar_fluid_set_motion_nodes(f[k], N, node[0]));
+        OK(spar_fluid_set_force_nodes(f[k], N, node[0]));
+        OK(spar_fluid_map(f[k]));
+    }
+    OK(spar_step_begin(r.session, 0.1));
+    bend(&r, 0.9);
+    OK(spar_fluid_pull_motion(f[0], 1, x[0], NULL));
+    for (int k = 0; k < 2; k++) {
+        for (int j = 0; j < N; j++) {
+            for (int i = 0; i < 3; i++) {
+                force[k][j][i] = line_random(&seed);
+                arm[i] = x[j][i] - point[i];
+            }
+            spari_cross(arm, force[k][j], t);
+            for (int i = 0; k == 0 && i < 3; i++) {
+                want[i] += force[k][j][i], want[3 + i] += t[i];
+            }
+        }
+        OK(spar_fluid_push_forces(f[k], force[k][0], NULL));
+    }
+    OK(spar_fluid_get_total(f[0], point, got, got + 3));
+    for (int i = 0; i < 6; i++) {
+        CLOSE(got[i], want[i], 1e-12);
+    }
+    for (int l = 0; l < 16; l++) {
+        for (int i = 0; i < 3; i++) {
+            r.q[l][i] += shift[i];
+        }
+    }
+    OK(spar_member_set_motion(r.member, r.q[0], NULL, NULL));
+    OK(spar_fluid_get_total(f[0], point, before, before + 3));
+    spari_cross(shift, got, t);
+    for (int i = 0; i < 3; i++) {
+        CLOSE(before[i], got[i], 0);
+        CLOSE(before[3 + i], got[3 + i] + t[i], 1e-12);
+    }
+    const double bad[3] = {0, NAN, 0};
+    assert_int_equal(spar_fluid_get_total(NULL, point, got, got + 3), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_get_total(f[0], bad, got, got + 3), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "the point is (0, nan, 0)"));
+    OK(spar_fluid_get_total(f[0], point, NULL, NULL));
+    rig_end(&r);
+}
+
+/* How far the nodes have gone in the step is the distance of their places at theta 0 and 1, to rounding; between steps
+   and after a rejected one nothing moves. */
+static void travel_is_of_the_step(void **state) {
+    (void)state;
+    enum { N = 150 };
+    rig r;
+    unsigned long long seed = 8;
+    static double node[N][3], x[2][N][3];
+    double largest, want = 0;
+    int64_t at, expected = -1;
+    spar_fluid *f;
+    rig_start(&r, 0);
+    OK(spar_fluid_create(r.member, "a", &f));
+    OK(spar_fluid_get_travel(f, &largest, &at));
+    assert_true(largest == 0 && at == -1);
+    scatter(node, N, &seed);
+    OK(spar_fluid_set_motion_nodes(f, N, node[0]));
+    assert_int_equal(spar_fluid_get_travel(f, &largest, &at), SPAR_ERR_STATE);
+    OK(spar_fluid_map(f));
+    bend(&r, 0.4);
+    OK(spar_fluid_get_travel(f, &largest, &at));
+    assert_true(largest == 0 && at == 0);
+    for (int step = 0; step < 2; step++) {
+        OK(spar_step_begin(r.session, 0.1));
+        bend(&r, 0.9);
+        OK(spar_step_solve(r.session));
+        OK(spar_fluid_pull_motion(f, 0, x[0][0], NULL));
+        OK(spar_fluid_pull_motion(f, 1, x[1][0], NULL));
+        for (int j = 0; j < N && step == 0; j++) {
+            double d[3] = {x[1][j][0] - x[0][j][0], x[1][j][1] - x[0][j][1], x[1][j][2] - x[0][j][2]};
+            expected = spari_norm(d) > want ? j : expected;
+            want = fmax(want, spari_norm(d));
+        }
+        OK(spar_fluid_get_travel(f, &largest, &at));
+        assert_true(want > 0.5);
+        CLOSE(largest, want, 1e-13);
+        assert_int_equal(at, expected);
+        OK(step == 0 ? spar_step_reject(r.session) : spar_step_accept(r.session));
+        OK(spar_fluid_get_travel(f, &largest, NULL));
+        CLOSE(largest, 0, 0);
+    }
+    assert_int_equal(spar_fluid_get_travel(NULL, &largest, NULL), SPAR_ERR_ARGUMENT);
+    rig_end(&r);
+}
+
 /* Each refusal has its status and leaves things as they were. */
 static void bad_calls_are_refused(void **state) {
     (void)state;
@@ -808,6 +914,8 @@ int main(void) {
         cmocka_unit_test(unasked_history_is_refused),
         cmocka_unit_test(history_is_an_effect),
         cmocka_unit_test(loads_of_fluids_add),
+        cmocka_unit_test(totals_are_of_one_fluid),
+        cmocka_unit_test(travel_is_of_the_step),
         cmocka_unit_test(far_nodes_are_flagged_or_refused),
         cmocka_unit_test(bad_calls_are_refused),
         cmocka_unit_test(order_of_calls),

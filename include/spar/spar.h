@@ -256,6 +256,8 @@ SPAR_API int spar_session_get_option(const spar_session *session, const char *ke
    Each NULL: not wanted. */
 SPAR_API int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity,
                                          double *residual, double *size);
+/* The last of them. residual, size: out, N, 0 before the first iteration, NULL: not wanted. Local. */
+SPAR_API int spar_session_get_residual(const spar_session *session, double *residual, double *size);
 /* What the coupling says of itself; the same on all ranks. report[capacity]: out, by SPAR_REPORT_*, NULL: not wanted.
    Local. */
 SPAR_API int spar_session_get_report(const spar_session *session, int64_t capacity, double *report);
@@ -645,8 +647,8 @@ enum {
     SPAR_MAP_FAR = 4        /* farther than max_distance */
 };
 
-/* All calls on fluids are local: a fluid is this rank's. A member can have many, from any of its ranks. n is the
-   number of nodes of the set in question. Nodes and maps change between steps only. */
+/* All calls on fluids but spar_fluid_get_total are local: a fluid is this rank's. A member can have many, from any of
+   its ranks. n is the number of nodes of the set in question. Nodes and maps change between steps only. */
 
 /* name: in, not empty, for the messages. fluid: out. */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
@@ -721,6 +723,12 @@ SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q
      alpha[n][3]: out, rad/s^2 */
 SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
                                    double *accel, double *alpha);
+/* How far the motion nodes of this rank have gone since t^n, in the latest iterate: what a mesh has to follow. Between
+   steps 0.
+     largest: out, m, of all of them
+     node: out, which, the first of equals; -1: there are none
+   Each NULL: not wanted. */
+SPAR_API int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node);
 /* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
    m(column, row, n), that is the transpose. */
 enum {
@@ -770,6 +778,14 @@ enum {
 };
 /* audit[capacity]: out, by SPAR_AUDIT_*, NULL: not wanted. */
 SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audit);
+/* Force and moment of the whole fluid: of the loads last pushed, on the structure where it is now, summed over the
+   ranks, each of which gives its own fluid of this name and member, one without nodes where it has none. Collective, at
+   any time but in a fluid solver that spar_step or a static solution calls (SPAR_ERR_STATE). 0 before the first push.
+     point[3]: in, m, that the moment is about, global, the same on every rank, NULL: the origin
+     force[3]: out, N
+     moment[3]: out, N m
+   Each output NULL: not wanted; the same on all ranks. */
+SPAR_API int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]);
 
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
 

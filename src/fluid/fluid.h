@@ -8,6 +8,8 @@
 
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
+/* What of them is on node i of the member; answers 0 where there are none yet. */
+int spari_fluid_node_load(const spar_fluid *fluid, int64_t i, double load[6]);
 /* Whether the host has ever pushed loads. */
 int spari_fluid_has_loads(const spar_fluid *fluid);
 /* The step moves: begin predicts the node forces at t^{n+1}, accept shifts the histories, reject goes back. Only fluids

@@ -84,17 +84,22 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
     return 2;
 }
 
-/* The first average of two states takes the memory for the second. */
-static int need_states(spar_fluid *fluid, double theta, const char *caller) {
+/* Memory for a second state, where there is none yet. */
+static int need_second(spar_fluid *fluid, const char *caller) {
     const spar_member *m = fluid->member;
-    if (fluid->field[1] || !fluid->field[0] || !is_between(theta) || m->session->theta_on_group) {
+    if (fluid->field[1] || !fluid->field[0]) {
         return SPAR_OK;
     }
     /* with the tile of the second state behind it, which would be much for a small stack */
     fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS + SPARI_ROWS * SPARI_ROW, sizeof *fluid->field[1]);
     return fluid->field[1]
                ? SPAR_OK
-               : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for a pull between two times");
+               : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the motion at two times");
+}
+
+/* The first average of two states takes the memory for the second. */
+static int need_states(spar_fluid *fluid, double theta, const char *caller) {
+    return is_between(theta) && !fluid->member->session->theta_on_group ? need_second(fluid, caller) : SPAR_OK;
 }
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {
@@ -339,6 +344,53 @@ int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float 
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.f = x, .v.f = v};
     return pull_motion(fluid, theta, &w, __func__);
+}
+
+/* How far the nodes of a tile have gone: squares into the largest. */
+static void longest_way(const spari_nodes *s, int64_t first, const states *t, double *square, int64_t *node) {
+    int count = spari_tile_count(s, first);
+    for (int i = 0; i < count; i++) {
+        double way = 0;
+        for (int k = SPARI_R_PLACE; k < SPARI_R_PLACE + 3; k++) {
+            double d = t->buf[1][k][i] - t->buf[0][k][i];
+            way += d * d;
+        }
+        int64_t here = spari_nodes_node(s, first + i);
+        if (*node < 0 || way > *square || (way == *square && here < *node)) {
+            *square = way;
+            *node = here;
+        }
+    }
+}
+
+int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
+    SPARI_QUIET;
+    SPARI_FLUID_HANDLE(fluid);
+    double a[SPARI_ROWS][SPARI_ROW], square = 0, least = HUGE_VAL;
+    const spari_nodes *s;
+    int64_t farthest = -1;
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, __func__, &s));
+    SPARI_TRY(need_second(fluid, __func__));
+    states t = {.n = 2, .buf = {a, second_tile(fluid)}};
+    if (s && s->n > 0) {
+        fill_one(fluid, &fluid->member->now, SPARI_UPTO_PLACE, fluid->field[0]);
+        fill_one(fluid, &fluid->member->after, SPARI_UPTO_PLACE, fluid->field[1]);
+    }
+    for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
+        for (int i = 0; i < t.n; i++) {
+            double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_PLACE, t.buf[i]);
+            least = fmin(least, met);
+        }
+        longest_way(s, first, &t, &square, &farthest);
+    }
+    SPARI_TRY(spari_fluid_check_rotation(fluid, least, __func__));
+    if (largest) {
+        *largest = sqrt(square);
+    }
+    if (node) {
+        *node = farthest;
+    }
+    return SPAR_OK;
 }
 
 int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {

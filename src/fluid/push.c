@@ -310,6 +310,13 @@ void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
     }
 }
 
+int spari_fluid_node_load(const spar_fluid *fluid, int64_t i, double load[6]) {
+    if (fluid->load) {
+        memcpy(load, fluid->load + 6 * i, 6 * sizeof *load);
+    }
+    return fluid->load != NULL;
+}
+
 int spari_fluid_keep(spar_fluid *fluid, int order) {
     spari_history *h = fluid->history;
     return h ? spari_history_keep(h->past, 3 * h->n, order) : SPAR_OK;

@@ -499,6 +499,19 @@ int spar_session_get_iterations(const spar_session *session, int *iterations, in
     return SPAR_OK;
 }
 
+int spar_session_get_residual(const spar_session *session, double *residual, double *size) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    const spari_coupling *c = session->own->coupling;
+    int last = c ? c->iterations - 1 : -1;
+    if (residual) {
+        *residual = last >= 0 ? c->residual[last] : 0;
+    }
+    if (size) {
+        *size = last >= 0 ? c->size[last] : 0;
+    }
+    return SPAR_OK;
+}
+
 int spar_session_get_report(const spar_session *session, int64_t capacity, double *report) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);

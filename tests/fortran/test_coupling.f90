@@ -162,8 +162,8 @@ contains
     type(spar_session) :: session
     type(spar_member) :: body
     type(spar_fluid) :: fluid
-    real(c_double) :: q(7,1), v(6,1), a(6,1), f(3,1), audit(8), energy(4), t
-    integer(c_int64_t) :: steps
+    real(c_double) :: q(7,1), v(6,1), a(6,1), f(3,1), audit(8), energy(4), t, force(3), moment(3), way, change, loads
+    integer(c_int64_t) :: steps, node
     integer :: i
     logical :: done
 
@@ -181,12 +181,23 @@ contains
       call session%step_solve()
       call fluid%push_forces(f)
       call session%step_check(done)
+      if (i == 1) then ! u = F t^2 / (2 m): |F| = sqrt(14), t = 0.05
+        call fluid%get_travel(way, node)
+        call check(abs(way - sqrt(14.0_c_double) * 0.000625_c_double) < 1e-12_c_double .and. node == 0, 'the way of the first step')
+      end if
       call session%step_accept()
     end do
     call session%get_time(t, steps)
     call body%get_motion(q, v, a)
     call body%get_energy(energy)
     call fluid%get_audit(audit)
+    call fluid%get_total(force=force, moment=moment)
+    call check(all(abs(force - f(:,1)) < 1e-14_c_double) .and. all(abs(moment) < 1e-12_c_double), &
+        'the force of all nodes, through the origin')
+    call fluid%get_total(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], moment=moment)
+    call check(all(abs(moment - [2.0_c_double, 1.0_c_double, 0.0_c_double]) < 1e-12_c_double), 'its moment, an arm of 1 along z')
+    call session%get_residual(change, loads)
+    call check(abs(change) < 1e-14_c_double .and. abs(loads - sqrt(14.0_c_double)) < 1e-12_c_double, 'the last residual')
     call check(abs(t - 0.5_c_double) < 1e-14_c_double .and. steps == 10, 'ten steps make half a second')
     call check(all(abs(q(1:3,1) - f(:,1) / 16) < 1e-12_c_double), 'places under a constant force')
     call check(all(abs(v(1:3,1) - f(:,1) / 4) < 1e-12_c_double), 'velocities under a constant force')

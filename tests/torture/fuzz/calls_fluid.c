@@ -262,6 +262,19 @@ void do_spar_fluid_get_audit(call *c) {
     RUN(c, spar_fluid_get_audit(f->f, n, audit));
 }
 
+void do_spar_fluid_get_total(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *point = arg_reals_or_null(c, 3, -3, 3), *force = OUT_OR_NULL(c, 3), *moment = OUT_OR_NULL(c, 3);
+    RUN(c, spar_fluid_get_total(f->f, point, force, moment));
+}
+
+void do_spar_fluid_get_travel(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *largest = OUT_OR_NULL(c, 1);
+    int64_t *node = arg_out(c, (int64_t)sizeof *node, 1);
+    RUN(c, spar_fluid_get_travel(f->f, largest, node));
+}
+
 void do_spar_fluid_write_vtk(call *c) {
     live_fluid *f = arg_fluid(c);
     const char *path = arg_path(c, chance(c, 50) ? ".vtu" : ".vtp");

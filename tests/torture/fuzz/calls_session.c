@@ -177,7 +177,7 @@ void do_spar_session_set_option(call *c) {
                                        "advise.fidelity",      "advise.coupling", "coupling.columns",
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
                                        "coupling.motion_rtol", "coupling.target", "advise.horizon",
-                                       "advise.fluid_cost"};
+                                       "advise.fluid_cost",    "coupling.norm",   "coupling.patience"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -193,7 +193,9 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1e-6", "0.1"},
                                             {"0.01", "1", "1e-15"},
                                             {"0", "1", "0.01"},
-                                            {"0", "1", "1e-6"}};
+                                            {"0", "1", "1e-6"},
+                                            {"motion", "loads", "loads"},
+                                            {"1", "3", "1000000"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);
@@ -260,15 +262,11 @@ void do_spar_session_get_reproducible(call *c) {
 }
 
 void do_spar_session_get_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged",
-                                       "fluid.audit",
-                                       "coupling.columns",
-                                       "coupling.filter",
-                                       "advise.horizon",
-                                       "no.option",
-                                       "spar%n"};
+    static const char *const keys[] = {"coupling.unconverged", "fluid.audit",   "coupling.columns",
+                                       "coupling.filter",      "coupling.norm", "coupling.patience",
+                                       "advise.horizon",       "no.option",     "spar%n"};
     live_session *l = arg_session(c);
-    const char *key = odd(c) ? NULL : keys[below(c, 7)];
+    const char *key = odd(c) ? NULL : keys[below(c, 9)];
     int64_t n = arg_count(c, 0, 30);
     char *into = arg_out(c, length(n), 1);
     text(c, ", \"%s\"", key ? key : "NULL");
@@ -281,6 +279,12 @@ void do_spar_session_get_iterations(call *c) {
     int64_t n = arg_count(c, 0, 60);
     double *residual = OUT_OR_NULL(c, length(n)), *size = OUT_OR_NULL(c, length(n));
     RUN(c, spar_session_get_iterations(l->s, iterations, n, residual, size));
+}
+
+void do_spar_session_get_residual(call *c) {
+    live_session *l = arg_session(c);
+    double *residual = OUT_OR_NULL(c, 1), *size = OUT_OR_NULL(c, 1);
+    RUN(c, spar_session_get_residual(l->s, residual, size));
 }
 
 void do_spar_session_get_report(call *c) {

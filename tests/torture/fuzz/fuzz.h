@@ -66,6 +66,7 @@ enum {
     CALL(spar_fluid_get_interpolation, 20, FUZZ_PURE)                                                                  \
     CALL(spar_session_get_option, 40, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
+    CALL(spar_session_get_residual, 30, FUZZ_PURE)                                                                     \
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_time, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
@@ -139,6 +140,8 @@ enum {
     CALL(spar_fluid_push_forces_at, 120, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_push_forces_f32, 80, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_get_audit, 40, FUZZ_PURE)                                                                          \
+    CALL(spar_fluid_get_total, 40, FUZZ_PURE)                                                                          \
+    CALL(spar_fluid_get_travel, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_write_vtk, 10, FUZZ_PURE)                                                                          \
     CALL(spar_step_begin, 350, FUZZ_CHANGES)                                                                           \
     CALL(spar_step_solve, 350, FUZZ_CHANGES)                                                                           \

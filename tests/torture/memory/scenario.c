@@ -261,6 +261,8 @@ static void go(host *h, int steps) {
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
     static const char *const option[][2] = {{"coupling.unconverged", "accept"},
+                                            {"coupling.patience", "100"},
+                                            {"coupling.norm", "motion"},
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
                                             {"coupling.filter", "1e-5"},
@@ -363,9 +365,9 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
 static void act_step(void) {
     host h = {.fluids = 1, .members = 1, .at = 1};
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
-           report[SPAR_REPORT_COUNT], audit[8], all[6 * MANY], strain[12], force[12];
+           report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
-    int64_t step;
+    int64_t step, node;
     int done = 0, iteration;
     spar_session *s = h.session = begin_session();
     settings(s);
@@ -403,10 +405,13 @@ static void act_step(void) {
         note_member(b);
     }
     CALL(spar_session_get_iterations, s, &iteration, (int64_t)(sizeof residual / sizeof *residual), residual, size);
+    CALL(spar_session_get_residual, s, residual, size);
     CALL(spar_session_get_report, s, SPAR_REPORT_COUNT, report);
     NOTE(report);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
+    CALL(spar_fluid_get_total, h.fluid[0], NULL, total, total + 3);
+    CALL(spar_fluid_get_travel, h.fluid[0], total, &node);
     read_back(s, b, h.fluid[0]);
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);

@@ -157,7 +157,7 @@ static void look(const scene *c, double *out) {
 /* ---- the collective calls ---- */
 
 typedef struct arguments {
-    double dt, tolerance, ratio[2];
+    double dt, tolerance, ratio[2], point[3];
     int64_t steps, mode[2];
     int load_steps, compare, no_out, no_modes;
     const char *path;
@@ -216,6 +216,9 @@ static int make_reject(scene *c, const arguments *a) {
     (void)a;
     return spar_step_reject(c->session);
 }
+static int make_total(scene *c, const arguments *a) {
+    return spar_fluid_get_total(c->fluid, a->point, out, out + 3);
+}
 static int make_step(scene *c, const arguments *a) {
     return spar_step(c->session, a->dt, a->solve, c, NULL);
 }
@@ -265,6 +268,7 @@ enum { /* what a call has, as bits */
        SETTINGS = 512, /* compares them */
        NEEDS_SOLVE = 1024,
        DESCRIPTION = 2048,
+       POINT = 4096,
        TRIAL = DT | STEPS | CALLBACKS | OUT | SETTINGS
 };
 
@@ -284,6 +288,7 @@ static const struct call {
     {"spar_step_check", make_check, SOLVED, OUT},
     {"spar_step_accept", make_accept, CHECKED, 0},
     {"spar_step_reject", make_reject, CHECKED, 0},
+    {"spar_fluid_get_total", make_total, IDLE, POINT | SETTINGS},
     {"spar_step", make_step, IDLE, DT | SETTINGS},
     {"spar_session_solve_static", make_equilibrium, FIRST, LOAD_STEPS | SETTINGS},
     {"spar_session_save", make_save, IDLE, PATH | SETTINGS},
@@ -299,9 +304,9 @@ enum {
     DESTROY = 1,
     COMMIT = 2,
     BEGIN = 5,
-    STEP = 10,
-    STATIC = 11,
-    TRY = 14,
+    STEP = 11,
+    STATIC = 12,
+    TRY = 15,
     CALLS = sizeof calls / sizeof *calls
 };
 
@@ -509,6 +514,8 @@ static const struct spoiler {
     {"no modes", NULL, MODES, SPAR_ERR_ARGUMENT},
     {"a negative ratio", NULL, MODES, SPAR_ERR_ARGUMENT},
     {"no mu wanted", NULL, MODES, FINE},
+    {"another point", "point (y)", POINT, PEERS},
+    {"a point that is none", NULL, POINT, SPAR_ERR_ARGUMENT},
 };
 enum { SPOILERS = sizeof spoilers / sizeof *spoilers };
 
@@ -576,6 +583,12 @@ static void spoil(arguments *a, int k) {
         break;
     case 20:
         a->ratio[0] = -1;
+        break;
+    case 22:
+        a->point[1] = 1;
+        break;
+    case 23:
+        a->point[2] = NAN;
         break;
     default:
         a->no_out = 1;
@@ -676,6 +689,8 @@ static const struct setting {
     {"max_iterations of spar_session_set_coupling", NULL, NULL, NULL},
     {"omega", NULL, NULL, NULL},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
+    {"coupling.patience", "coupling.patience", "9", "3"},
+    {"coupling.norm", "coupling.norm", "loads", "motion"},
     {"coupling.columns", "coupling.columns", "7", "30"},
     {"coupling.reuse", "coupling.reuse", "2", "5"},
     {"coupling.filter", "coupling.filter", "0.1", "1e-4"},
