@@ -18,7 +18,7 @@ set(spar_test_environment
 
 # What tests share: tests/support/*.c, and any header under tests/ or src/.
 add_library(spar_test_base INTERFACE)
-target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests")
+target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests" "${PROJECT_SOURCE_DIR}/examples")
 target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
 target_compile_definitions(spar_test_base INTERFACE
   SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
@@ -26,15 +26,15 @@ target_compile_definitions(spar_test_base INTERFACE
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE
   "$<$<COMPILE_LANGUAGE:C>:SHELL:-include stdarg.h -include stddef.h -include stdint.h -include setjmp.h>")
-target_link_libraries(spar_test_base INTERFACE spar_flags $<TARGET_NAME_IF_EXISTS:spar_example_parts> "${SPAR_CMOCKA_LIBRARY}" spar::gsl)
+target_link_libraries(spar_test_base INTERFACE spar_flags "${SPAR_CMOCKA_LIBRARY}" spar::gsl)
 file(GLOB spar_support CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/support/*.c")
 if(spar_support)
   add_library(spar_test_support STATIC ${spar_support})
   target_link_libraries(spar_test_support PUBLIC spar_test_base spar_static)
   set(spar_test_libraries spar_test_support)
 endif()
-# The static library: tests may call what the shared one hides.
-list(APPEND spar_test_libraries spar_static spar_test_base)
+# The static library: tests may call what the shared one hides. The examples' parts call it too, so stand before it.
+list(APPEND spar_test_libraries $<TARGET_NAME_IF_EXISTS:spar_example_parts> spar_static spar_test_base)
 
 set(SPAR_TEST_LAUNCHER "" CACHE STRING "Program (a list) that runs the serial tests, such as valgrind")
 mark_as_advanced(SPAR_TEST_LAUNCHER)

@@ -32,6 +32,12 @@ if(TARGET test_rotor)
   spar_set_test(test_rotor unit 300 ${spar_example_environment})
 endif()
 
+if(TARGET test_turbine AND TARGET examples_turbine)
+  add_dependencies(test_turbine examples_turbine)
+  target_compile_definitions(test_turbine PRIVATE TURBINE_PROGRAM="$<TARGET_FILE:examples_turbine>")
+  spar_set_test(test_turbine unit 300 ${spar_example_environment})
+endif()
+
 # The sprung cylinder locks in at a reduced speed of 5 to 6; the floating body heaves on its water line, 8e6 kg on 5.05e5 N/m
 # (25.0 s), a little stiffer by its moorings.
 add_test(NAME example_sprung_cylinder COMMAND examples_sprung_cylinder)

@@ -662,16 +662,55 @@ static void test_nothing_holds(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A static solution holds a pendulum by its driven hinge, at 1 rad from its hang; let go by spar_joint_set_driven, and
+   a second body hung from it, both swing: theta'' of the first is that of a fresh scene that never was at rest. */
+static void let_go(int held_first, double rate[6]) {
+    const double hang[3] = {sin(1), 0, -cos(1)}, J[3] = {0.1, 0.1, 0.1};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
+    spar_member *upper = add_body(s, "upper", origin, 2, hang, J), *lower = add_body(s, "lower", hang, 1, hang, J);
+    spar_joint *hinge = add_joint(s, "hinge", upper, 0, NULL, 0, SPAR_FREE_RY, origin);
+    if (held_first) {
+        OK(s, spar_joint_set_driven(hinge, SPAR_FREE_RY));
+        OK(s, spar_member_solve_static(upper, 1));
+        OK(s, spar_joint_set_driven(hinge, 0));
+    }
+    (void)add_joint(s, "elbow", lower, 0, upper, 0, SPAR_FREE_RY, hang);
+    for (int i = 0; i < 50; i++) {
+        OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+    }
+    OK(s, spar_joint_get_motion(hinge, NULL, rate));
+    spar_session_destroy(&s);
+}
+
+static void test_described_after_rest(void **state) {
+    (void)state;
+    double fresh[6], again[6];
+    let_go(0, fresh);
+    let_go(1, again);
+    assert_true(fabs(fresh[4]) > 1);
+    NEAR(again[4], fresh[4], 1e-11);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_double_pendulum),
-        cmocka_unit_test(test_weld),          cmocka_unit_test(test_springs),
-        cmocka_unit_test(test_top),           cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_parallelogram), cmocka_unit_test(test_slider_crank),
-        cmocka_unit_test(test_rope),          cmocka_unit_test(test_rod),
-        cmocka_unit_test(test_cart),          cmocka_unit_test(test_sprung_at_rest),
-        cmocka_unit_test(test_weld_at_rest),  cmocka_unit_test(test_nothing_holds),
-        cmocka_unit_test(test_lee),           cmocka_unit_test(test_rigid_beam),
+        cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_double_pendulum),
+        cmocka_unit_test(test_weld),
+        cmocka_unit_test(test_springs),
+        cmocka_unit_test(test_top),
+        cmocka_unit_test(test_chain),
+        cmocka_unit_test(test_parallelogram),
+        cmocka_unit_test(test_slider_crank),
+        cmocka_unit_test(test_rope),
+        cmocka_unit_test(test_rod),
+        cmocka_unit_test(test_cart),
+        cmocka_unit_test(test_sprung_at_rest),
+        cmocka_unit_test(test_weld_at_rest),
+        cmocka_unit_test(test_nothing_holds),
+        cmocka_unit_test(test_lee),
+        cmocka_unit_test(test_rigid_beam),
+        cmocka_unit_test(test_described_after_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
