@@ -425,7 +425,8 @@ SPAR_API int spar_member_get_fidelity(const spar_member *member, int *kind, int6
      x0[3]: in, m; v0[3]: in, m/s; omega[3]: in, rad/s; each NULL: 0 */
 SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                               const double omega[3]);
-/* rank: in, who solves the member. Default: spread over the ranks in order of creation. Local. */
+/* rank: in, who solves the member. Default: spread over the ranks in order of creation; members that joints tie are
+   solved by one rank, at the first step the one with least to do, unless one of them is given an owner here. Local. */
 SPAR_API int spar_member_set_owner(spar_member *member, int rank);
 /* rank: out, who solves it. Local. */
 SPAR_API int spar_member_get_owner(const spar_member *member, int *rank);
@@ -556,14 +557,14 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    six motions, of a relative to b, each held, free, driven, or on a spring and damper: displacements x, y, z of a's end
    in b's axes, and rotations. These are, to first order, turns about x, y, z; of a hinge (one rotation free) the angle,
    which counts its turns, and how far a's axis leaves b's; where more are free the rotation vector, below half a turn.
-   Members that joints tie are solved together, as one system, on one rank; members without joints are solved as if
-   there were none. Constraints hold in place and velocity at the end of every step, whatever dt is. A hold that follows
-   from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
+   Members that joints tie are solved together, as one system, on one rank (spar_member_set_owner); members without
+   joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
+   is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
-   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, several
-   ranks, save, trials and modes answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a
-   member is tied to; where nothing holds an assembly, the message names the motion that is free.
-   spar_member_get_work leaves out what joints do. */
+   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, save, trials
+   and modes answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
+   where nothing holds an assembly, the message names the motion that is free. spar_member_get_work leaves out what
+   joints do. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied

@@ -43,7 +43,7 @@ struct spar_session {
     spar_joint *joints;                /* list, in order of creation */
     struct spari_assembly *assemblies; /* list: members that are solved as one */
     int joints_stale;                  /* joints were described since the assemblies were made */
-    int member_count;
+    int member_count, joint_count;
 
     double gravity[3];
     double rho_inf;

@@ -320,6 +320,7 @@ int spar_member_set_owner(spar_member *member, int rank) {
     SPARI_REQUIRE(member->session, rank >= 0 && rank < size, SPAR_ERR_ARGUMENT,
                   "%s: '%s': there is no rank %d; the session has %d", __func__, member->name, rank, size);
     member->owner = rank;
+    member->owner_given = 1;
     return SPAR_OK;
 }
 

@@ -2,7 +2,6 @@
 #include "joint.h"
 
 #include "../base/quiet.h"
-#include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "edge.h"
 
@@ -41,8 +40,6 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
                       "%s: '%s' would tie node %lld of '%s' to itself; give two nodes, or b NULL for the ground", call,
                       name, (long long)node_a, a->name);
     }
-    SPARI_REQUIRE(s, spari_comm_size(s->comm) == 1, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s': joints on several ranks are not there in this release", call, name);
     spar_joint **end = &s->joints;
     for (; *end; end = &(*end)->next) {
         SPARI_REQUIRE(s, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
@@ -59,6 +56,7 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     j->member[0] = a, j->member[1] = b;
     j->node[0] = node_a, j->node[1] = b ? node_b : 0;
     j->axes[0] = 1;
+    s->joint_count++;
     *end = j;
     *out = j;
     s->joints_stale = 1;
@@ -299,6 +297,37 @@ int spari_member_is_tied(const spar_member *m) {
         }
     }
     return 0;
+}
+
+static int64_t place_in_session(const spar_member *member) {
+    int64_t place = 0;
+    for (const spar_member *m = member ? member->session->members : NULL; m && m != member; m = m->next) {
+        place++;
+    }
+    return member ? place : -1;
+}
+
+uint64_t spari_joint_hash(const spar_joint *j) {
+    const int64_t numbers[] = {place_in_session(j->member[0]),
+                               place_in_session(j->member[1]),
+                               j->node[0],
+                               j->node[1],
+                               j->tie.free,
+                               j->tie.line,
+                               j->driven,
+                               j->frame_given,
+                               j->tie.line && j->sprung,
+                               j->slack};
+    uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->name, strlen(j->name));
+    h = spari_hash_bytes(h, numbers, sizeof numbers);
+    h = spari_hash_bytes(h, j->place, sizeof j->place);
+    h = spari_hash_bytes(h, j->frame_given < 2 ? (const double[4]){1} : j->axes, sizeof j->axes);
+    h = spari_hash_bytes(h, j->point, sizeof j->point);
+    if (j->tie.line) { /* a joint's springs may be given anew at any time */
+        const double spring[3] = {j->stiffness[0], j->damping[0], j->length};
+        h = spari_hash_bytes(h, spring, sizeof spring);
+    }
+    return h;
 }
 
 int spari_joint_given(const spar_joint *j) {

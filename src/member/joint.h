@@ -50,6 +50,8 @@ struct spar_joint {
 int spari_member_unique(const spar_member *member, int64_t node);
 /* Whether a joint ties it to something. */
 int spari_member_is_tied(const spar_member *member);
+/* The description as one number: all that is said of it before the first step. */
+uint64_t spari_joint_hash(const spar_joint *joint);
 /* Mask of the motions that a joint gives: those not free and the driven ones. */
 int spari_joint_given(const spar_joint *joint);
 /* Loads on the free motions, from springs, dampers, and `factor` of preloads and the host's: load[k] of motions that

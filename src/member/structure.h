@@ -39,6 +39,7 @@ struct spar_member {
     spar_member *next; /* in order of creation, the same on every rank */
     char *name;
     int kind, external, root, owner, committed;
+    int owner_given;                  /* by the host: else joints may move it to another rank */
     int effects;                      /* SPAR_EFFECT_*: asked for; after commit what is in force */
     int effects_given;                /* 0: besides these what the description implies */
     int effects_asked;                /* as given, whatever of it serves the fidelity of now */

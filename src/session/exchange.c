@@ -5,6 +5,7 @@
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/structure.h"
+#include "../solve/assembly.h"
 #include "own.h"
 
 #include <stdlib.h>
@@ -19,15 +20,35 @@ static int64_t block_size(const spar_member *m) {
     return m->body ? 19 * (int64_t)m->body->unique + is_damped(m) : 0;
 }
 
+/* What a rank tells the others, with its status. */
+static int64_t block_of_rank(const spar_session *s, int rank) {
+    int64_t n = 1;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        n += m->owner == rank ? block_size(m) : 0;
+    }
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        n += spari_assembly_owner(a) == rank ? spari_assembly_share_size(a) : 0;
+    }
+    return n;
+}
+
+/* Members, and what joints tie them to whom, may have come since the blocks were laid out. */
+static int fits_blocks(const spar_session *s) {
+    const int64_t *first = s->own->first;
+    int fits = 1;
+    for (int r = 0; r < spari_comm_size(s->comm) && first; r++) {
+        fits = fits && first[r + 1] - first[r] == block_of_rank(s, r);
+    }
+    return fits;
+}
+
 int spari_session_seal(spar_session *s, int status) {
     int ranks = spari_comm_size(s->comm);
-    int64_t count = 0, down = ranks; /* a status of each */
+    int64_t count = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         count += m->committed ? 6 * m->nodes : 0;
-        down += block_size(m);
     }
-    if (status == SPAR_OK &&
-        (!s->own->pack || s->own->pack_count != count || (s->own->first && s->own->first[ranks] != down))) {
+    if (status == SPAR_OK && (!s->own->pack || s->own->pack_count != count || !fits_blocks(s))) {
         free(s->own->pack);
         free(s->own->first);
         free(s->own->motion);
@@ -40,10 +61,7 @@ int spari_session_seal(spar_session *s, int status) {
             s->own->first = spari_zalloc(ranks + 1, sizeof *s->own->first);
             ok = s->own->first != NULL;
             for (int r = 0; r < ranks && ok; r++) {
-                s->own->first[r + 1] = s->own->first[r] + 1; /* the status */
-                for (const spar_member *m = s->members; m; m = m->next) {
-                    s->own->first[r + 1] += m->owner == r ? block_size(m) : 0;
-                }
+                s->own->first[r + 1] = s->own->first[r] + block_of_rank(s, r);
             }
             ok = ok && (s->own->motion = spari_zalloc(s->own->first[ranks], sizeof *s->own->motion));
         }
@@ -109,28 +127,49 @@ static void unpack_member(spar_member *m, const double *from) {
     m->dissipated_step = is_damped(m) ? from[19 * n] : 0;
 }
 
-int spari_session_share_motion(spar_session *s, int status) {
-    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
-    if (ranks == 1) {
-        return status;
-    }
-    double *at = s->own->motion + s->own->first[rank];
-    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+/* What this rank has found, into its block. */
+static void pack_own(spar_session *s, int rank, double *at) {
+    for (spar_member *m = s->members; m; m = m->next) {
         if (m->owner == rank && m->body) {
             pack_member(m, at);
             at += block_size(m);
         }
     }
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        if (spari_assembly_owner(a) == rank) {
+            spari_assembly_pack(a, at);
+            at += spari_assembly_share_size(a);
+        }
+    }
+}
+
+static void unpack_peer(spar_session *s, int peer, const double *at) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (m->owner == peer && m->body) {
+            unpack_member(m, at);
+            at += block_size(m);
+        }
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        if (spari_assembly_owner(a) == peer) {
+            spari_assembly_unpack(a, at);
+            at += spari_assembly_share_size(a);
+        }
+    }
+}
+
+int spari_session_share_motion(spar_session *s, int status) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    if (ranks == 1) {
+        return status;
+    }
+    if (status == SPAR_OK) {
+        pack_own(s, rank, s->own->motion + s->own->first[rank]);
+    }
     SPARI_TRY(spari_comm_share(s->comm, s->own->motion, s->own->first, status, s->message, sizeof s->message));
     for (int r = 0; r < ranks; r++) {
-        at = s->own->motion + s->own->first[r];
-        for (spar_member *m = s->members; m; m = m->next) {
-            if (m->owner == r && m->body) {
-                if (r != rank) {
-                    unpack_member(m, at);
-                }
-                at += block_size(m);
-            }
+        if (r != rank) {
+            unpack_peer(s, r, s->own->motion + s->own->first[r]);
         }
     }
     return SPAR_OK;

@@ -97,6 +97,7 @@ static const spari_setting settings[] = {
     OPTION_REAL("advise.horizon", horizon, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
     OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
     STATE("numbers of members", member_count),
+    STATE("numbers of joints", joint_count),
     STATE("calls that set the coupling", coupling_stale),
     STATE("calls of spar_session_set_predictor", past),
 };

@@ -140,6 +140,9 @@ static void end_member_static(spar_member *member, int status, const double *asi
     }
     if (status != SPAR_OK) {
         put_back(member->session, member, aside);
+        for (spari_assembly *a = member->session->assemblies; a; a = spari_assembly_next(a)) {
+            spari_assembly_leave(a);
+        }
     } else if (member->assembly) {
         spari_assembly_settle(member->assembly);
     }
@@ -152,7 +155,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_member_enter(member, __func__, alike, 1, check_member_static(member, __func__, load_steps)));
     double *aside = NULL;
-    int status = s->joints ? spari_enter(s, "joints", spari_assemblies_make(s)) : SPAR_OK;
+    int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, member, &aside)) : status;
     if (status == SPAR_OK) {
         for (spar_member *m = s->members; m; m = m->next) {
@@ -444,7 +447,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, load_steps)));
     spari_coupling *of_steps = NULL;
     double *aside = NULL;
-    int status = s->joints ? spari_enter(s, "joints", spari_assemblies_make(s)) : SPAR_OK;
+    int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;
     status = status == SPAR_OK ? prepare_coupling(s, &of_steps) : status;
     if (status != SPAR_OK) {

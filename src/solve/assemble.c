@@ -1,16 +1,18 @@
 /* Which members joints tie together: assemblies found, sized and released. */
 #include "../base/scene.h"
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 #include "assembly.h"
 #include "fidelity.h"
+#include "life.h"
 #include "tied.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Whether a member's motion is unknown in an assembly. */
 static int is_part(const spar_member *m) {
-    return m && m->row->solver && spari_fidelity_is_here(m);
+    return m && m->row->solver;
 }
 
 /* ---- one assembly ---- */
@@ -62,7 +64,7 @@ static void assembly_free(spari_assembly *a) {
 }
 
 static void take_member(spari_assembly *a, spar_member *m) {
-    a->limb[a->limbs++] = (spari_limb){.member = m, .solver = m->row->solver(m)};
+    a->limb[a->limbs++] = (spari_limb){.member = m, .owner_before = m->owner};
     m->assembly = a;
 }
 
@@ -104,11 +106,9 @@ static void look_at_reference(spari_link *l) {
     spari_tie_motion(&j->tie, &l->place[0], &l->place[1], z, l->B);
 }
 
-static int assembly_create(spar_session *s, spar_member *first) {
-    int joints = 0;
-    for (const spar_joint *j = s->joints; j; j = j->next) {
-        joints++;
-    }
+/* Its members and joints, in the order in which joints reach them. first NULL: of `only`, whose nodes both move as they
+   are told. */
+static int assembly_create(spar_session *s, spar_member *first, spar_joint *only) {
     spari_assembly *a = spari_zalloc(1, sizeof *a);
     if (!a) {
         return SPAR_ERR_MEMORY;
@@ -117,22 +117,34 @@ static int assembly_create(spar_session *s, spar_member *first) {
     a->next = s->assemblies;
     s->assemblies = a;
     a->limb = spari_zalloc(s->member_count, sizeof *a->limb);
-    a->link = spari_zalloc(joints, sizeof *a->link);
+    a->link = spari_zalloc(only ? 1 : s->joint_count, sizeof *a->link);
     if (!a->limb || !a->link) {
         return SPAR_ERR_MEMORY;
     }
-    gather(a, first);
-    for (int i = 0; i < a->limbs; i++) {
-        SPARI_TRY(condense(a->limb[i].member, a->limb[i].solver));
+    if (first) {
+        gather(a, first);
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
+    for (spar_joint *j = only ? only : s->joints; j; j = only ? NULL : j->next) {
         spari_limb *of[2] = {part_of(a, j->member[0]), part_of(a, j->member[1])};
-        if (of[0] || of[1]) {
+        if (of[0] || of[1] || only) {
             spari_link *l = a->link + a->links++;
             l->joint = j;
             l->limb[0] = of[0], l->limb[1] = of[1];
             j->held = spari_joint_given(j);
         }
+    }
+    return SPAR_OK;
+}
+
+/* What solves it, on its owner. */
+static int make_system(spari_assembly *a) {
+    a->here = a->owner == spari_comm_rank(a->session->comm) || a->limbs == 0;
+    if (!a->here || a->limbs == 0) {
+        return SPAR_OK;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].solver = a->limb[i].member->row->solver(a->limb[i].member);
+        SPARI_TRY(condense(a->limb[i].member, a->limb[i].solver));
     }
     spari_tied_place(a);
     for (int i = 0; i < a->links; i++) {
@@ -142,6 +154,101 @@ static int assembly_create(spar_session *s, spar_member *first) {
     spari_tied_place(a);
     return spari_tied_room(a);
 }
+
+/* ---- who solves it ---- */
+
+/* What a member takes to solve: enough to spread assemblies over the ranks. */
+static double cost_of(const spar_member *m) {
+    double nodes = m->body && !m->row->whole ? m->body->unique : 1;
+    return !m->row->solved ? 0 : m->row->takes_modes ? (double)m->modes / 6 : nodes * m->per_element;
+}
+
+static double cost_of_all(const spari_assembly *a) {
+    double sum = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        sum += cost_of(a->limb[i].member);
+    }
+    return sum;
+}
+
+/* The owner that the host has given its members; -1: none. */
+static int find_given_owner(spari_assembly *a) {
+    const spar_member *by = NULL;
+    a->owner = -1;
+    for (int i = 0; i < a->limbs; i++) {
+        const spar_member *m = a->limb[i].member;
+        if (!m->owner_given) {
+            continue;
+        }
+        SPARI_REQUIRE(a->session, !by || by->owner == m->owner, SPAR_ERR_ARGUMENT,
+                      "members '%s' and '%s' are tied by joints, and their owners are ranks %d and %d: they are solved "
+                      "on one; give them one owner, or none",
+                      by->name, m->name, by->owner, m->owner);
+        by = m;
+        a->owner = m->owner;
+    }
+    return SPAR_OK;
+}
+
+/* The dearest one that has no owner yet; NULL: all have. */
+static spari_assembly *dearest_left(const spar_session *s) {
+    spari_assembly *found = NULL;
+    for (spari_assembly *a = s->assemblies; a; a = a->next) {
+        if (a->owner < 0 && (!found || cost_of_all(a) > cost_of_all(found))) {
+            found = a;
+        }
+    }
+    return found;
+}
+
+/* Those that the host gives no owner go to the rank that has least to do, the dearest first; alike on all ranks. */
+static int choose_owners(spar_session *s) {
+    int ranks = spari_comm_size(s->comm);
+    double *busy = spari_zalloc(ranks, sizeof *busy);
+    int status = busy ? SPAR_OK : SPAR_ERR_MEMORY;
+    for (const spar_member *m = s->members; m && busy; m = m->next) {
+        busy[m->owner] += m->committed && !m->assembly ? cost_of(m) : 0;
+    }
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
+        status = find_given_owner(a);
+        if (status == SPAR_OK && a->owner >= 0) {
+            busy[a->owner] += cost_of_all(a);
+        }
+    }
+    for (spari_assembly *a = NULL; status == SPAR_OK && (a = dearest_left(s)) != NULL;) {
+        a->owner = 0;
+        for (int r = 1; r < ranks; r++) {
+            a->owner = busy[r] < busy[a->owner] ? r : a->owner;
+        }
+        busy[a->owner] += cost_of_all(a);
+    }
+    free(busy);
+    return status;
+}
+
+/* Its members' solvers on its owner; what they had waits. */
+static int move_members(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->member->owner != a->owner) {
+            p->moved = 1;
+            SPARI_TRY(spari_member_move(p->member, a->owner, &p->solution_before));
+        }
+    }
+    return SPAR_OK;
+}
+
+static void end_moves(spari_assembly *a, int back) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->moved) {
+            spari_member_end_move(p->member, p->owner_before, p->solution_before, back);
+        }
+        p->moved = 0;
+    }
+}
+
+/* ---- all of them ---- */
 
 static int check_members(const spar_joint *j) {
     for (int side = 0; side < 2; side++) {
@@ -153,6 +260,11 @@ static int check_members(const spar_joint *j) {
                       "release",
                       j->name, m->name);
     }
+    SPARI_REQUIRE(
+        j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_given(j), SPAR_ERR_ARGUMENT,
+        "joint '%s' holds or drives motions of nodes that all move as they are told ('%s'); leave its motions "
+        "free, with springs for what lies between them",
+        j->name, j->member[0]->name);
     return SPAR_OK;
 }
 
@@ -160,7 +272,7 @@ static int check_members(const spar_joint *j) {
 static void lead_to_bodies(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
-        if (is_part(m) && m->row->solver(m)->n == 1) {
+        if (is_part(m) && m->row->whole) {
             j->unique[side] = 0;
             j->seat[side] = 0;
             for (int k = 0; k < 3; k++) {
@@ -170,26 +282,65 @@ static void lead_to_bodies(spar_joint *j) {
     }
 }
 
-int spari_assemblies_make(spar_session *s) {
-    int status = SPAR_OK;
-    if (!s->joints_stale) {
-        return SPAR_OK;
+static int gather_all(spar_session *s) {
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        int parts = 0;
+        for (int side = 0; side < 2; side++) {
+            spar_member *m = j->member[side];
+            parts += is_part(m);
+            if (is_part(m) && !m->assembly) {
+                SPARI_TRY(assembly_create(s, m, NULL));
+            }
+        }
+        if (parts == 0) {
+            SPARI_TRY(assembly_create(s, NULL, j));
+        }
     }
-    spari_assemblies_free(s);
+    return SPAR_OK;
+}
+
+/* This rank's part. */
+static int make_all(spar_session *s) {
     for (spar_joint *j = s->joints; j; j = j->next) {
         SPARI_TRY(check_members(j));
         SPARI_TRY(spari_joint_place(j));
         lead_to_bodies(j);
     }
-    for (spar_joint *j = s->joints; j && status == SPAR_OK; j = j->next) {
-        for (int side = 0; side < 2 && status == SPAR_OK; side++) {
-            spar_member *m = j->member[side];
-            status = is_part(m) && !m->assembly ? assembly_create(s, m) : SPAR_OK;
-        }
+    int status = gather_all(s);
+    status = status == SPAR_OK ? choose_owners(s) : status;
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
+        status = move_members(a);
+        status = status == SPAR_OK ? make_system(a) : status;
+    }
+    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the members that joints tie together");
+    return status;
+}
+
+/* Whether all ranks have made theirs, of joints that are described alike. */
+static int agree_on_joints(const spar_session *s, const char *call, int status) {
+    char what[SPARI_MESSAGE_SIZE / 2];
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        const spari_alike alike[] = {spari_hash("descriptions of it", spari_joint_hash(j))};
+        (void)snprintf(what, sizeof what, "%s: joint '%s'", call, j->name);
+        status = spari_enter_alike(j->session, what, alike, 1, status);
+        SPARI_TRY(status);
+    }
+    return SPAR_OK;
+}
+
+int spari_assemblies_make(spar_session *s, const char *call) {
+    if (!s->joints_stale) {
+        return SPAR_OK;
+    }
+    spari_assemblies_free(s);
+    s->joints_stale = 1;
+    int status = agree_on_joints(s, call, make_all(s));
+    for (spari_assembly *a = s->assemblies; a; a = a->next) {
+        end_moves(a, status != SPAR_OK);
     }
     if (status != SPAR_OK) {
         spari_assemblies_free(s);
-        return spari_fail(s, status, "no memory for the members that joints tie together");
+        return status;
     }
     s->joints_stale = 0;
     return SPAR_OK;

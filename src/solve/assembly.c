@@ -411,7 +411,28 @@ static int publish_all(spari_assembly *a, double dt) {
     return SPAR_OK;
 }
 
+static void begin_links(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].joint->after = a->link[i].joint->now;
+    }
+}
+
+/* Joints whose nodes all move as they are told: their springs. */
+static void look_at_links(spari_assembly *a, double dt) {
+    begin_links(a);
+    for (int i = 0; i < a->links; i++) {
+        spari_link_find(a->link + i, 1, dt, 1);
+    }
+}
+
 int spari_assembly_advance(spari_assembly *a, double dt) {
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    if (a->limbs == 0) {
+        look_at_links(a, dt);
+        return SPAR_OK;
+    }
     int A = a->session->substeps, started = 1;
     for (int i = 0; i < a->limbs; i++) {
         spari_limb *p = a->limb + i;
@@ -420,9 +441,7 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
         p->scheme = spari_scheme_of(p->member, s->body->D != NULL, dt / A);
         started = started && s->steps.started;
     }
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].joint->after = a->link[i].joint->now;
-    }
+    begin_links(a);
     if (!started && !a->limb[0].scheme.still) {
         SPARI_TRY(start_all(a));
     }

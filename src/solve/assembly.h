@@ -8,11 +8,21 @@
 
 #include "../member/joint.h"
 
-/* Finds the assemblies of the session's joints; a status and a message. Before the first step. */
-int spari_assemblies_make(spar_session *session);
+/* Finds the assemblies of the session's joints, and who solves each: the rank that the host has given one of its
+   members to, or else the one with least to do; members move there. On all ranks or none; a status and a message.
+   Before the first step, collective where there are joints; where they are made already it does nothing. call: in whose
+   name. */
+int spari_assemblies_make(spar_session *session, const char *call);
 void spari_assemblies_free(spar_session *session);
 spari_assembly *spari_assembly_next(const spari_assembly *assembly);
-/* From t^n to t^n + dt: all of its members. */
+/* The rank that solves it. */
+int spari_assembly_owner(const spari_assembly *assembly);
+/* The joints' motions after, which the owner has found, as so many doubles. */
+int64_t spari_assembly_share_size(const spari_assembly *assembly);
+void spari_assembly_pack(const spari_assembly *assembly, double *to);
+void spari_assembly_unpack(spari_assembly *assembly, const double *from);
+/* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
+   rank. */
 int spari_assembly_advance(spari_assembly *assembly, double dt);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
    [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that

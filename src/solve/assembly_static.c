@@ -201,8 +201,21 @@ static int refuse_rest(spari_assembly *a, double done, const char *text) {
                       a->link[0].joint->name, done, text[0] ? ": nothing holds " : "", text);
 }
 
+/* Joints whose nodes all move as they are told: their springs. */
+static int look_at_rest(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        j->after = j->now;
+        spari_link_find(a->link + i, 1, 1, 1);
+    }
+    return SPAR_OK;
+}
+
 int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
     char text[240] = "";
+    if (!a->here || a->limbs == 0) {
+        return a->here ? look_at_rest(a) : SPAR_OK;
+    }
     begin_rest(a, fluid, onward);
     double done = onward ? follow_loads(a, 1, text, sizeof text) : 0;
     if (done < 1) {

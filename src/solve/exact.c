@@ -14,7 +14,8 @@
 /* ---- life and time ---- */
 
 static int exact_create(spar_member *m) {
-    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) && spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY)) {
+    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->body->linear[0];
+    if (linear && spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY)) {
         return SPAR_ERR_MEMORY;
     }
     if (spari_fidelity_is_here(m)) {

@@ -14,6 +14,7 @@ typedef struct spari_fidelity {
     int solved;      /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
     int massive;     /* the body has its mass whatever effects are in force */
     int takes_modes; /* it is asked for with a number of modes */
+    int whole;       /* one body carries all of its nodes, from the root */
     spari_view seen;
 
     /* every rank: what of the description it cannot serve; before anything is built */

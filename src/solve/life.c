@@ -198,6 +198,26 @@ void spari_member_release(spar_member *m) {
     m->body = NULL;
 }
 
+int spari_member_move(spar_member *m, int owner, void **before) {
+    *before = m->solution;
+    m->solution = NULL;
+    m->owner = owner;
+    SPARI_TRY(m->row->create(m));
+    restart_solution(m);
+    return SPAR_OK;
+}
+
+void spari_member_end_move(spar_member *m, int owner, void *before, int back) {
+    void *not_wanted = back ? m->solution : before;
+    if (not_wanted) {
+        m->row->free(not_wanted);
+    }
+    if (back) {
+        m->solution = before;
+        m->owner = owner;
+    }
+}
+
 void spari_member_disown(spar_member *m) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
@@ -285,8 +305,9 @@ int spar_member_commit(spar_member *member) {
     }
     const spari_alike alike[] = {spari_whole("places of it in the order of creation", place_of(member)),
                                  spari_whole("owners of it", member->owner),
+                                 spari_given("owners of it, given or not", member->owner_given),
                                  spari_hash("descriptions of it", spari_member_hash(member))};
-    int agreed = spari_member_enter(member, __func__, alike, 3, status);
+    int agreed = spari_member_enter(member, __func__, alike, 4, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
             spari_member_release(member);

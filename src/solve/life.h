@@ -10,6 +10,10 @@ void spari_member_free(spar_member *member);
 int spari_member_build(spar_member *m);
 /* Frees it; the description stays. */
 void spari_member_release(spar_member *m);
+/* Another rank solves a committed member from now on, from the motion now; *before: what this one kept of it. A status
+   without a message. Then the end of it: what is not wanted any more goes. back: it stays with its owner of before. */
+int spari_member_move(spar_member *m, int owner, void **before);
+void spari_member_end_move(spar_member *m, int owner, void *before, int back);
 /* The same without freeing: a copy of the struct has it. */
 void spari_member_disown(spar_member *m);
 /* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */

@@ -280,6 +280,7 @@ static void rigid_load(spar_member *m, const double *state) {
 const spari_fidelity spari_fidelity_rigid = {
     .moves = 1,
     .solved = 1,
+    .whole = 1,
     .seen = SPARI_SEEN_CARRIED,
     .check = rigid_check,
     .effects = rigid_effects,

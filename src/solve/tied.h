@@ -11,13 +11,15 @@
 /* A member of an assembly that is solved for, and its substep. */
 typedef struct spari_limb {
     spar_member *member;
-    spari_solver *solver;     /* of its body */
+    spari_solver *solver;     /* of its body; NULL: another rank solves it */
     int at;                   /* where the unknowns of its ends begin in the system */
     const spari_state *state; /* the motion that the links see */
     spari_scheme scheme;
     spari_ends ends;
     spari_pose root, before; /* a driven root at the substep's ends */
     double turn[4], power;
+    int moved, owner_before; /* while it is made: the rank that had it, and what that kept of it */
+    void *solution_before;
 } spari_limb;
 
 /* A joint of an assembly, as it stands in the system. */
@@ -37,9 +39,10 @@ typedef struct spari_link {
 struct spari_assembly {
     spar_session *session;
     spari_assembly *next;
+    int owner, here; /* the rank that solves it; whether this one does, or all do: where there are no limbs */
     int limbs, links;
     spari_limb *limb;
-    spari_link *link;
+    spari_link *link; /* on every rank; what follows is the owner's */
     int n, band, factored;
     double scale; /* of the constraints' rows */
     gsl_matrix *A;
