@@ -14,7 +14,8 @@
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_line_create and
 ! spar_line_set_spring joint%create_line and %set_line_spring; a joint to the ground is created without b. spar_status_text,
-! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names.
+! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names. A session has one
+! variable, which owns it: spar_member_get_session is left to hosts that use spar_c.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -62,6 +63,7 @@ module spar
   public :: SPAR_MAP_FAR, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
   public :: SPAR_EFFECT_WORK, SPAR_EFFECT_DEFAULT
+  public :: SPAR_PHASE_START, SPAR_PHASE_BETWEEN, SPAR_PHASE_BEGUN, SPAR_PHASE_SOLVED, SPAR_PHASE_CHECKED
   public :: SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, SPAR_AERO_MOMENT
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
@@ -101,6 +103,8 @@ module spar
     procedure :: set_option => session_set_option
     procedure :: set_log => session_set_log
     procedure :: get_time => session_get_time
+    procedure :: get_phase => session_get_phase
+    procedure :: sum => session_sum
     procedure :: get_iterations => session_get_iterations
     procedure :: get_residual => session_get_residual
     procedure :: get_report => session_get_report
@@ -160,6 +164,7 @@ module spar
     procedure :: commit => member_commit
     procedure, private :: member_get_count_64, member_get_count_32
     generic :: get_count => member_get_count_64, member_get_count_32
+    procedure :: get_name => member_get_name
     procedure :: get_reference => member_get_reference
     procedure :: get_motion => member_get_motion
     procedure :: set_motion => member_set_motion
@@ -226,6 +231,8 @@ module spar
     procedure :: map => fluid_map
     procedure, private :: fluid_get_count_64, fluid_get_count_32
     generic :: get_count => fluid_get_count_64, fluid_get_count_32
+    procedure :: get_member => fluid_get_member
+    procedure :: get_name => fluid_get_name
     procedure :: get_flag_count => fluid_get_flag_count
     procedure :: get_map => fluid_get_map
     procedure :: get_feet => fluid_get_feet
@@ -238,6 +245,7 @@ module spar
     procedure :: pull_forces => fluid_pull_forces
     procedure :: push_forces => fluid_push_forces
     procedure :: push_forces_at => fluid_push_forces_at
+    procedure :: fail => fluid_fail
     procedure :: pull_motion_f32 => fluid_pull_motion_f32
     procedure :: pull_sections_f32 => fluid_pull_sections_f32
     procedure :: pull_forces_f32 => fluid_pull_forces_f32
@@ -428,6 +436,29 @@ contains
 
     call copy_text(spar_session_message(self%handle), text)
   end function session_message
+
+  subroutine session_get_phase(self, phase, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int), intent(inout) :: phase
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_phase(self%handle, phase), self%handle, stat, errmsg)
+  end subroutine session_get_phase
+
+  ! status: what this rank has failed with, left out: nothing.
+  subroutine session_sum(self, x, status, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: x(:)
+    integer(c_int), intent(in), optional :: status
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: own
+
+    own = SPAR_OK
+    if (present(status)) own = status
+    call finish(spar_session_sum(self%handle, own, size(x, kind=c_int64_t), x), self%handle, stat, errmsg)
+  end subroutine session_sum
 
   subroutine session_set_gravity(self, g, stat, errmsg)
     class(spar_session), intent(inout) :: self
@@ -1129,6 +1160,13 @@ contains
     if (status == SPAR_OK) call member_take(self, made, session%handle, name, elements)
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_beam
+
+  function member_get_name(self) result(name)
+    class(spar_member), intent(in) :: self
+    character(:), allocatable :: name
+
+    call copy_text(spar_member_get_name(self%handle), name)
+  end function member_get_name
 
   ! A view of the new member: whatever the variable viewed before stays where it is, in its session.
   subroutine member_take(self, handle, session, name, elements)
@@ -1832,6 +1870,42 @@ contains
     end if
     call finish(status, member%session, stat, errmsg)
   end subroutine fluid_create
+
+  ! A view of the member that the fluid was created for.
+  subroutine fluid_get_member(self, member, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    class(spar_member), intent(inout) :: member
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: found
+    character(:), allocatable :: name
+    integer(c_int) :: status
+
+    found = c_null_ptr
+    status = spar_fluid_get_member(self%handle, found)
+    if (status == SPAR_OK) then
+      call copy_text(spar_member_get_name(found), name)
+      call member_take(member, found, self%session, name, int(self%elements, c_int))
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_member
+
+  function fluid_get_name(self) result(name)
+    class(spar_fluid), intent(in) :: self
+    character(:), allocatable :: name
+
+    call copy_text(spar_fluid_get_name(self%handle), name)
+  end function fluid_get_name
+
+  subroutine fluid_fail(self, status, message, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: status
+    character(*), intent(in) :: message
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_fail(self%handle, status, c_text(message)), self%session, stat, errmsg)
+  end subroutine fluid_fail
 
   ! Takes the fluid out of its session, which must still be there.
   subroutine fluid_destroy(self)

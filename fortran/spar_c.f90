@@ -19,6 +19,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
       SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
       SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_COUNT = 8
+  integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, SPAR_PHASE_SOLVED = 3, &
+      SPAR_PHASE_CHECKED = 4
   integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
       SPAR_ROOT_DRIVEN = 3
@@ -174,6 +176,35 @@ module spar_c
       integer(c_int), intent(inout), optional :: iteration
       integer(c_int) :: status
     end function spar_session_get_time
+
+    function spar_session_get_phase(session, phase) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: phase
+      integer(c_int) :: status
+    end function spar_session_get_phase
+
+    function spar_session_sum(session, own, n, x) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: own
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: x(*)
+      integer(c_int) :: status
+    end function spar_session_sum
+
+    function spar_member_get_session(member, session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      type(c_ptr), intent(inout), optional :: session
+      integer(c_int) :: status
+    end function spar_member_get_session
+
+    function spar_member_get_name(member) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: member
+      type(c_ptr) :: text
+    end function spar_member_get_name
 
     function spar_session_get_gravity(session, g) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -725,6 +756,27 @@ module spar_c
       type(c_ptr), value :: fluid
       integer(c_int) :: status
     end function spar_fluid_map
+
+    function spar_fluid_get_member(fluid, member) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      type(c_ptr), intent(inout), optional :: member
+      integer(c_int) :: status
+    end function spar_fluid_get_member
+
+    function spar_fluid_get_name(fluid) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: fluid
+      type(c_ptr) :: text
+    end function spar_fluid_get_name
+
+    function spar_fluid_fail(fluid, failure, message) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: failure
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: status
+    end function spar_fluid_fail
 
     function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr

@@ -212,6 +212,30 @@ static void destroyed_on_one_rank(void **state) {
     }
 }
 
+/* Sums are the same bits everywhere; a rank that has failed is known to all, with its message, and no number changes.
+ */
+static void sums(void **state) {
+    (void)state;
+    scene c;
+    double x[3], sum[2] = {0};
+    create(&c);
+    for (int r = 0; r < size; r++) {
+        sum[0] += r + 1;
+        sum[1] += 0.5 * r;
+    }
+    x[0] = rank + 1, x[1] = 0.5 * rank, x[2] = 7;
+    OK(c.session, spar_session_sum(c.session, SPAR_OK, 2, x)); /* whole numbers and halves: no rounding */
+    assert_true(x[0] == sum[0] && x[1] == sum[1] && x[2] == 7);
+    int mine = last ? spar_fluid_set_force_nodes(c.fluid, -1, NULL) : SPAR_OK;
+    assert_int_equal(spar_session_sum(c.session, mine, 1, x), last       ? SPAR_ERR_ARGUMENT
+                                                              : size > 1 ? SPAR_ERR_PEER
+                                                                         : SPAR_OK);
+    assert_true(size == 1 || strstr(spar_session_message(c.session), "-1 nodes"));
+    assert_true(x[0] == sum[0]);
+    differs(&c, spar_session_sum(c.session, SPAR_OK, last ? 2 : 3, x), "n");
+    spar_session_destroy(&c.session);
+}
+
 static int calls_the_others(spar_session *s, double t, double step, int iteration, void *context) {
     if (last) {
         (void)spar_session_save(s, "never written");
@@ -252,6 +276,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(other_order),
         cmocka_unit_test(no_place),
         cmocka_unit_test(destroyed_on_one_rank),
+        cmocka_unit_test(sums),
         cmocka_unit_test(calls_from_callbacks),
     };
     spar_session *s = NULL;

@@ -467,7 +467,7 @@ static void test_all_or_none(void **state) {
     OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(spar_step(s.session, 0.05, NULL, NULL, NULL));
     OK(spar_fluid_get_audit(s.fluid[0], 8, before[0]));
-    REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 2, s.wind[0], 1.0), "spar_aero_solve: fluid");
+    REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 2, s.wind[0], 1.0), "spar_aero_solve: no step is under way");
     OK(spar_fluid_get_audit(s.fluid[0], 8, after[0]));
     assert_memory_equal(before[0], after[0], sizeof before[0]);
     OK(spar_aero_get_rotor(s.aero, thrust + 1, NULL, NULL));

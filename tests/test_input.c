@@ -355,10 +355,71 @@ static void test_read_members(void **state) {
     spar_session_destroy(&s);
 }
 
+/* What a layer above a session goes by: from a fluid to its member and session, their names, where a step stands, sums;
+   and a fluid that has failed. The step cannot be checked until loads are pushed, and tells what failed. */
+static void test_layers_above(void **state) {
+    (void)state;
+    const double tip[3] = {1, 0, 0}, force[3] = {0, 1, 0};
+    double x[2] = {1.5, -2};
+    int phase = -1, done;
+    spar_session *s = scene_session(), *found = NULL;
+    spar_member *b = scene_beam(s, "beam", 1, 4, 1, K, M), *member = NULL;
+    spar_fluid *f;
+    OK(s, spar_member_get_session(b, &found));
+    assert_ptr_equal(found, s);
+    assert_string_equal(spar_member_get_name(b), "beam");
+    OK(s, spar_member_commit(b));
+    OK(s, spar_fluid_create(b, "air", &f));
+    OK(s, spar_fluid_get_member(f, &member));
+    assert_ptr_equal(member, b);
+    assert_string_equal(spar_fluid_get_name(f), "air");
+    assert_true(spar_member_get_name(NULL)[0] == '\0' && spar_fluid_get_name(NULL)[0] == '\0');
+    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the member", spar_fluid_get_member(f, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the session", spar_member_get_session(b, NULL));
+
+    OK(s, spar_session_sum(s, SPAR_OK, 2, x)); /* of one rank */
+    OK(s, spar_session_sum(s, SPAR_OK, 0, NULL));
+    assert_true(x[0] == 1.5 && x[1] == -2);
+    assert_int_equal(spar_session_sum(s, SPAR_ERR_NUMERIC, 2, x), SPAR_ERR_NUMERIC);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_sum(s, SPAR_OK, 2, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "status is 99", spar_session_sum(s, 99, 0, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 numbers", spar_session_sum(s, SPAR_OK, -1, x));
+
+    OK(s, spar_fluid_set_force_nodes(f, 1, tip));
+    OK(s, spar_fluid_map(f));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give a SPAR_ERR_", spar_fluid_fail(f, SPAR_OK, "all is well"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "say what failed", spar_fluid_fail(f, SPAR_ERR_USER, ""));
+    OK(s, spar_session_get_phase(s, &phase));
+    assert_int_equal(phase, SPAR_PHASE_START);
+    OK(s, spar_fluid_fail(f, SPAR_ERR_USER, "no mesh"));
+    REFUSED(s, SPAR_ERR_USER, "no mesh", spar_step_begin(s, 0.01));
+    OK(s, spar_fluid_push_forces(f, force, NULL));
+    OK(s, spar_step_begin(s, 0.01));
+    OK(s, spar_session_get_phase(s, &phase));
+    assert_int_equal(phase, SPAR_PHASE_BEGUN);
+    OK(s, spar_step_solve(s));
+    OK(s, spar_session_get_phase(s, &phase));
+    assert_int_equal(phase, SPAR_PHASE_SOLVED);
+    OK(s, spar_fluid_fail(f, SPAR_ERR_NUMERIC, "the pressure diverges"));
+    REFUSED(s, SPAR_ERR_NUMERIC, "the pressure diverges", spar_step_check(s, &done));
+    OK(s, spar_fluid_push_forces(f, force, NULL));
+    OK(s, spar_step_check(s, &done));
+    OK(s, spar_session_get_phase(s, &phase));
+    assert_int_equal(phase, SPAR_PHASE_CHECKED);
+    OK(s, spar_step_accept(s));
+    OK(s, spar_session_get_phase(s, &phase));
+    assert_int_equal(phase, SPAR_PHASE_BETWEEN);
+    OK(s, spar_fluid_fail(f, SPAR_ERR_USER, "nobody waits")); /* between steps */
+    OK(s, spar_step_begin(s, 0.01));
+    OK(s, spar_step_reject(s));
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_read_back),
         cmocka_unit_test(test_read_members),
+        cmocka_unit_test(test_layers_above),
         cmocka_unit_test(test_null_handles),
         cmocka_unit_test(test_session_settings),
         cmocka_unit_test(test_members),

@@ -266,6 +266,23 @@ SPAR_API int spar_session_get_report(const spar_session *session, int64_t capaci
      step: out, steps accepted
      iteration: out, coupling iterations of the step under way, or of the last step or static solution */
 SPAR_API int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration);
+/* Where a step, or a static solution with the fluid, stands. */
+enum {
+    SPAR_PHASE_START = 0,   /* no step has begun yet; loads are those at t = 0 */
+    SPAR_PHASE_BETWEEN = 1, /* between steps */
+    SPAR_PHASE_BEGUN = 2,   /* begun and not solved */
+    SPAR_PHASE_SOLVED = 3,  /* solved and not checked */
+    SPAR_PHASE_CHECKED = 4  /* checked, to be solved again or accepted */
+};
+/* phase: out, SPAR_PHASE_*, NULL: not wanted. Local. */
+SPAR_API int spar_session_get_phase(const spar_session *session, int *phase);
+/* Sums numbers over the ranks of the session, so that what is built on one (a blade element model, a load report) needs
+   no MPI of its own; with n = 0 the ranks agree on a status. At any time. Collective.
+     status: in, SPAR_OK, or what this rank has failed with: it is answered here, and the others answer SPAR_ERR_PEER
+           with this rank's spar_session_message; the numbers then stay as they are
+     n: in, how many, the same on all ranks
+     x[n]: in, this rank's; out, the sums, the same bits on all ranks */
+SPAR_API int spar_session_sum(spar_session *session, int status, int64_t n, double *x);
 
 /* Levels of the log. */
 enum { SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2 };
@@ -439,6 +456,10 @@ SPAR_API int spar_member_commit(spar_member *member);
 
 /* nodes: out. Before commit too. */
 SPAR_API int spar_member_get_count(const spar_member *member, int64_t *nodes);
+/* session: out, that the member was created in. Before commit too. */
+SPAR_API int spar_member_get_session(const spar_member *member, spar_session **session);
+/* The name it was created with, as long as its session lives; "" of NULL. */
+SPAR_API const char *spar_member_get_name(const spar_member *member);
 /* Reference configuration, placed. Each NULL: not wanted.
      x[n][3]: out, m
      q[n][4]: out, section frames */
@@ -653,6 +674,10 @@ enum {
 
 /* name: in, not empty, for the messages. fluid: out. */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
+/* member: out, that the fluid was created for. */
+SPAR_API int spar_fluid_get_member(const spar_fluid *fluid, spar_member **member);
+/* The name it was created with, as long as it lives; "" of NULL. */
+SPAR_API const char *spar_fluid_get_name(const spar_fluid *fluid);
 /* A fluid may go before its session; its loads go with it. Within a trial run too: the trial goes on without it, and it
    stays gone when the trial has gone back. */
 SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
@@ -760,6 +785,12 @@ SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, cons
    before the first step; otherwise as spar_fluid_push_forces.
      theta: in, in (0, 1], rising from push to push; one that does not rise begins anew (the next iteration) */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
+/* The host's model has failed on this rank: there are no loads of this fluid, for the reason given. spar_step_check (or
+   the call that runs the step, or the first spar_step_begin) then fails on all ranks unless a good push follows, with
+   this status and message on this rank. Between steps nobody waits for loads, and nothing is done.
+     status: in, a SPAR_ERR_*
+     message: in, what, where, the cure; not empty, copied */
+SPAR_API int spar_fluid_fail(spar_fluid *fluid, int status, const char *message);
 /* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
 SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);

@@ -1,5 +1,7 @@
-/* The blade-element fluid: public calls. Everything between the session and the sections goes through spar.h. */
+/* The blade-element fluid: public calls. What it asks of session, members and fluids it asks by the installed headers.
+ */
 #include "aero.h"
+#include "../base/message.h"
 #include "../base/quiet.h"
 #include "../math/rotation.h"
 #include <stdlib.h>
@@ -53,33 +55,40 @@ static int make_arrays(spar_aero *aero) {
     return whole ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
+static int find_session(const spar_fluid *fluid, spar_session **session) {
+    spar_member *member;
+    SPARI_TRY(spar_fluid_get_member(fluid, &member));
+    return spar_member_get_session(member, session);
+}
+
 /* All fluids there, of one session, made of n >= 2 sections each. */
-static int check_blade_fluids(int blades, spar_fluid *const *fluid, int64_t *n) {
+static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *call, spar_session **first,
+                              int64_t *n) {
     for (int b = 0; b < blades; b++) {
-        SPARI_REQUIRE(b > 0 ? spari_fluid_session(fluid[0]) : NULL, fluid[b], SPAR_ERR_ARGUMENT,
-                      "spar_aero_create: the fluid of blade %d is NULL", b);
-        spar_session *session = spari_fluid_session(fluid[b]);
+        SPARI_REQUIRE(*first, fluid[b], SPAR_ERR_ARGUMENT, "%s: the fluid of blade %d is NULL", call, b);
+        spar_session *session;
         int64_t nodes, forces;
-        SPARI_REQUIRE(spari_fluid_session(fluid[0]), session == spari_fluid_session(fluid[0]), SPAR_ERR_ARGUMENT,
-                      "spar_aero_create: fluid '%s' of blade %d is of another session than blade 0",
-                      spari_fluid_name(fluid[b]), b);
+        SPARI_TRY(find_session(fluid[b], &session));
+        *first = b == 0 ? session : *first;
+        SPARI_REQUIRE(*first, session == *first, SPAR_ERR_ARGUMENT,
+                      "%s: fluid '%s' of blade %d is of another session than blade 0", call,
+                      spar_fluid_get_name(fluid[b]), b);
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_MOTION, &nodes));
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_FORCE, &forces));
-        SPARI_REQUIRE(
-            session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
-            "spar_aero_create: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 "
-            "sections with spar_fluid_set_sections",
-            spari_fluid_name(fluid[b]), b, (long long)nodes, (long long)forces);
+        SPARI_REQUIRE(session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
+                      "%s: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 sections "
+                      "with spar_fluid_set_sections",
+                      call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
         *n = b == 0 ? nodes : *n;
         SPARI_REQUIRE(session, nodes == *n, SPAR_ERR_ARGUMENT,
-                      "spar_aero_create: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; blades are alike",
-                      spari_fluid_name(fluid[b]), b, (long long)nodes, (long long)*n);
+                      "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; blades are alike", call,
+                      spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)*n);
     }
     return SPAR_OK;
 }
 
 /* Reference places of the aerodynamic centres and the lengths between them. */
-static int find_centres(spar_aero *aero) {
+static int find_centres(spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         double *x = aero->place + 3 * b * aero->n;
         SPARI_TRY(spar_fluid_get_feet(aero->fluid[b], SPAR_NODES_MOTION, x, NULL, aero->x));
@@ -90,8 +99,8 @@ static int find_centres(spar_aero *aero) {
             const double *a = x + 3 * i, *c = a + 3;
             double d[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]}, length = spari_norm(d);
             SPARI_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
-                          "spar_aero_create: fluid '%s': sections %lld and %lld lie in one place",
-                          spari_fluid_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
+                          "%s: fluid '%s': sections %lld and %lld lie in one place", call,
+                          spar_fluid_get_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
             aero->length[b * aero->n + i] = length;
         }
     }
@@ -103,8 +112,9 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
                   "%s: %d blades%s; give one fluid per blade", __func__, blades, sections ? "" : " without fluids");
     int64_t n = 0;
-    SPARI_TRY(check_blade_fluids(blades, sections, &n));
-    spar_session *session = blades > 0 ? spari_fluid_session(sections[0]) : NULL;
+    spar_session *session = NULL;
+    int status = check_blade_fluids(blades, sections, __func__, &session, &n);
+    SPARI_TRY(spari_named(session, __func__, status));
     spar_aero *made = spari_zalloc(1, sizeof *made);
     SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "%s: no memory", __func__);
     spari_gsl_quiet();
@@ -112,14 +122,14 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     made->blades = blades;
     made->n = n;
     made->rotor = (spari_rotor){.turn = 1, .blades = blades, .effects = SPAR_AERO_DRAG};
-    int status = make_arrays(made);
+    status = make_arrays(made);
     if (status != SPAR_OK) {
         spari_fail(session, status, "%s: no memory for %d blades of %lld sections", __func__, blades, (long long)n);
     } else {
         for (int b = 0; b < blades; b++) {
             made->fluid[b] = sections[b];
         }
-        status = find_centres(made);
+        status = find_centres(made, __func__);
     }
     if (status != SPAR_OK) {
         aero_free(made);
@@ -265,44 +275,50 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
 
 /* The fluids are as they were when the object was made, mapped, and would take loads: what one of them refuses later
    the others have had. */
-static int check_blades(const spar_aero *aero) {
+static int check_blades(const spar_aero *aero, const char *call) {
+    int phase = SPAR_PHASE_START;
+    SPARI_TRY(aero->blades > 0 ? spar_session_get_phase(aero->session, &phase) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
+        const spar_fluid *fluid = aero->fluid[b];
         int64_t motion, force;
-        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &motion));
-        SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_FORCE, &force));
-        SPARI_REQUIRE(
-            aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
-            "spar_aero_solve: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
-            "force nodes now; make a new one",
-            spari_fluid_name(aero->fluid[b]), (long long)aero->n, (long long)motion, (long long)force);
-        SPARI_TRY(spar_fluid_get_map(aero->fluid[b], SPAR_NODES_MOTION, NULL, NULL, NULL));
-        SPARI_TRY(spari_fluid_may_push(aero->fluid[b], "spar_aero_solve"));
+        SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &motion));
+        SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &force));
+        SPARI_REQUIRE(aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
+                      "%s: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
+                      "force nodes now; make a new one",
+                      call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
+        SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_MOTION, NULL, NULL, NULL));
+        SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
+    SPARI_REQUIRE(aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,
+                  "%s: no step is under way; call it between spar_step_begin and spar_step_accept, or before the first "
+                  "step",
+                  call);
     return SPAR_OK;
 }
 
-static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta) {
+static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     spar_session *session = aero->session;
-    SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT,
-                  "spar_aero_solve: density %g; give a number >= 0", density);
+    SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT, "%s: density %g; give a number >= 0",
+                  call, density);
     SPARI_REQUIRE(session, theta >= 0.0 && theta <= 1.0, SPAR_ERR_ARGUMENT,
-                  "spar_aero_solve: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", theta);
-    SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "spar_aero_solve: the inflow is NULL");
+                  "%s: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", call, theta);
+    SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
     SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
-                  "spar_aero_solve: induction is asked for but the rotor is not described; call spar_aero_set_rotor");
+                  "%s: induction is asked for but the rotor is not described; call spar_aero_set_rotor", call);
     for (int64_t i = 0; i < aero->n; i++) {
         SPARI_REQUIRE(session, aero->section[i].table, SPAR_ERR_STATE,
-                      "spar_aero_solve: section %lld has no chord and polar; call spar_aero_set_section", (long long)i);
+                      "%s: section %lld has no chord and polar; call spar_aero_set_section", call, (long long)i);
     }
     int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
     if (bad >= 0) {
         int blade = (int)(bad / (3 * aero->n));
         return spari_fail(session, SPAR_ERR_ARGUMENT,
-                          "spar_aero_solve: fluid '%s', blade %d, section %lld: component %d of the inflow is %g",
-                          spari_fluid_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n), (int)(bad % 3),
-                          inflow[bad]);
+                          "%s: fluid '%s', blade %d, section %lld: component %d of the inflow is %g", call,
+                          spar_fluid_get_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n),
+                          (int)(bad % 3), inflow[bad]);
     }
-    return check_blades(aero);
+    return check_blades(aero, call);
 }
 
 static int pull_centres(spar_aero *aero, double theta) {
@@ -332,19 +348,18 @@ static void lump(const spar_aero *aero, int blade, int from, double *node) {
 }
 
 /* Loads that every fluid can take: none of its sums leaves the range of numbers. */
-static int check_loads(const spar_aero *aero, const double *load, const char *what) {
+static int check_loads(const spar_aero *aero, const double *load, const char *what, const char *call) {
     for (int64_t i = 0; i < 3 * count(aero); i++) {
-        SPARI_REQUIRE(
-            aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
-            "spar_aero_solve: fluid '%s', blade %lld, section %lld: %s of %g; look at density, inflow, chords",
-            spari_fluid_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
-            (long long)(i / 3 % aero->n), what, load[i]);
+        SPARI_REQUIRE(aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
+                      "%s: fluid '%s', blade %lld, section %lld: %s of %g; look at density, inflow, chords", call,
+                      spar_fluid_get_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
+                      (long long)(i / 3 % aero->n), what, load[i]);
     }
     return SPAR_OK;
 }
 
-static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta) {
-    SPARI_TRY(check_solve(aero, density, inflow, theta));
+static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
+    SPARI_TRY(check_solve(aero, density, inflow, theta, call));
     aero->solved = 0;
     SPARI_TRY(pull_centres(aero, theta));
     int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0;
@@ -361,8 +376,8 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
             lump(aero, b, 3, aero->moment);
         }
     }
-    SPARI_TRY(check_loads(aero, aero->force, "a force"));
-    SPARI_TRY(moments ? check_loads(aero, aero->moment, "a moment") : SPAR_OK);
+    SPARI_TRY(check_loads(aero, aero->force, "a force", call));
+    SPARI_TRY(moments ? check_loads(aero, aero->moment, "a moment", call) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = 3 * b * aero->n;
         SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));
@@ -376,9 +391,9 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
-    int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta));
+    int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
     if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
-        return spari_fluid_refuse_push(aero->fluid[0], status);
+        (void)spar_fluid_fail(aero->fluid[0], status, spar_session_message(aero->session));
     }
     return status;
 }

@@ -2,8 +2,9 @@
 #ifndef SPARI_AERO_H
 #define SPARI_AERO_H
 
-#include "../fluid/fluid.h"
 #include "element.h"
+
+#include <spar/spar_aero.h>
 
 struct spar_aero {
     spar_session *session; /* for messages; NULL without blades */

@@ -1,7 +1,7 @@
 /* Tables of lift, drag and moment by the angle of attack, and what is read out of them between their rows. */
 #include "polar.h"
+#include "../base/message.h"
 #include "../base/quiet.h"
-#include "../base/scene.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -96,42 +96,38 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
 }
 
 /* Every row finite and the angles in order; the row is counted from 0, as in the arrays. */
-static int check_rows(int64_t n, const double *alpha, const double *const value[]) {
+static int check_rows(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     for (int64_t i = 0; i < n; i++) {
-        SPARI_REQUIRE(NULL, isfinite(alpha[i]), SPAR_ERR_ARGUMENT, "spar_polar_create: alpha of row %lld is not finite",
+        SPARI_REQUIRE(NULL, isfinite(alpha[i]), SPAR_ERR_ARGUMENT, "%s: alpha of row %lld is not finite", call,
                       (long long)i);
         for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
             SPARI_REQUIRE(NULL, !value[c] || isfinite(value[c][i]), SPAR_ERR_ARGUMENT,
-                          "spar_polar_create: %s of row %lld (alpha %g rad) is not finite", name[c], (long long)i,
-                          alpha[i]);
+                          "%s: %s of row %lld (alpha %g rad) is not finite", call, name[c], (long long)i, alpha[i]);
         }
-        SPARI_REQUIRE(
-            NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
-            "spar_polar_create: alpha of row %lld (%g rad) is not above that of the row before (%g rad); sort the "
-            "rows and drop doubles",
-            (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
+        SPARI_REQUIRE(NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
+                      "%s: alpha of row %lld (%g rad) is not above that of the row before (%g rad); sort the "
+                      "rows and drop doubles",
+                      call, (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
     }
     return SPAR_OK;
 }
 
 /* No more than one turn, and after a whole turn the same coefficients as before it. */
-static int check_turn(int64_t n, const double *alpha, const double *const value[]) {
+static int check_turn(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     double width = alpha[n - 1] - alpha[0];
-    SPARI_REQUIRE(
-        NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
-        "spar_polar_create: alpha goes from %g (row 0) to %g (row %lld), more than a full turn; give radians, at "
-        "most 2 pi of them",
-        alpha[0], alpha[n - 1], (long long)(n - 1));
+    SPARI_REQUIRE(NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
+                  "%s: alpha goes from %g (row 0) to %g (row %lld), more than a full turn; give radians, at "
+                  "most 2 pi of them",
+                  call, alpha[0], alpha[n - 1], (long long)(n - 1));
     if (width > SPARI_TURN * (1.0 - SPARI_TURN_SLACK)) {
         for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
             double first = value[c] ? value[c][0] : 0.0, last = value[c] ? value[c][n - 1] : 0.0;
-            SPARI_REQUIRE(
-                NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
-                "spar_polar_create: %s is %g in row 0 and %g in row %lld, which are the same angle a turn apart; "
-                "make them equal",
-                name[c], first, last, (long long)(n - 1));
+            SPARI_REQUIRE(NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
+                          "%s: %s is %g in row 0 and %g in row %lld, which are the same angle a turn apart; "
+                          "make them equal",
+                          call, name[c], first, last, (long long)(n - 1));
         }
     }
     return SPAR_OK;
@@ -146,8 +142,8 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
     SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);
     SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT, "%s: alpha, cl or cd is NULL; only cm may be",
                   __func__);
-    SPARI_TRY(check_rows(n, alpha_rad, value));
-    SPARI_TRY(check_turn(n, alpha_rad, value));
+    SPARI_TRY(check_rows(n, alpha_rad, value, __func__));
+    SPARI_TRY(check_turn(n, alpha_rad, value, __func__));
     spari_gsl_quiet();
     spar_polar *made = spari_zalloc(1, sizeof *made);
     spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;

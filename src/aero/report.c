@@ -1,6 +1,7 @@
-/* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. */
+/* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. It is made
+   on the calls of spar.h alone. */
+#include "../base/message.h"
 #include "../base/quiet.h"
-#include "../trial/trial.h"
 #include "aero.h"
 
 #include <math.h>
@@ -26,7 +27,16 @@ const char *spar_aero_effect_name(int r) {
     return r >= 0 && r < SPAR_AERO_ROW_COUNT ? rows[r].name : "";
 }
 
-static int try_once(spar_session *s, const spari_run *t, int compare, double report[SPAR_TRY_COUNT]) {
+/* What the host gives for a trial. */
+typedef struct aero_trial {
+    double dt;
+    int64_t steps;
+    spar_before_step before;
+    spar_fluid_solver solve;
+    void *context;
+} aero_trial;
+
+static int try_once(spar_session *s, const aero_trial *t, int compare, double report[SPAR_TRY_COUNT]) {
     return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, SPAR_TRY_COUNT, report);
 }
 
@@ -48,12 +58,12 @@ static int is_in_force(const spar_aero *aero, int r) {
                                                 : rows[r].effect != SPAR_AERO_MOMENT || has_moments(aero);
 }
 
-/* On any rank: all of them make the same trials. */
-static int find_rows(spar_session *s, const spar_aero *aero, double in_force[SPAR_AERO_ROW_COUNT + 1]) {
+/* On any rank: all of them make the same trials. status: of the arguments on this rank. */
+static int find_rows(spar_session *s, const spar_aero *aero, int status, double in_force[SPAR_AERO_ROW_COUNT]) {
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
-        in_force[r] = is_in_force(aero, r);
+        in_force[r] = status == SPAR_OK ? is_in_force(aero, r) : 0;
     }
-    return spari_comm_sum(s->comm, in_force, SPAR_AERO_ROW_COUNT, SPAR_OK, s->message, sizeof s->message);
+    return spar_session_sum(s, status, SPAR_AERO_ROW_COUNT, in_force);
 }
 
 /* A run that begins out of its own balance iterates more, and that is not what the effect costs: so the time of one
@@ -63,7 +73,7 @@ static double cost_of_try(const double report[SPAR_TRY_COUNT]) {
 }
 
 /* The effects come back as they were, whatever fails. Times are the least of three, with and without in turn. */
-static int try_without(spar_session *s, spar_aero *aero, const spari_run *t, int r, const double *base, double *out) {
+static int try_without(spar_session *s, spar_aero *aero, const aero_trial *t, int r, const double *base, double *out) {
     enum { REPEATS = 3 };
     double with = cost_of_try(base), without = INFINITY, report[SPAR_TRY_COUNT];
     const int effects = aero->rotor.effects;
@@ -86,9 +96,10 @@ static int try_without(spar_session *s, spar_aero *aero, const spari_run *t, int
     return SPAR_OK;
 }
 
-static int try_all(spar_session *s, spar_aero *aero, const spari_run *t, double (*table)[SPAR_COLUMN_COUNT]) {
-    double in_force[SPAR_AERO_ROW_COUNT + 1], base[SPAR_TRY_COUNT];
-    SPARI_TRY(find_rows(s, aero, in_force));
+static int try_all(spar_session *s, spar_aero *aero, const aero_trial *t, int status,
+                   double (*table)[SPAR_COLUMN_COUNT]) {
+    double in_force[SPAR_AERO_ROW_COUNT], base[SPAR_TRY_COUNT];
+    SPARI_TRY(find_rows(s, aero, status, in_force));
     SPARI_TRY(try_once(s, t, 0, base));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
         if (in_force[r] > 0) {
@@ -99,7 +110,7 @@ static int try_all(spar_session *s, spar_aero *aero, const spari_run *t, double 
     return SPAR_OK;
 }
 
-static int check_arguments(spar_session *s, const spar_aero *aero, const spari_run *t, int64_t table_rows,
+static int check_arguments(spar_session *s, const spar_aero *aero, const aero_trial *t, int64_t table_rows,
                            int64_t table_columns, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
@@ -114,15 +125,10 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
                              double *table) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
-    spar_session *s = session;
-    spari_run t = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
+    const aero_trial t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
-    char message[SPARI_MESSAGE_SIZE];
-    SPARI_TRY(
-        spari_trial_enter(s, __func__, &t, 0, 0, check_arguments(s, aero, &t, table_rows, table_columns, __func__)));
-    memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, try_all(s, aero, &t, made)));
-    memcpy(s->message, message, sizeof message); /* what failed without an effect is no failure of the session's */
+    int status = check_arguments(session, aero, &t, table_rows, table_columns, __func__);
+    SPARI_TRY(spari_named(session, __func__, try_all(session, aero, &t, status, made)));
     spari_fill_table(table_rows, table_columns, table, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
 }

@@ -1,9 +1,9 @@
 /* The scene: what every room may ask of the session it works for: clock, settings, ranks, members and fluids, and where
-   messages go, the one way a failure leaves the library. */
+   messages go. */
 #ifndef SPARI_SCENE_H
 #define SPARI_SCENE_H
 
-#include "status.h"
+#include "message.h"
 
 typedef struct spari_comm spari_comm; /* comm/comm.h */
 typedef struct spari_own spari_own;   /* session/session.h */
@@ -98,24 +98,5 @@ double spari_setting_value(const spar_session *session, const spari_setting *of)
 
 /* Tells the host's log, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);
-
-/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
-   thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). */
-int spari_fail(spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
-/* The room in a host's array, which its call has given. */
-int spari_need_capacity(spar_session *session, const char *call, int64_t capacity);
-/* Answers `status`; of a failure whose message, from below, does not name the public call, the message then begins with
-   it. At the public edge. */
-int spari_named(spar_session *session, const char *call, int status);
-#ifdef __clang_analyzer__ /* reads one file at a time: what it must know is that a failure is never 0 */
-#define spari_fail(session, status, ...) ((spari_fail)(session, status, __VA_ARGS__) ? (status) ? (status) : 1 : 1)
-#endif
-
-#define SPARI_REQUIRE(session, condition, status, ...)                                                                 \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            return spari_fail(session, status, __VA_ARGS__);                                                           \
-        }                                                                                                              \
-    } while (0)
 
 #endif

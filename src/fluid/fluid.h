@@ -17,11 +17,6 @@ int spari_fluid_has_loads(const spar_fluid *fluid);
    at this step. */
 /* Status of the last push of this step (before the first step: of the last one), and the message of a refusal. */
 int spari_fluid_refused(const spar_fluid *fluid, const char **why);
-/* The loads of this fluid are not to be had, for the reason in the session's message: as a push that is refused. Gives
-   back status. */
-int spari_fluid_refuse_push(spar_fluid *fluid, int status);
-/* Whether a push of good loads would be taken now: a step is under way, the force nodes are mapped. */
-int spari_fluid_may_push(const spar_fluid *fluid, const char *caller);
 void spari_fluid_forget_refusal(spar_fluid *fluid);
 /* Past node forces for a predictor of this order, if they are kept. SPAR_ERR_MEMORY: all is as before. */
 int spari_fluid_keep(spar_fluid *fluid, int order);
@@ -33,8 +28,6 @@ void spari_fluid_settle(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
 spar_fluid *spari_fluid_next(const spar_fluid *fluid); /* the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);
-spar_session *spari_fluid_session(const spar_fluid *fluid); /* for the messages of what is built on a fluid */
-const char *spari_fluid_name(const spar_fluid *fluid);
 
 /* What of a fluid a trial run can leave out: velocities and section poses are then those of a fluid at rest in the
    reference configuration, the nodes stand where they are at t^{n+1}, node forces between steps are zero. */

@@ -158,12 +158,15 @@ spar_member *spari_fluid_member(const spar_fluid *fluid) {
     return fluid->member;
 }
 
-spar_session *spari_fluid_session(const spar_fluid *fluid) {
-    return fluid->member->session;
+int spar_fluid_get_member(const spar_fluid *fluid, spar_member **member) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_FLUID_REQUIRE(fluid, member, SPAR_ERR_ARGUMENT, "the place for the member is NULL");
+    *member = fluid->member;
+    return SPAR_OK;
 }
 
-const char *spari_fluid_name(const spar_fluid *fluid) {
-    return fluid->name;
+const char *spar_fluid_get_name(const spar_fluid *fluid) {
+    return fluid ? fluid->name : "";
 }
 
 /* ---- what the host gives ---- */

@@ -146,20 +146,27 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     return SPAR_OK;
 }
 
-/* Between steps nobody waits for loads: there is nothing that could go on without them. */
-int spari_fluid_refuse_push(spar_fluid *fluid, int status) {
+/* There are no loads, for this reason. Between steps nobody waits for any: there is nothing that could go on without
+   them. */
+static void note_refusal(spar_fluid *fluid, int status, const char *why) {
     const spar_session *session = fluid->member->session;
+    size_t size = strlen(why) + 1;
+    char *copy = session->phase == SPARI_IDLE && session->started ? NULL : malloc(size);
+    if (copy) {
+        memcpy(copy, why, size);
+    }
     spari_fluid_forget_refusal(fluid);
-    if (session->phase == SPARI_IDLE && session->started) {
-        return status;
-    }
-    size_t size = strlen(session->message) + 1;
-    fluid->why = malloc(size);
-    if (fluid->why) {
-        memcpy(fluid->why, session->message, size);
-    }
-    fluid->refused = status;
-    return status;
+    fluid->why = copy;
+    fluid->refused = session->phase == SPARI_IDLE && session->started ? SPAR_OK : status;
+}
+
+int spar_fluid_fail(spar_fluid *fluid, int status, const char *message) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_FLUID_REQUIRE(fluid, status > SPAR_OK && status <= SPAR_ERR_USER, SPAR_ERR_ARGUMENT,
+                        "the status is %d; give a SPAR_ERR_*", status);
+    SPARI_FLUID_REQUIRE(fluid, message && message[0], SPAR_ERR_ARGUMENT, "the message is missing; say what failed");
+    note_refusal(fluid, status, message);
+    return SPAR_OK;
 }
 
 int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
@@ -167,33 +174,23 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
     return fluid->refused;
 }
 
-/* *s: the force nodes, NULL: none */
-static int may_push(const spar_fluid *fluid, const char *caller, const spari_nodes **s) {
-    const spar_session *session = fluid->member->session;
+static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
+    spar_session *session = fluid->member->session;
+    const spari_nodes *s = NULL;
     if (session->phase == SPARI_IDLE && session->started) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
             "no step is under way; loads are pushed between spar_step_begin and spar_step_accept, or "
             "before the first step");
     }
-    return spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, s);
-}
-
-int spari_fluid_may_push(const spar_fluid *fluid, const char *caller) {
-    const spari_nodes *s;
-    return may_push(fluid, caller, &s);
-}
-
-static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
-    spar_session *session = fluid->member->session;
-    const spari_nodes *s = NULL;
-    SPARI_TRY(may_push(fluid, caller, &s));
+    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     if (!s) {
         return SPAR_OK;
     }
     int status = push(fluid, s, force, moment, caller);
     if (status != SPAR_OK) {
-        return spari_fluid_refuse_push(fluid, status);
+        note_refusal(fluid, status, session->message);
+        return status;
     }
     spari_fluid_forget_refusal(fluid);
     fluid->pushes++;

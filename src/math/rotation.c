@@ -2,6 +2,7 @@
 #include "rotation.h"
 
 #include <float.h>
+#include <stddef.h>
 
 void spari_quat_matrix(const double q[4], double r[9]) {
     double w = q[0], x = q[1], y = q[2], z = q[3];
@@ -88,4 +89,26 @@ void spari_tangent_inverse(const double psi[3], double t[9]) {
         b = (1 - half * cos(half) / sin(half)) / p2;
     }
     spin_polynomial(psi, -0.5, b, t);
+}
+
+static int is_negative(const double q[4]) {
+    for (int i = 0; i < 4; i++) {
+        if (q[i] != 0) {
+            return q[i] < 0;
+        }
+    }
+    return 0;
+}
+
+void spari_chain(int n, const double *q, int stride, double *out) {
+    for (int l = 0; l < n; l++) {
+        const double *from = q + (ptrdiff_t)l * stride;
+        double *to = out + (ptrdiff_t)4 * l, s = 1;
+        if (l == 0 ? is_negative(from) : spari_quat_dot(from, to - 4) < 0) {
+            s = -1;
+        }
+        for (int i = 0; i < 4; i++) {
+            to[i] = s * from[i];
+        }
+    }
 }

@@ -78,4 +78,9 @@ void spari_quat_log(const double q[4], double psi[3]);
 void spari_tangent(const double psi[3], double t[9]);
 void spari_tangent_inverse(const double psi[3], double t[9]);
 
+/* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
+   not depend on the signs that came in: the first node's leading component is made positive, each other follows its
+   predecessor. */
+void spari_chain(int n, const double *q, int stride, double *out);
+
 #endif

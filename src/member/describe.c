@@ -371,6 +371,18 @@ int spar_member_get_placement(const spar_member *member, double x[3], double q[4
     return SPAR_OK;
 }
 
+int spar_member_get_session(const spar_member *member, spar_session **session) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    SPARI_REQUIRE(member->session, session, SPAR_ERR_ARGUMENT, "%s: '%s': the place for the session is NULL", __func__,
+                  member->name);
+    *session = member->session;
+    return SPAR_OK;
+}
+
+const char *spar_member_get_name(const spar_member *member) {
+    return member ? member->name : "";
+}
+
 int spar_member_get_root(const spar_member *member, int *kind) {
     SPARI_TRY(spari_need_member(member, __func__));
     hand_int(kind, member->root);

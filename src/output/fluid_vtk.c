@@ -90,7 +90,8 @@ static int64_t draw_lines(const spar_fluid *fluid, const sketch *s) {
     return lines;
 }
 
-static int write_nodes(const spar_fluid *fluid, const sketch *s, const char *path) {
+static int write_nodes(const spar_fluid *fluid, const sketch *s, spar_session *session, const char *path,
+                       const char *call) {
     spari_vtk_field field[FIELDS];
     for (int f = 0; f < FIELDS; f++) {
         field[f] = (spari_vtk_field){field_of[f].name, field_of[f].components, at(s, field_of[f].column, 1, 0)};
@@ -103,24 +104,27 @@ static int write_nodes(const spar_fluid *fluid, const sketch *s, const char *pat
                                  .line_point = s->line_point,
                                  .fields = spari_fluid_forces(fluid) ? FIELDS : FIELDS - 1,
                                  .field = field};
-    spar_session *session = spari_fluid_session(fluid);
     SPARI_TRY(spar_session_get_time(session, &picture.time, NULL, NULL));
-    return spari_vtk_write(session, "spar_fluid_write_vtk", path, &picture);
+    return spari_vtk_write(session, call, path, &picture);
 }
 
-static int draw(const spar_fluid *fluid, const sketch *s, const char *path) {
+static int draw(const spar_fluid *fluid, const sketch *s, spar_session *session, const char *path, const char *call) {
     SPARI_TRY(fill_set(fluid, SPAR_NODES_MOTION, 0, s));
     if (!spari_fluid_has_sections(fluid)) {
         SPARI_TRY(fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s));
     }
     copy_to_feet(s);
-    return write_nodes(fluid, s, path);
+    return write_nodes(fluid, s, session, path, call);
 }
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it first", __func__);
     sketch s = {0};
+    spar_member *member;
+    spar_session *session;
+    SPARI_TRY(spar_fluid_get_member(fluid, &member));
+    SPARI_TRY(spar_member_get_session(member, &session));
     SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &s.count[0]));
     if (!spari_fluid_has_sections(fluid)) {
         SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &s.count[1]));
@@ -134,10 +138,9 @@ int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     s.line_end = spari_zalloc(s.n + 1, sizeof *s.line_end);
     s.line_point = spari_zalloc(3 * s.n, sizeof *s.line_point);
     int whole = s.table && s.q && s.q_map && s.con && s.flags && s.line_end && s.line_point;
-    int status =
-        whole ? draw(fluid, &s, path)
-              : spari_fail(spari_fluid_session(fluid), SPAR_ERR_MEMORY, "%s: no memory for the %lld nodes of '%s'",
-                           __func__, (long long)s.n, spari_fluid_name(fluid));
+    int status = whole ? draw(fluid, &s, session, path, __func__)
+                       : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for the %lld nodes of '%s'", __func__,
+                                    (long long)s.n, spar_fluid_get_name(fluid));
     void *all[] = {s.table, s.q, s.q_map, s.con, s.flags, s.line_end, s.line_point};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);

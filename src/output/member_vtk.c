@@ -1,10 +1,8 @@
-/* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. */
+/* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. What it
+   shows it asks by the calls of spar.h. */
 #include "../base/quiet.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../member/edge.h"
-#include "../solve/reaction.h"
-#include "../transfer/transfer.h"
 #include "vtk.h"
 #include <spar/spar_output.h>
 #include <stdlib.h>
@@ -39,9 +37,14 @@ typedef struct sampled {
     int64_t *end;  /* [elements] */
 } sampled;
 
+/* What is known at the nodes. */
 typedef struct nodal {
+    int elements, per_element;
+    int64_t n;                /* nodes */
+    double *xr, *qr;          /* [nodes][3], [4]: reference */
     double *q, *v, *a, *load; /* [nodes][7], [6], [6], [6] */
     double *chain, *frame;    /* [nodes][4]: q and the reference orientation, signs chained along each element */
+    double reaction[6];
 } nodal;
 
 static void put_columns(const sampled *s, int column, int components, int64_t sample, const double *value) {
@@ -73,13 +76,13 @@ static void put_axes(const sampled *s, int64_t sample, int n, const double *phi,
 }
 
 /* One sample of the element whose nodes begin at `first`. node: its number where there is one, else -1. */
-static void put_sample(const sampled *s, const spar_member *m, const nodal *at, int64_t first, const double *phi,
-                       int64_t node, int64_t sample) {
+static void put_sample(const sampled *s, const nodal *at, int64_t first, const double *phi, int64_t node,
+                       int64_t sample) {
     static const double zero[6] = {0};
-    int n = m->per_element;
+    int n = at->per_element;
     double x[3], u[3], rate[6], number = (double)node;
     const double *load = node < 0 ? zero : at->load + 6 * node; /* lumped: there is none between nodes */
-    blend(n, phi, 3, m->xr + 3 * first, 3, x);
+    blend(n, phi, 3, at->xr + 3 * first, 3, x);
     blend(n, phi, 7, at->q + 7 * first, 3, u);
     for (int i = 0; i < 3; i++) {
         x[i] += u[i];
@@ -98,12 +101,12 @@ static void put_sample(const sampled *s, const spar_member *m, const nodal *at, 
     put_columns(s, NODE, 1, sample, &number);
 }
 
-static void sample_member(const sampled *s, const spar_member *m, const nodal *at) {
-    int n = m->per_element;
+static void sample_member(const sampled *s, const nodal *at) {
+    int n = at->per_element;
     double x[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
     int64_t sample = 0;
     spari_gll(n, x, NULL, bary);
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < at->elements; e++) {
         int64_t first = (int64_t)e * n;
         for (int k = 0; k < n; k++) {
             for (int piece = 0; piece < (k + 1 < n ? SPARI_PIECES : 1); piece++, sample++) {
@@ -112,7 +115,7 @@ static void sample_member(const sampled *s, const spar_member *m, const nodal *a
                 if (piece == 0) {
                     s->node[first + k] = sample;
                 }
-                put_sample(s, m, at, first, phi, piece == 0 ? first + k : -1, sample);
+                put_sample(s, at, first, phi, piece == 0 ? first + k : -1, sample);
             }
         }
         s->end[e] = sample;
@@ -120,61 +123,77 @@ static void sample_member(const sampled *s, const spar_member *m, const nodal *a
 }
 
 static int fill_nodal(const spar_member *m, nodal *at) {
+    SPARI_TRY(spar_member_get_reference(m, at->xr, at->qr));
     SPARI_TRY(spar_member_get_motion(m, at->q, at->v, at->a));
     SPARI_TRY(spar_member_get_loads(m, at->load));
-    for (int e = 0; e < m->elements; e++) {
-        int64_t first = (int64_t)e * m->per_element;
-        spari_chain(m->per_element, at->q + 7 * first + 3, 7, at->chain + 4 * first);
-        spari_chain(m->per_element, m->qr + 4 * first, 4, at->frame + 4 * first);
+    SPARI_TRY(spar_member_get_reaction(m, at->reaction));
+    for (int e = 0; e < at->elements; e++) {
+        int64_t first = (int64_t)e * at->per_element;
+        spari_chain(at->per_element, at->q + 7 * first + 3, 7, at->chain + 4 * first);
+        spari_chain(at->per_element, at->qr + 4 * first, 4, at->frame + 4 * first);
     }
     return SPAR_OK;
 }
 
-static int write_member(const spar_member *m, const sampled *s, const char *path) {
+static int write_member(const sampled *s, const nodal *at, spar_session *session, const char *path, const char *call) {
     spari_vtk_field field[FIELDS];
     for (int i = 0; i < FIELDS; i++) {
         field[i] = (spari_vtk_field){field_of[i].name, field_of[i].components, s->table + field_of[i].column * s->n};
     }
-    double reaction[6];
-    SPARI_TRY(spari_member_reaction(m, reaction));
-    spari_vtk_field fact[] = {{"reaction_force", 3, reaction}, {"reaction_moment", 3, reaction + 3}};
+    spari_vtk_field fact[] = {{"reaction_force", 3, at->reaction}, {"reaction_moment", 3, at->reaction + 3}};
     spari_vtk_picture picture = {.points = s->n,
                                  .x = field[0].value,
-                                 .verts = m->nodes,
+                                 .verts = at->n,
                                  .vert = s->node,
-                                 .lines = m->per_element > 1 ? m->elements : 0,
+                                 .lines = at->per_element > 1 ? at->elements : 0,
                                  .line_end = s->end,
                                  .fields = FIELDS - 1,
                                  .field = field + 1,
                                  .facts = 2,
                                  .fact = fact};
-    SPARI_TRY(spar_session_get_time(m->session, &picture.time, NULL, NULL));
-    return spari_vtk_write(m->session, "spar_member_write_vtk", path, &picture);
+    SPARI_TRY(spar_session_get_time(session, &picture.time, NULL, NULL));
+    return spari_vtk_write(session, call, path, &picture);
 }
 
-int spar_member_write_vtk(const spar_member *member, const char *path) {
-    SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, __func__));
-    int64_t n = member->nodes;
-    sampled s = {.n = (int64_t)member->elements * ((member->per_element - 1) * SPARI_PIECES + 1)};
-    double *work = spari_zalloc(33 * n, sizeof *work);
-    nodal at = {work, work + 7 * n, work + 13 * n, work + 19 * n, work + 25 * n, work + 29 * n};
+/* Into at: how many nodes; and that the member can be asked for what they do. */
+static int size_up(const spar_member *member, nodal *at) {
+    SPARI_TRY(spar_member_get_count(member, &at->n));
+    at->elements = at->per_element = 1;
+    SPARI_TRY(at->n > 1 ? spar_beam_get_elements(member, &at->elements, &at->per_element) : SPAR_OK);
+    return spar_member_get_reference(member, NULL, NULL);
+}
+
+static int write_picture(const spar_member *member, nodal *at, spar_session *session, const char *path,
+                         const char *call) {
+    int64_t n = at->n;
+    sampled s = {.n = (int64_t)at->elements * ((at->per_element - 1) * SPARI_PIECES + 1)};
+    double *work = spari_zalloc(40 * n, sizeof *work);
+    at->q = work, at->v = work + 7 * n, at->a = work + 13 * n, at->load = work + 19 * n, at->chain = work + 25 * n;
+    at->frame = work + 29 * n, at->xr = work + 33 * n, at->qr = work + 36 * n;
     s.table = spari_zalloc(COLUMNS * s.n, sizeof *s.table);
     s.node = spari_zalloc(n, sizeof *s.node);
-    s.end = spari_zalloc(member->elements, sizeof *s.end);
-    int status = SPAR_OK;
-    if (!work || !s.table || !s.node || !s.end) {
-        status = spari_fail(member->session, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, member->name);
-    } else {
-        status = fill_nodal(member, &at);
-    }
+    s.end = spari_zalloc(at->elements, sizeof *s.end);
+    int status = work && s.table && s.node && s.end ? fill_nodal(member, at)
+                                                    : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for '%s'",
+                                                                 call, spar_member_get_name(member));
     if (status == SPAR_OK) {
-        sample_member(&s, member, &at);
-        status = write_member(member, &s, path);
+        sample_member(&s, at);
+        status = write_member(&s, at, session, path, call);
     }
     free(work);
     free(s.table);
     free(s.node);
     free(s.end);
     return status;
+}
+
+int spar_member_write_vtk(const spar_member *member, const char *path) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    spar_session *session;
+    nodal at = {0};
+    SPARI_TRY(spar_member_get_session(member, &session));
+    int status = size_up(member, &at);
+    status = status == SPAR_OK ? write_picture(member, &at, session, path, __func__) : status;
+    return spari_named(session, __func__, status);
 }

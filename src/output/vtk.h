@@ -2,7 +2,7 @@
 #ifndef SPARI_VTK_H
 #define SPARI_VTK_H
 
-#include "../base/scene.h"
+#include "../base/message.h"
 
 typedef struct spari_vtk_field {
     const char *name;

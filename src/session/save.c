@@ -227,7 +227,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
         if (state) {
             int status = spari_fluid_save(f, call, state);
             spari_image_put_int(image, member_index(s, spari_fluid_member(f)));
-            spari_image_put_text(image, spari_fluid_name(f));
+            spari_image_put_text(image, spar_fluid_get_name(f));
             spari_image_put_int(image, n);
             spari_image_put(image, state, n);
             free(state);
@@ -555,7 +555,8 @@ static int check_image(spar_session *s, reading *l) {
 
 static int is_record_of(reading *l, const record *r, const spar_session *s, const spar_fluid *f) {
     l->image.at = r->name;
-    return r->member == member_index(s, spari_fluid_member(f)) && spari_image_is_text(&l->image, spari_fluid_name(f));
+    return r->member == member_index(s, spari_fluid_member(f)) &&
+           spari_image_is_text(&l->image, spar_fluid_get_name(f));
 }
 
 /* Whether the fluids here are those of this rank in the file, one by one. */
@@ -630,7 +631,7 @@ static int assign_records(spar_session *s, reading *l, int exact, const double *
             own = exact ? i + 1 : own;
         }
         SPARI_REQUIRE(s, l->state_count[k] > 0, SPAR_ERR_ARGUMENT, "fluid '%s' of member '%s' is not in the file",
-                      spari_fluid_name(f), spari_fluid_member(f)->name);
+                      spar_fluid_get_name(f), spari_fluid_member(f)->name);
         SPARI_TRY(spari_fluid_ready(f, l->call, l->state_count[k], l->states + at));
         at += l->state_count[k];
     }

@@ -113,3 +113,14 @@ int spar_session_get_time(const spar_session *session, double *t, int64_t *step,
     }
     return SPAR_OK;
 }
+
+int spar_session_get_phase(const spar_session *session, int *phase) {
+    static const int answer[] = {
+        [SPARI_BEGUN] = SPAR_PHASE_BEGUN, [SPARI_SOLVED] = SPAR_PHASE_SOLVED, [SPARI_CHECKED] = SPAR_PHASE_CHECKED};
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    if (phase) {
+        int rest = session->started ? SPAR_PHASE_BETWEEN : SPAR_PHASE_START;
+        *phase = session->phase == SPARI_IDLE ? rest : answer[session->phase];
+    }
+    return SPAR_OK;
+}

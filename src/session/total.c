@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Force and moment about the point, of what this rank has pushed, on the structure where it is now. */
-static int sum_total(const spar_fluid *fluid, const double point[3], double total[6]) {
+static int sum_total(const spar_fluid *fluid, const double point[3], const char *call, double total[6]) {
     const spar_member *m = spari_fluid_member(fluid);
     for (int64_t i = 0; i < (m->committed ? m->nodes : 0); i++) {
         double load[6], arm[3], moment[3];
@@ -27,8 +27,8 @@ static int sum_total(const spar_fluid *fluid, const double point[3], double tota
         }
     }
     SPARI_REQUIRE(m->session, spari_first_nonfinite(total, 6) < 0, SPAR_ERR_NUMERIC,
-                  "spar_fluid_get_total: fluid '%s': the sum is too large for a double; check the unit of the loads",
-                  spari_fluid_name(fluid));
+                  "%s: fluid '%s': the sum is too large for a double; check the unit of the loads", call,
+                  spar_fluid_get_name(fluid));
     return SPAR_OK;
 }
 
@@ -44,9 +44,9 @@ int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double 
                                  spari_real("point (z)", about[2])};
     double total[7] = {0}; /* and the ranks' status */
     char what[SPARI_MESSAGE_SIZE / 2];
-    (void)snprintf(what, sizeof what, "%s: fluid '%s' of member '%s'", __func__, spari_fluid_name(fluid), m->name);
+    (void)snprintf(what, sizeof what, "%s: fluid '%s' of member '%s'", __func__, spar_fluid_get_name(fluid), m->name);
     int status = isfinite(about[0]) && isfinite(about[1]) && isfinite(about[2])
-                     ? sum_total(fluid, about, total)
+                     ? sum_total(fluid, about, __func__, total)
                      : spari_fail(s, SPAR_ERR_ARGUMENT, "%s: the point is (%g, %g, %g); give finite numbers", what,
                                   about[0], about[1], about[2]);
     SPARI_TRY(spari_enter_alike(s, what, alike, 3, status));

@@ -216,28 +216,6 @@ void spari_modal_matrix(int n, double *m) {
     }
 }
 
-static int is_negative(const double q[4]) {
-    for (int i = 0; i < 4; i++) {
-        if (q[i] != 0) {
-            return q[i] < 0;
-        }
-    }
-    return 0;
-}
-
-void spari_chain(int n, const double *q, int stride, double *out) {
-    for (int l = 0; l < n; l++) {
-        const double *from = q + (ptrdiff_t)l * stride;
-        double *to = out + (ptrdiff_t)4 * l, s = 1;
-        if (l == 0 ? is_negative(from) : spari_quat_dot(from, to - 4) < 0) {
-            s = -1;
-        }
-        for (int i = 0; i < 4; i++) {
-            to[i] = s * from[i];
-        }
-    }
-}
-
 /* Fields of one node: what is interpolated. */
 static void node_fields(const double *xr, const double *q, const double *v, const double *a, const double chained[4],
                         int consistent, int upto, double g[SPARI_FIELDS]) {

@@ -88,11 +88,6 @@ static inline double spari_nodes_xi(const spari_nodes *s, int64_t p) {
 /* c_k = sum_l m[k][l] f_l: nodal values at the GLL points to Chebyshev coefficients. */
 void spari_modal_matrix(int n, double *m);
 
-/* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
-   not depend on the signs that came in: the first node's leading component is made positive, each other follows its
-   predecessor. */
-void spari_chain(int n, const double *q, int stride, double *out);
-
 /* Fills c [elements][P][SPARI_FIELDS] from reference places xr [nodes][3], motion q [nodes][7], v, a [nodes][6]. */
 void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
                       const double *q, const double *v, const double *a, double *c);

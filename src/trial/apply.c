@@ -99,7 +99,7 @@ static int remake_fluids(spar_session *s, change *c) {
         }
         if (!of) {
             SPARI_REQUIRE(s, spari_fluid_keep(f, s->predictor) == SPAR_OK, SPAR_ERR_MEMORY,
-                          "no memory for the forces of '%s'", spari_fluid_name(f));
+                          "no memory for the forces of '%s'", spar_fluid_get_name(f));
             continue;
         }
         anew *a = &c->made[c->count];
@@ -173,7 +173,7 @@ static int check_apply(spar_session *s, const char *call) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         SPARI_REQUIRE(s, !spari_fluid_is_pending(f), SPAR_ERR_STATE,
                       "%s: fluid '%s' has nodes that are not mapped; call spar_fluid_map first", call,
-                      spari_fluid_name(f));
+                      spar_fluid_get_name(f));
     }
     return SPAR_OK;
 }

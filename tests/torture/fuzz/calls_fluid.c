@@ -93,6 +93,27 @@ void do_spar_fluid_map(call *c) {
 
 /* ---- what is mapped ---- */
 
+void do_spar_fluid_get_member(call *c) {
+    live_fluid *f = arg_fluid(c);
+    spar_member **member = arg_out(c, (int64_t)sizeof(spar_member *), 1);
+    RUN(c, spar_fluid_get_member(f->f, member));
+    if (c->status == SPAR_OK && *member != c->w->member[f->member].m) {
+        fuzz_finding("handle", "another member");
+    }
+}
+
+void do_spar_fluid_get_name(call *c) {
+    live_fluid *f = arg_fluid(c);
+    RUN_VOID(c, is_text(spar_fluid_get_name(f->f)));
+}
+
+void do_spar_fluid_fail(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int status = odd(c) ? 0 : 1 + below(c, SPAR_ERR_USER);
+    const char *message = arg_name(c, "why");
+    RUN(c, spar_fluid_fail(f->f, status, message));
+}
+
 void do_spar_fluid_get_count(call *c) {
     live_fluid *f = arg_fluid(c);
     int which = arg_int(c, 0, 1);

@@ -297,6 +297,20 @@ void do_spar_member_get_placement(call *c) {
     RUN(c, spar_member_get_placement(m->m, x, q));
 }
 
+void do_spar_member_get_session(call *c) {
+    live_member *m = arg_member(c, -1);
+    spar_session **session = arg_out(c, (int64_t)sizeof(spar_session *), 1);
+    RUN(c, spar_member_get_session(m->m, session));
+    if (c->status == SPAR_OK && *session != c->w->session[m->session].s) {
+        fuzz_finding("handle", "another session");
+    }
+}
+
+void do_spar_member_get_name(call *c) {
+    live_member *m = arg_member(c, -1);
+    RUN_VOID(c, is_text(spar_member_get_name(m->m)));
+}
+
 void do_spar_member_get_root(call *c) {
     live_member *m = arg_member(c, -1);
     int *kind = arg_out(c, (int64_t)sizeof *kind, 1);

@@ -12,7 +12,7 @@ static int odd_word(call *c) {
     return x;
 }
 
-static void is_text(const char *answer) {
+void is_text(const char *answer) {
     if (!answer || strlen(answer) > 2000) {
         fuzz_finding("text", "no text");
     }
@@ -259,6 +259,23 @@ void do_spar_session_get_reproducible(call *c) {
     live_session *l = arg_session(c);
     int *on = arg_out(c, (int64_t)sizeof *on, 1);
     RUN(c, spar_session_get_reproducible(l->s, on));
+}
+
+void do_spar_session_get_phase(call *c) {
+    live_session *l = arg_session(c);
+    int *phase = arg_out(c, (int64_t)sizeof *phase, 1);
+    RUN(c, spar_session_get_phase(l->s, phase));
+    if (c->status == SPAR_OK && phase && (*phase < SPAR_PHASE_START || *phase > SPAR_PHASE_CHECKED)) {
+        fuzz_finding("phase", "phase %d", *phase);
+    }
+}
+
+void do_spar_session_sum(call *c) {
+    live_session *l = arg_session(c);
+    int status = odd(c) ? -1 : SPAR_OK;
+    int64_t n = arg_count(c, 0, 6);
+    double *x = arg_reals(c, length(n), -1, 1);
+    RUN(c, spar_session_sum(l->s, status, n, x));
 }
 
 void do_spar_session_get_option(call *c) {

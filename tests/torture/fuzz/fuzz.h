@@ -64,6 +64,13 @@ enum {
     CALL(spar_beam_get_damping, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_get_projection, 20, FUZZ_PURE)                                                                     \
     CALL(spar_fluid_get_interpolation, 20, FUZZ_PURE)                                                                  \
+    CALL(spar_session_get_phase, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_session_sum, 20, FUZZ_PURE)                                                                              \
+    CALL(spar_member_get_session, 20, FUZZ_PURE)                                                                       \
+    CALL(spar_member_get_name, 10, FUZZ_PURE | FUZZ_TEXT)                                                              \
+    CALL(spar_fluid_get_member, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_get_name, 10, FUZZ_PURE | FUZZ_TEXT)                                                               \
+    CALL(spar_fluid_fail, 30, FUZZ_PUSH)                                                                               \
     CALL(spar_session_get_option, 40, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
     CALL(spar_session_get_residual, 30, FUZZ_PURE)                                                                     \
@@ -320,7 +327,8 @@ uint64_t word(call *c);
 int below(call *c, int n);        /* 0 to n-1 */
 int chance(call *c, int percent); /* of anything */
 double uniform(call *c, double lo, double hi);
-int odd(call *c); /* is this argument to be odd? */
+int odd(call *c);                 /* is this argument to be odd? */
+void is_text(const char *answer); /* is read to its end */
 void text(call *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 live_session *arg_session(call *c);

@@ -358,6 +358,9 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_beam_get_damping, b, number + 0);
     CALL(spar_fluid_get_projection, f, whole + 0, number + 8);
     CALL(spar_fluid_get_interpolation, f, whole + 0);
+    CALL(spar_session_get_phase, s, whole + 0);
+    PLAIN(spar_member_get_name, b);
+    PLAIN(spar_fluid_get_name, f);
     CALL(spar_session_get_option, s, "coupling.columns", (int64_t)sizeof word, word);
 }
 
@@ -369,7 +372,8 @@ static void act_step(void) {
     static const double eta[2] = {0.2, 0.9};
     int64_t step, node;
     int done = 0, iteration;
-    spar_session *s = h.session = begin_session();
+    spar_member *owner;
+    spar_session *whole, *s = h.session = begin_session();
     settings(s);
     CALL(spar_session_set_log, s, quiet, NULL);
     spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
@@ -413,6 +417,10 @@ static void act_step(void) {
     CALL(spar_fluid_get_total, h.fluid[0], NULL, total, total + 3);
     CALL(spar_fluid_get_travel, h.fluid[0], total, &node);
     read_back(s, b, h.fluid[0]);
+    CALL(spar_fluid_get_member, h.fluid[0], &owner);
+    CALL(spar_member_get_session, owner, &whole);
+    CALL(spar_session_sum, whole, SPAR_OK, 6, load);
+    CALL(spar_fluid_fail, h.fluid[0], SPAR_ERR_NUMERIC, "between steps nobody waits for it");
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);
     note(all, 36 * sizeof *all);

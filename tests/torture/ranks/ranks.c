@@ -247,6 +247,10 @@ static int make_apply(scene *c, const arguments *a) {
     double advised;
     return spar_session_apply_advice(c->session, a->no_out ? NULL : &advised);
 }
+static int make_sum(scene *c, const arguments *a) {
+    double x[] = {1, 2};
+    return spar_session_sum(c->session, SPAR_OK, 2, a->no_out ? NULL : x);
+}
 static int make_aero(scene *c, const arguments *a) {
     return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
                                     a->no_out ? -1 : SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, out);
@@ -298,6 +302,7 @@ static const struct call {
     {"spar_session_advise", make_advise, IDLE, TRIAL | TOLERANCE | NEEDS_SOLVE},
     {"spar_session_apply_advice", make_apply, IDLE, SETTINGS},
     {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
+    {"spar_session_sum", make_sum, IDLE, OUT | SETTINGS},
 };
 enum {
     CREATE = 0,

@@ -1,0 +1,41 @@
+/* Sums over the ranks for what is built on a session: layers above need no MPI of their own. */
+#include "../base/quiet.h"
+#include "../base/scene.h"
+#include "../comm/enter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int check_sum(spar_session *s, const char *call, int status, int64_t n, const double *x) {
+    SPARI_REQUIRE(s, status >= SPAR_OK && status <= SPAR_ERR_USER, SPAR_ERR_ARGUMENT,
+                  "%s: the status is %d; give SPAR_OK or a SPAR_ERR_*", call, status);
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: %lld numbers; give 0 to 2^40", call,
+                  (long long)n);
+    SPARI_REQUIRE(s, x || n == 0, SPAR_ERR_ARGUMENT, "%s: the numbers are NULL", call);
+    return status;
+}
+
+int spar_session_sum(spar_session *session, int status, int64_t n, double *x) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    double *room = NULL; /* one more: comm.h */
+    int own = check_sum(s, __func__, status, n, x);
+    if (own == SPAR_OK) {
+        room = spari_zalloc(n + 1, sizeof *room);
+        own = room ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for %lld numbers", __func__, (long long)n);
+    }
+    if (room && n > 0) {
+        memcpy(room, x, (size_t)n * sizeof *x);
+    }
+    const spari_alike alike[] = {spari_whole("n", n)};
+    int answer = spari_enter_alike(s, __func__, alike, 1, own);
+    if (answer == SPAR_OK) {
+        answer = spari_comm_sum(s->comm, room, n, SPAR_OK, s->message, sizeof s->message);
+    }
+    if (answer == SPAR_OK && n > 0) {
+        memcpy(x, room, (size_t)n * sizeof *x);
+    }
+    free(room);
+    return answer;
+}
