@@ -556,16 +556,21 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
    terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
    those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
    load stiffness; of a rigid one those of the rigid body. A rotor: set_root DRIVEN, set_initial_velocity, commit,
-   solve_static, solve_modes. Local.
-     n: in, modes, at most the number of free unknowns
+   solve_static, solve_modes.
+   Of a member that joints tie to others: the modes of them all, on which they agree to the bit whichever is asked, and
+   the member's part of the shapes; what joints hold or drive stands still, their springs and the turning of their loads
+   are in the stiffness (solve statically first, so that the loads are known), their dampers are left out. Parts that
+   turn are seen as said above, each from its root's frame, which means most where all turn alike. Local.
+     n: in, modes, at most the number of free unknowns less what joints hold
      frequency_hz[n]: out, ascending, negative where the stiffness is, infinite where there is no mass
-     shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, NULL: not wanted */
+     shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, of an assembly that of all its
+           members together, NULL: not wanted */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
    shear y, torsion with stretch), the third group gets the geometric mean. Between commit and the first step.
    Collective.
-     mode[2]: in, from 0, as spar_member_solve_modes gives them now
+     mode[2]: in, from 0, as spar_member_solve_modes gives them now; of the member by itself where joints tie it
      ratio[2]: in, of critical, > 0
      mu[6]: out, s, what has been set, NULL: not wanted
    SPAR_ERR_ARGUMENT: both modes are of one kind; SPAR_ERR_NUMERIC: no mu gives these ratios (as of a mode that moves a
@@ -582,8 +587,8 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
    is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
-   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, save, trials
-   and modes answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
+   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, save and
+   trials answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
    where nothing holds an assembly, the message names the motion that is free. spar_member_get_work leaves out what
    joints do. */
 

@@ -73,6 +73,8 @@ void spari_joint_balance(spar_joint *joint);
 /* The step under way is accepted, or given up: the first one with the balance at t^0. */
 void spari_joint_accept(spar_joint *joint);
 void spari_joint_reject(spar_joint *joint);
+/* Where its two nodes are in the motion after. */
+void spari_joint_places(const spar_joint *joint, spari_place place[2]);
 /* load[6] += what the joints put on a node of a member, in the motion after. */
 void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
 /* SPAR_ERR_UNSUPPORTED where the session has joints: what does not know them yet. */

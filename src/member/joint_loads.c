@@ -15,6 +15,11 @@ static void place_of_seat(const spar_joint *j, int side, spari_place *p) {
     }
 }
 
+void spari_joint_places(const spar_joint *j, spari_place place[2]) {
+    place_of_seat(j, 0, &place[0]);
+    place_of_seat(j, 1, &place[1]);
+}
+
 void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
@@ -23,8 +28,7 @@ void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
             }
             spari_place place[2];
             double z[6], B[6][12], f[12];
-            place_of_seat(j, 0, &place[0]);
-            place_of_seat(j, 1, &place[1]);
+            spari_joint_places(j, place);
             spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
             spari_tie_forces(B, j->after.load, f);
             for (int k = 0; k < 6; k++) {

@@ -299,13 +299,18 @@ static int gather_all(spar_session *s) {
     return SPAR_OK;
 }
 
-/* This rank's part. */
-static int make_all(spar_session *s) {
-    for (spar_joint *j = s->joints; j; j = j->next) {
+int spari_joints_place(spar_session *s) {
+    for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
         SPARI_TRY(check_members(j));
         SPARI_TRY(spari_joint_place(j));
         lead_to_bodies(j);
     }
+    return SPAR_OK;
+}
+
+/* This rank's part. */
+static int make_all(spar_session *s) {
+    SPARI_TRY(spari_joints_place(s));
     int status = gather_all(s);
     status = status == SPAR_OK ? choose_owners(s) : status;
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {

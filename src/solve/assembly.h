@@ -13,6 +13,8 @@
    Before the first step, collective where there are joints; where they are made already it does nothing. call: in whose
    name. */
 int spari_assemblies_make(spar_session *session, const char *call);
+/* Where joints are in the reference, as far as that comes before; local. A status and a message. */
+int spari_joints_place(spar_session *session);
 void spari_assemblies_free(spar_session *session);
 spari_assembly *spari_assembly_next(const spari_assembly *assembly);
 /* The rank that solves it. */

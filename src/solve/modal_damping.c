@@ -7,6 +7,7 @@
 #include "../member/beam.h"
 #include "../member/edge.h"
 #include "fidelity.h"
+#include "modes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -129,7 +130,7 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 12 * u;
     double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
-    int own[2] = {0, 0}, status = spar_member_solve_modes(m, most, all, shapes);
+    int own[2] = {0, 0}, status = spari_modes_of_member(m, most, all, shapes);
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
             status = spari_fail(s, SPAR_ERR_NUMERIC,

@@ -3,12 +3,11 @@
    stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
    keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
    is 0 where K is positive definite, else the smallest tried that makes it so. */
+#include "modes.h"
+
 #include "../base/blas.h"
-#include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../member/body.h"
-#include "../member/edge.h"
-#include "../member/joint.h"
 #include "eigen.h"
 #include "fidelity.h"
 
@@ -19,15 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The problem over the free unknowns. */
-typedef struct modal {
-    size_t size;
-    gsl_matrix *K, *M, *A, *B, *x;
-    gsl_vector *lambda, *work;
-    double *room; /* 6 of each unique node */
-} modal;
-
-static void modal_free(modal *p) {
+void spari_modal_free(spari_modal *p) {
     gsl_matrix_free(p->K);
     gsl_matrix_free(p->M);
     gsl_matrix_free(p->A);
@@ -35,11 +26,10 @@ static void modal_free(modal *p) {
     gsl_matrix_free(p->x);
     gsl_vector_free(p->lambda);
     gsl_vector_free(p->work);
-    free(p->room);
 }
 
-static int modal_alloc(const spar_member *m, modal *p) {
-    size_t n = p->size;
+int spari_modal_alloc(spari_modal *p, size_t n) {
+    p->size = n;
     p->K = gsl_matrix_calloc(n, n);
     p->M = gsl_matrix_calloc(n, n);
     p->A = gsl_matrix_alloc(n, n);
@@ -47,12 +37,11 @@ static int modal_alloc(const spar_member *m, modal *p) {
     p->x = gsl_matrix_alloc(n, n);
     p->lambda = gsl_vector_alloc(n);
     p->work = gsl_vector_alloc(n);
-    p->room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *p->room);
-    return p->K && p->M && p->A && p->B && p->x && p->lambda && p->work && p->room;
+    return p->K && p->M && p->A && p->B && p->x && p->lambda && p->work;
 }
 
 /* K + sigma M into B, with its Cholesky factor tried in A. */
-static int shifted(const modal *p, double sigma) {
+static int shifted(const spari_modal *p, double sigma) {
     for (size_t i = 0; i < p->size; i++) {
         for (size_t j = 0; j < p->size; j++) {
             gsl_matrix_set(p->B, i, j, gsl_matrix_get(p->K, i, j) + sigma * gsl_matrix_get(p->M, i, j));
@@ -67,7 +56,7 @@ static int shifted(const modal *p, double sigma) {
 /* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1 when
    none does. A smaller one would make 1 / (omega^2 + sigma) of a rigid motion so large that rounding in it drowns the
    others, a larger one drowns the low modes: an omega^2 keeps what is between sigma and rounding on either side. */
-static double find_shift(const modal *p) {
+static double find_shift(const spari_modal *p) {
     double largest = 0;
     if (shifted(p, 0)) {
         return 0;
@@ -84,67 +73,80 @@ static double find_shift(const modal *p) {
     return largest == 0 && shifted(p, 1) ? 1 : -1; /* a rigid body that nothing holds */
 }
 
-static void give_mode(const spar_member *m, modal *p, size_t k, double *shape) {
+const double *spari_modal_mode(spari_modal *p, size_t k) {
     gsl_vector_view x = gsl_matrix_column(p->x, k);
     double norm;
     SPARI_BLAS(gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work));
     gsl_blas_ddot(&x.vector, p->work, &norm);
     gsl_vector_memcpy(p->work, &x.vector);
     gsl_vector_scale(p->work, 1 / (norm > 0 ? sqrt(norm) : 1));
-    m->row->shape(m, p->work->data, p->room, shape);
+    return p->work->data;
 }
 
 static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
     return spari_first_nonfinite(A->data, (int64_t)(A->size1 * A->size2)) < 0;
 }
 
-static int find_modes(const spar_member *m, int64_t n, modal *p, double *frequency, double *shapes) {
-    int status = modal_alloc(m, p) ? m->row->problem(m, p->K->data, p->M->data) : SPAR_ERR_MEMORY; /* without gaps */
-    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the modes of '%s'", m->name);
-    SPARI_REQUIRE(m->session, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
-                  "member '%s': its stiffness in the present state is beyond the range of numbers; look at its loads "
-                  "and sections, or at their units",
-                  m->name);
+int spari_modal_solve(spari_modal *p, const spar_member *m, const char *who, int64_t n, double *frequency) {
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
+                  "%s '%s': stiffness in the present state is beyond the range of numbers; look at loads and sections, "
+                  "or at their units",
+                  who, m->name);
     double sigma = find_shift(p);
-    SPARI_REQUIRE(m->session, sigma >= 0, SPAR_ERR_NUMERIC,
-                  "member '%s': no shift makes its stiffness positive definite in the present state: it can move where "
-                  "it has neither mass nor stiffness",
-                  m->name);
+    SPARI_REQUIRE(s, sigma >= 0, SPAR_ERR_NUMERIC,
+                  "%s '%s': no shift makes the stiffness positive definite in the present state: something can move "
+                  "where there is neither mass nor stiffness",
+                  who, m->name);
     gsl_matrix_memcpy(p->A, p->M);
-    status = spari_eigen(p->A, p->B, p->lambda, p->x);
-    SPARI_REQUIRE(m->session, status != SPAR_ERR_MEMORY, status, "no memory for the modes of '%s'", m->name);
-    SPARI_REQUIRE(m->session, status == SPAR_OK, status,
-                  "member '%s': stiffness and mass lie too far apart for the range of numbers; look at its sections",
+    int status = spari_eigen(p->A, p->B, p->lambda, p->x);
+    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the modes of '%s'", m->name);
+    SPARI_REQUIRE(s, status == SPAR_OK, status,
+                  "%s '%s': stiffness and mass lie too far apart for the range of numbers; look at the sections", who,
                   m->name);
     for (int64_t k = 0; k < n; k++) {
         double mu = gsl_vector_get(p->lambda, (size_t)k), square = mu > 0 ? 1 / mu - sigma : INFINITY;
         frequency[k] = copysign(sqrt(fabs(square)), square) / 6.283185307179586;
-        if (shapes) {
-            give_mode(m, p, (size_t)k, shapes + 6 * m->nodes * k);
-        }
     }
     return SPAR_OK;
 }
 
-int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
-    SPARI_QUIET;
-    SPARI_TRY(spari_need_committed(member, __func__));
-    spar_session *s = member->session;
-    SPARI_REQUIRE(s, member->body && member->body->mass && (member->effects & SPAR_EFFECT_INERTIA),
-                  SPAR_ERR_UNSUPPORTED, "%s: '%s' has no mass that spar knows of", __func__, member->name);
-    SPARI_REQUIRE(s, !spari_member_is_tied(member), SPAR_ERR_UNSUPPORTED,
-                  "%s: joints tie '%s'; the modes of members tied together are not there in this release", __func__,
-                  member->name);
-    int64_t free_unknowns = member->row->unknowns(member);
-    SPARI_REQUIRE(s, n >= 0 && n <= free_unknowns, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes; it has %lld", __func__,
-                  member->name, (long long)n, (long long)free_unknowns);
-    SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
-                  member->name);
-    if (n == 0) {
-        return SPAR_OK;
+/* ---- one member ---- */
+
+int spari_modes_need_mass(const spar_member *m) {
+    SPARI_REQUIRE(m->session, m->body && m->body->mass && (m->effects & SPAR_EFFECT_INERTIA), SPAR_ERR_UNSUPPORTED,
+                  "'%s' has no mass that spar knows of", m->name);
+    return SPAR_OK;
+}
+
+static int check_count(const spar_member *m, int64_t n, int64_t free_unknowns) {
+    SPARI_REQUIRE(m->session, n <= free_unknowns, SPAR_ERR_ARGUMENT, "'%s': %lld modes; it has %lld", m->name,
+                  (long long)n, (long long)free_unknowns);
+    return SPAR_OK;
+}
+
+static int find_modes(const spar_member *m, int64_t n, spari_modal *p, double *frequency, double *shapes) {
+    double *room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *room);
+    int status = room && spari_modal_alloc(p, (size_t)m->row->unknowns(m))
+                     ? m->row->problem(m, p->K->data, p->M->data) /* without gaps */
+                     : SPAR_ERR_MEMORY;
+    if (status != SPAR_OK) {
+        free(room);
+        return spari_fail(m->session, status, "no memory for the modes of '%s'", m->name);
     }
-    modal p = {.size = (size_t)free_unknowns};
-    int status = find_modes(member, n, &p, frequency_hz, shapes);
-    modal_free(&p);
-    return spari_named(s, __func__, status);
+    status = spari_modal_solve(p, m, "member", n, frequency);
+    for (int64_t k = 0; k < n && shapes && status == SPAR_OK; k++) {
+        m->row->shape(m, spari_modal_mode(p, (size_t)k), room, shapes + 6 * m->nodes * k);
+    }
+    free(room);
+    return status;
+}
+
+int spari_modes_of_member(const spar_member *m, int64_t n, double *frequency, double *shapes) {
+    spari_modal p = {0};
+    SPARI_TRY(spari_modes_need_mass(m));
+    SPARI_TRY(check_count(m, n, m->row->unknowns(m)));
+    int status = find_modes(m, n, &p, frequency, shapes);
+    spari_modal_free(&p);
+    return status;
 }
