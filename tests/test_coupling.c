@@ -140,6 +140,159 @@ static void report(void **state) {
     pistons_destroy(&p);
 }
 
+/* An added mass is told once there are differences enough to tell its spread: of one whose map has one ratio the spread
+   is rounding; of pushes that are off by a tenth in turn it is some tenth of 1/2 over the ways between them. */
+static void added_mass_with_spread(void **state) {
+    (void)state;
+    const double r = 0.5;
+    double rep[SPAR_REPORT_COUNT];
+    for (int noisy = 0; noisy < 2; noisy++) {
+        pistons p;
+        pistons_create(&p, 1, &r);
+        OK(p.session, spar_session_set_predictor(p.session, 0));
+        OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-3, 100));
+        p.b[0] = 5;
+        for (int step = 0; step < 6; step++) {
+            int done = 0, n = 0;
+            OK(p.session, spar_step_begin(p.session, 0.1));
+            while (!done) {
+                OK(p.session, spar_step_solve(p.session));
+                p.ratio[0] = r * (1 + (noisy && n % 2 ? 0.1 : 0));
+                OK(p.session, pistons_fluid(p.session, 0, 0.1, n++, &p));
+                OK(p.session, spar_step_check(p.session, &done));
+                OK(p.session, spar_session_get_report(p.session, SPAR_REPORT_COUNT, rep));
+                assert_true(step > 0 || n > 3 || rep[SPAR_REPORT_ADDED_MASS] == 0);
+                done |= n == 8;
+            }
+            OK(p.session, spar_step_accept(p.session));
+            p.b[0] = -p.b[0];
+        }
+        double spread = rep[SPAR_REPORT_ADDED_MASS_SPREAD];
+        NEAR(rep[SPAR_REPORT_ADDED_MASS], r, noisy ? 0.3 : 1e-9);
+        assert_true(noisy ? spread > 0.02 && spread < 0.6 : spread < 1e-6);
+        print_message("added mass %g (+- %g)\n", rep[SPAR_REPORT_ADDED_MASS], spread);
+        pistons_destroy(&p);
+    }
+}
+
+/* ---- loops that the host drives ---- */
+
+static double use_of(const pistons *p) {
+    double load[6];
+    OK(p->session, spar_member_get_loads(p->body[0], load));
+    return load[0];
+}
+
+/* A fixed number of iterations, whatever the check says, and accept: the loads are those pushed last, the motion that
+   of the loads before, which after k iterations from 0 are 5 (1 - (-r)^k) / (1 + r), r = 1/2; the next step predicts
+   from the loads pushed. After a check that was not done spar_member_get_loads gives what comes next. */
+static void fixed_number_of_iterations(void **state) {
+    (void)state;
+    enum { COUNT = 3 };
+    const double r = 0.5, limit = 5 / (1 + r);
+    double a[6], t;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    p.b[0] = 5;
+    OK(p.session, spar_session_set_predictor(p.session, 0));
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 50));
+    int done = 1;
+    OK(p.session, spar_step_begin(p.session, 0.1));
+    NEAR(use_of(&p), 0, 0);
+    for (int k = 0; k < COUNT; k++) {
+        OK(p.session, spar_step_solve(p.session));
+        NEAR(use_of(&p), limit * (1 - pow(-r, k)), 1e-12);
+        OK(p.session, pistons_fluid(p.session, 0, 0.1, k, &p));
+        OK(p.session, spar_step_check(p.session, &done));
+        assert_int_equal(done, 0);
+        NEAR(use_of(&p), limit * (1 - pow(-r, k + 1)), 1e-12);
+    }
+    OK(p.session, spar_step_accept(p.session));
+    OK(p.session, spar_session_get_time(p.session, &t, NULL, NULL));
+    NEAR(t, 0.1, 1e-15);
+    OK(p.session, spar_member_get_motion(p.body[0], NULL, NULL, a));
+    NEAR(a[0] * p.mass[0], limit * (1 - pow(-r, COUNT - 1)), 1e-12);
+    OK(p.session, spar_step_begin(p.session, 0.1));
+    NEAR(use_of(&p), limit * (1 - pow(-r, COUNT)), 1e-12);
+    OK(p.session, spar_step_reject(p.session));
+    pistons_destroy(&p);
+}
+
+/* On after `done`: the loads in use stay, so that another solution is the same to the bit, and another check agrees;
+   the loads pushed then count. A host that cannot tell when its last iteration is pushes in the next step's first call:
+   push, check, accept, begin, solve, and gets the same run. */
+static void on_after_done(void **state) {
+    (void)state;
+    const double r = 2;
+    double q[3][7], v[2][6];
+    for (int late = 0; late < 3; late++) { /* as spar_step does it; once more after done; pushed late */
+        pistons p;
+        pistons_create(&p, 1, &r);
+        p.b[0] = 5, p.stiffness = 3;
+        OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
+        int under_way = 0, done = 0;
+        for (int step = 0; step < 5; step++) {
+            if (under_way) { /* the next step's first call ends the last one */
+                OK(p.session, pistons_fluid(p.session, 0, 0.1, 0, &p));
+                OK(p.session, spar_step_check(p.session, &done));
+                OK(p.session, spar_step_accept(p.session));
+            }
+            OK(p.session, spar_step_begin(p.session, 0.1));
+            for (done = 0; !done;) {
+                OK(p.session, spar_step_solve(p.session));
+                OK(p.session, pistons_fluid(p.session, 0, 0.1, 0, &p));
+                OK(p.session, spar_step_check(p.session, &done));
+            }
+            if (late > 0) {
+                OK(p.session, spar_member_get_motion(p.body[0], q[0], v[0], NULL));
+                OK(p.session, spar_step_solve(p.session));
+                OK(p.session, spar_member_get_motion(p.body[0], q[1], v[1], NULL));
+                assert_memory_equal(q[0], q[1], sizeof q[0]);
+                assert_memory_equal(v[0], v[1], sizeof v[0]);
+            }
+            if (late == 1) {
+                OK(p.session, pistons_fluid(p.session, 0, 0.1, 0, &p));
+                OK(p.session, spar_step_check(p.session, &done));
+                assert_int_equal(done, 1);
+            }
+            under_way = late == 2;
+            if (!under_way) {
+                OK(p.session, spar_step_accept(p.session));
+            }
+        }
+        OK(p.session, spar_member_get_motion(p.body[0], q[late == 0 ? 2 : 0], NULL, NULL));
+        assert_true(late == 0 || memcmp(q[0], q[2], sizeof q[0]) == 0);
+        pistons_destroy(&p);
+    }
+}
+
+/* The limit of iterations stands in a host's own loop too: at it the check fails, and the step can only be rejected, or
+   goes on under coupling.unconverged = accept. */
+static void own_loop_to_the_limit(void **state) {
+    (void)state;
+    const double r = 0.5;
+    for (int accept = 0; accept < 2; accept++) {
+        pistons p;
+        pistons_create(&p, 1, &r);
+        p.b[0] = 5;
+        OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-12, 3));
+        OK(p.session, spar_session_set_option(p.session, "coupling.unconverged", accept ? "accept" : "error"));
+        OK(p.session, spar_step_begin(p.session, 0.1));
+        for (int k = 0; k < 3; k++) {
+            int done = 0, expected = k < 2 || accept ? SPAR_OK : SPAR_ERR_NUMERIC;
+            OK(p.session, spar_step_solve(p.session));
+            OK(p.session, pistons_fluid(p.session, 0, 0.1, k, &p));
+            assert_int_equal(spar_step_check(p.session, &done), expected);
+            assert_int_equal(done, k == 2 && accept);
+        }
+        assert_int_equal(spar_step_accept(p.session), accept ? SPAR_OK : SPAR_ERR_STATE);
+        if (!accept) {
+            OK(p.session, spar_step_reject(p.session));
+        }
+        pistons_destroy(&p);
+    }
+}
+
 /* At its limit the iteration is an error, or is accepted and counted. */
 static void unconverged(void **state) {
     (void)state;
@@ -149,10 +302,10 @@ static void unconverged(void **state) {
     pistons p;
     pistons_create(&p, 1, &r);
     p.b[0] = 5;
-    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 4));
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 6));
     assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_NUMERIC);
-    assert_non_null(strstr(spar_session_message(p.session), "not converged in 4 iterations"));
-    assert_non_null(strstr(spar_session_message(p.session), "added mass about 3 of"));
+    assert_non_null(strstr(spar_session_message(p.session), "not converged in 6 iterations"));
+    assert_non_null(strstr(spar_session_message(p.session), "added mass about 3 (+- "));
     OK(p.session, spar_session_get_time(p.session, &t, &step, NULL));
     assert_true(t == 0 && step == 0);
     OK(p.session, spar_session_set_option(p.session, "coupling.unconverged", "accept"));
@@ -491,6 +644,10 @@ int main(void) {
         cmocka_unit_test(ratios),
         cmocka_unit_test(channel_modes),
         cmocka_unit_test(report),
+        cmocka_unit_test(added_mass_with_spread),
+        cmocka_unit_test(fixed_number_of_iterations),
+        cmocka_unit_test(on_after_done),
+        cmocka_unit_test(own_loop_to_the_limit),
         cmocka_unit_test(unconverged),
         cmocka_unit_test(motion_test),
         cmocka_unit_test(nan_in_the_third_iteration),

@@ -145,14 +145,16 @@ enum {
 /* Entries of the report of the coupling, spar_session_get_report. */
 enum {
     SPAR_REPORT_CONTRACTION = 0, /* mean factor by which an iteration shrinks the residual; 0 after one iteration */
-    SPAR_REPORT_ADDED_MASS = 1,  /* (added mass) / (mass) in the most affected direction seen; iterated only */
+    SPAR_REPORT_ADDED_MASS = 1,  /* iterated only: (added mass) / (mass), as loads come back, in the directions iterated
+                                    in, over this step and, fading, those before; 0: too few differences to tell */
     SPAR_REPORT_COLUMNS = 2,     /* IQN-ILS: columns in the last least-squares problem */
     SPAR_REPORT_DROPPED = 3,     /* IQN-ILS: nearly dependent columns filtered out in this step */
     SPAR_REPORT_ERROR = 4,       /* last accepted step: |final loads - predicted loads| / |final loads| */
     SPAR_REPORT_ADVISED_DT = 5,  /* dt at which that error is option coupling.target, within 0.1 to 2 of dt */
     SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
     SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
-    SPAR_REPORT_COUNT = 8
+    SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
+    SPAR_REPORT_COUNT = 9
 };
 
 /* A session of this process alone. session: out. Local. */
@@ -495,7 +497,9 @@ SPAR_API int spar_member_set_load(spar_member *member, int64_t node, int kind, c
    beam, or eta or load not allowed. */
 SPAR_API int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load);
 /* load[n][6]: out, N, N m, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that
-   do the same work: those the structure is solved with; after spar_step_check those just pushed. */
+   do the same work: those the structure is to be solved with. After spar_step_begin these are predicted; after a
+   spar_step_check that was not done they are the accelerated ones of the next solution (an external member is solved
+   with these); after one that was done, and between steps, those pushed last. */
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 /* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */
 SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);
@@ -827,7 +831,9 @@ SPAR_API int spar_fluid_get_total(const spar_fluid *fluid, const double point[3]
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
 
 /* All collective. A step is begun, solved, checked, as often as it takes, and accepted or rejected; a call out of
-   this order is SPAR_ERR_STATE. After a failure the state at t^n is untouched: reject the step, and begin another. */
+   this order is SPAR_ERR_STATE. After a failure the state at t^n is untouched: reject the step, and begin another.
+   A loop of the host's own may accept before spar_step_check was done, or solve, push and check again after it was: the
+   motion is that of the last solution, the loads those pushed last (docs/coupling.md). */
 
 /* Step 1: predicts the loads at t^{n+1} = t^n + dt. dt: in, s, > 0, the same on every rank; may differ from step to
    step. */

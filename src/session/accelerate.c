@@ -20,6 +20,11 @@ typedef struct column {
     double dt;
 } column;
 
+/* Ratios of differences, by weight: what they come to, and how far they agree. */
+typedef struct tally {
+    double weight, square, sum, sum2; /* sums of w, w^2, w r, w r^2 */
+} tally;
+
 struct spari_accelerator {
     spari_accelerator_settings set;
     int64_t n;
@@ -28,6 +33,9 @@ struct spari_accelerator {
     int64_t step, serial;
     int iteration, dropped;
     double dt, ratio;
+    tally ratios, ratios_before; /* of this step, weighed by the roots of the differences' lengths; of those accepted,
+                                    each over its largest weight, and fading */
+    double most_weight;
     double omega, omega_accepted; /* of Aitken: in use, and at the end of the last accepted step (0: none) */
 
     double size[2], weight[2]; /* of forces and moments */
@@ -477,6 +485,8 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->dropped = 0;
     a->used = 0;
     a->ratio = 0;
+    a->ratios = (tally){0};
+    a->most_weight = 0;
     /* Kuettler & Wall (2008): the last factor, as far as the user's allows */
     a->omega = a->set.scheme == SPAR_COUPLING_AITKEN && a->omega_accepted > 0 ? fmin(a->omega_accepted, a->set.omega)
                                                                               : a->set.omega;
@@ -485,6 +495,12 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
             a->column[s].state = RESTING;
         }
     }
+}
+
+/* a and b, their weights times p and q. */
+static tally join(const tally *a, double p, const tally *b, double q) {
+    return (tally){p * a->weight + q * b->weight, p * p * a->square + q * q * b->square, p * a->sum + q * b->sum,
+                   p * a->sum2 + q * b->sum2};
 }
 
 /* -dx.dg / dx.dx of the last two iterations */
@@ -502,6 +518,18 @@ static void estimate_ratio(spari_accelerator *a, const double *x, const double *
     if (isfinite(ratio) && fabs(ratio) > fabs(a->ratio)) {
         a->ratio = ratio;
     }
+    if (isfinite(ratio) && isfinite(square)) {
+        double w = sqrt(sqrt(square));
+        const tally one = {w, w * w, w * ratio, w * ratio * ratio};
+        a->most_weight = fmax(a->most_weight, w);
+        a->ratios = join(&a->ratios, 1, &one, 1);
+    }
+}
+
+/* Those of earlier steps with those of this one, if it has any. */
+static tally all_ratios(const spari_accelerator *a, double fade) {
+    double length = a->most_weight;
+    return length > 0 ? join(&a->ratios_before, fade, &a->ratios, 1 / length) : a->ratios_before;
 }
 
 static void compute_next(spari_accelerator *a, const double *x, const double *g, double *next) {
@@ -526,6 +554,8 @@ static void set_norm(spari_accelerator *a, int imaged) {
         }
         a->imaged = imaged;
         a->iteration = a->used = 0;
+        a->ratios = a->ratios_before = (tally){0};
+        a->most_weight = 0;
     }
 }
 
@@ -613,6 +643,10 @@ void spari_accelerator_accept(spari_accelerator *a) {
     if (a->iteration > 1) {
         a->omega_accepted = a->omega;
     }
+    static const double FADE = 0.8;
+    a->ratios_before = all_ratios(a, FADE);
+    a->ratios = (tally){0};
+    a->most_weight = 0;
     a->scatter_accepted = a->scatter;
     a->used = 0;
     a->step++;
@@ -625,6 +659,8 @@ void spari_accelerator_reject(spari_accelerator *a) {
             c->state = c->step == a->step ? FREE : LIVE;
         }
     }
+    a->ratios = (tally){0};
+    a->most_weight = 0;
     a->scatter = a->scatter_accepted;
     a->used = 0;
     a->iteration = 0;
@@ -642,13 +678,26 @@ double spari_accelerator_ratio(const spari_accelerator *a) {
     return a->ratio;
 }
 
+int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread) {
+    static const double ENOUGH = 2.5;
+    tally all = all_ratios(a, 1);
+    double count = all.square > 0 ? all.weight * all.weight / all.square : 0; /* as many of equal weight */
+    int enough = count >= ENOUGH;
+    *mean = enough ? all.sum / all.weight : 0;
+    *spread = enough ? sqrt(fmax(all.sum2 / all.weight - *mean * *mean, 0) * count / (count - 1)) : 0;
+    enough = enough && isfinite(*mean) && isfinite(*spread);
+    *mean = enough ? *mean : 0;
+    *spread = enough ? *spread : 0;
+    return enough;
+}
+
 double spari_accelerator_scatter(const spari_accelerator *a) {
     return a->scatter;
 }
 
 /* ---- save and load ---- */
 
-enum { HEAD = 21, COLUMN_HEAD = 5 };
+enum { HEAD = 30, COLUMN_HEAD = 5 };
 
 /* Vectors of length n that are kept of the iteration before, and of each column. */
 static int64_t kept(const spari_accelerator *a) {
@@ -668,11 +717,36 @@ int64_t spari_accelerator_state_size(const spari_accelerator *a) {
 }
 
 void spari_accelerator_save(const spari_accelerator *a, double *state) {
-    const double head[HEAD] = {
-        (double)a->n,      (double)a->step,   (double)a->serial, a->iteration, a->dropped, a->dt,
-        a->ratio,          a->omega,          a->omega_accepted, a->size[0],   a->size[1], a->weight[0],
-        a->weight[1],      occupied(a),       a->used,           a->imaged,    a->scatter, a->scatter_accepted,
-        a->residual_first, a->residual_least, a->rises};
+    const double head[HEAD] = {(double)a->n,
+                               (double)a->step,
+                               (double)a->serial,
+                               a->iteration,
+                               a->dropped,
+                               a->dt,
+                               a->ratio,
+                               a->omega,
+                               a->omega_accepted,
+                               a->size[0],
+                               a->size[1],
+                               a->weight[0],
+                               a->weight[1],
+                               occupied(a),
+                               a->used,
+                               a->imaged,
+                               a->scatter,
+                               a->scatter_accepted,
+                               a->residual_first,
+                               a->residual_least,
+                               a->rises,
+                               a->ratios.weight,
+                               a->ratios.square,
+                               a->ratios.sum,
+                               a->ratios.sum2,
+                               a->ratios_before.weight,
+                               a->ratios_before.square,
+                               a->ratios_before.sum,
+                               a->ratios_before.sum2,
+                               a->most_weight};
     size_t bytes = (size_t)a->n * sizeof *state;
     memcpy(state, head, sizeof head);
     memcpy(state += HEAD, a->x, bytes);
@@ -761,6 +835,9 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     memcpy(a->weight, state + 11, sizeof a->weight);
     a->imaged = (int)state[15], a->scatter = state[16], a->scatter_accepted = state[17], a->residual_first = state[18];
     a->residual_least = state[19], a->rises = (int)state[20];
+    a->ratios = (tally){state[21], state[22], state[23], state[24]};
+    a->ratios_before = (tally){state[25], state[26], state[27], state[28]};
+    a->most_weight = state[29];
     memcpy(a->x, state += HEAD, bytes);
     memcpy(a->g, state += a->n, bytes);
     state += a->n;

@@ -51,6 +51,9 @@ int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered o
 /* The largest -dx.dg / dx.dx of the step: what takes the place of (added mass)/(mass) in the piston model, whose map
    has the derivative minus that ratio. 0 before the second iteration. */
 double spari_accelerator_ratio(const spari_accelerator *a);
+/* The same ratio over all differences of this step and, fading, of those before, weighed by the roots of their
+   lengths, and the standard deviation of a single one. Answers 0, and zeros, where there are too few. */
+int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread);
 /* How much the fluid's answers contradict each other, relative to their change: 0 of an exact function, 1 of noise. */
 double spari_accelerator_scatter(const spari_accelerator *a);
 

@@ -184,18 +184,22 @@ static void motion_norms(const spar_session *s) {
 
 /* ---- the step ---- */
 
+static void report_added_mass(spari_coupling *c) {
+    (void)spari_accelerator_added_mass(c->accelerator, c->report + SPAR_REPORT_ADDED_MASS,
+                                       c->report + SPAR_REPORT_ADDED_MASS_SPREAD);
+}
+
 void spari_coupling_begin(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->iterations = 0;
-    for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
-        c->report[i] = 0;
-    }
+    c->report[SPAR_REPORT_CONTRACTION] = c->report[SPAR_REPORT_COLUMNS] = c->report[SPAR_REPORT_DROPPED] = 0;
     if (c->accelerator) {
         double *at = c->predicted;
         for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
             memcpy(at, m->load_used, (size_t)(6 * m->nodes) * sizeof *at);
         }
         spari_accelerator_begin(c->accelerator, s->dt);
+        report_added_mass(c);
     }
 }
 
@@ -240,7 +244,11 @@ int spari_coupling_solve_failed(spar_session *s, int status) {
 static int not_converged(spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
-    char motion[80] = "";
+    char motion[80] = "", mass[80] = "";
+    if (c->report[SPAR_REPORT_ADDED_MASS] != 0) {
+        (void)snprintf(mass, sizeof mass, "; added mass about %.3g (+- %.2g) of the mass",
+                       c->report[SPAR_REPORT_ADDED_MASS], c->report[SPAR_REPORT_ADDED_MASS_SPREAD]);
+    }
     if (spari_coupling_wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
@@ -249,17 +257,14 @@ static int not_converged(spar_session *s) {
         return spari_fail(
             s, SPAR_ERR_NUMERIC,
             "spar_step_check: the coupling has not converged in %d iterations, it diverges: the change of "
-            "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s "
-            "(added mass about %.3g of the mass); %s",
-            s->iteration, factor, c->residual[last], c->size[last], motion, c->report[SPAR_REPORT_ADDED_MASS],
-            diverging_cures);
+            "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
+            s->iteration, factor, c->residual[last], c->size[last], motion, mass, diverging_cures);
     }
     return spari_fail(
         s, SPAR_ERR_NUMERIC,
         "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
-        "N%s; added mass about %.3g of the mass); take a smaller relaxation, another scheme or a smaller "
-        "dt, or reject the step",
-        s->iteration, c->residual[last], c->size[last], motion, c->report[SPAR_REPORT_ADDED_MASS]);
+        "N%s%s); take a smaller relaxation, another scheme or a smaller dt, or reject the step",
+        s->iteration, c->residual[last], c->size[last], motion, mass);
 }
 
 /* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
@@ -302,7 +307,7 @@ void spari_coupling_next(spar_session *s) {
     stack(s);
     spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? c->image : NULL, c->x);
     unstack(s);
-    c->report[SPAR_REPORT_ADDED_MASS] = spari_accelerator_ratio(c->accelerator);
+    report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
     c->report[SPAR_REPORT_DROPPED] = spari_accelerator_dropped(c->accelerator);
 }
@@ -378,14 +383,17 @@ static double work_defect(const spar_session *s, double *whole) {
     return defect;
 }
 
+/* The added mass over the mass with which an explicit scheme of this order grows by z from step to step. */
+static double ratio_of_growth(int order, double z) {
+    return order == 0 ? z : order == 1 ? z * z / (2 * z + 1) : z * z * z / (3 * z * z + 3 * z + 1);
+}
+
 /* What the growth says of the fluid: mean, scatter, and the added mass that an explicit scheme of this order grows so
    fast with, over what it bears: 1, 1/3, 1/7 of the mass. */
 static void tell_alternation(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     double mean = c->log_growth / c->turns, spread = sqrt(fmax(c->log_growth2 / c->turns - mean * mean, 0));
-    double z = exp(mean), ratio = s->order == 0   ? z
-                                  : s->order == 1 ? z * z / (2 * z + 1)
-                                                  : z * z * z / (3 * z * z + 3 * z + 1);
+    double z = exp(mean), ratio = ratio_of_growth(s->order, z);
     static const double bears[3] = {1, 1.0 / 3, 1.0 / 7};
     if (s->log) {
         char text[SPARI_MESSAGE_SIZE];
@@ -393,9 +401,10 @@ static void tell_alternation(const spar_session *s) {
             text, sizeof text,
             "the coupling is becoming unstable at t = %g: in the last %d steps the fluid's loads have missed the "
             "predicted ones in turn on either side, each time by %.3g (+- %.2g) times as much: added mass of "
-            "about %.2g of the mass; an explicit scheme with a predictor of order %d bears %.2g; iterate "
+            "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d bears %.2g; iterate "
             "(spar_session_set_coupling) or lower the order of the predictor",
-            s->time + s->dt, c->turns + 1, z, z * spread, ratio, s->order, bears[s->order]);
+            s->time + s->dt, c->turns + 1, z, z * spread, ratio, ratio_of_growth(s->order, z * exp(spread)) - ratio,
+            s->order, bears[s->order]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }

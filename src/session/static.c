@@ -230,6 +230,7 @@ static void restore_coupling(spar_session *s, spari_coupling *of_steps) {
     for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
         of_steps->report[i] = own->report[i];
     }
+    of_steps->report[SPAR_REPORT_ADDED_MASS_SPREAD] = own->report[SPAR_REPORT_ADDED_MASS_SPREAD];
     s->own->coupling = of_steps;
     spari_coupling_free(&own);
 }
@@ -389,8 +390,8 @@ static int not_solved(spar_session *s, int status) {
 /* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */
 static void warn_of_divergence(const spar_session *s) {
     char text[SPARI_MESSAGE_SIZE];
-    double ratio = s->own->coupling->report[SPAR_REPORT_ADDED_MASS];
-    if (!s->log || ratio >= -1 || s->scheme < SPAR_COUPLING_AITKEN) {
+    double ratio = s->scheme < SPAR_COUPLING_AITKEN ? 0 : spari_accelerator_ratio(s->own->coupling->accelerator);
+    if (!s->log || ratio >= -1) {
         return;
     }
     (void)snprintf(text, sizeof text,
