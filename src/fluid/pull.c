@@ -189,20 +189,20 @@ static void unit_quat(double (*buf)[SPARI_ROW], int i, double q[4]) {
 /* Orientation of a section now, scalar part >= 0: the states' rotations, averaged where there are two, times the
  * reference's, or that of a frame of its own. */
 static void orientation(const states *t, int i, const double *frame, double now[4]) {
-    double q[2][4], reference[4];
-    for (int k = 0; k < t->n; k++) {
-        unit_quat(t->buf[k], i, q[k]);
-    }
+    double q[4], reference[4];
+    unit_quat(t->buf[0], i, q);
     if (t->n == 2) {
-        double sign = spari_quat_dot(q[0], q[1]) < 0 ? -1 : 1;
+        double other[4];
+        unit_quat(t->buf[1], i, other);
+        double sign = spari_quat_dot(q, other) < 0 ? -1 : 1;
         for (int c = 0; c < 4; c++) {
-            q[0][c] = t->share[0] * q[0][c] + sign * t->share[1] * q[1][c];
+            q[c] = t->share[0] * q[c] + sign * t->share[1] * other[c];
         }
     }
     if (!frame) {
         unit_quat(t->reference, i, reference);
     }
-    spari_quat_mul(q[0], frame ? frame : reference, now);
+    spari_quat_mul(q, frame ? frame : reference, now);
     spari_quat_normalise(now);
     double sign = now[0] < 0 ? -1 : 1;
     for (int c = 0; c < 4; c++) {

@@ -4,7 +4,7 @@
 #include "../base/blas.h"
 #include "../math/rotation.h"
 
-#include <cblas.h>
+#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <string.h>
 

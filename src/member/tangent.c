@@ -4,7 +4,7 @@
 #include "linear_body.h"
 #include "point.h"
 
-#include <cblas.h>
+#include <gsl/gsl_cblas.h>
 
 /* c (3 x 4 at row stride `stride`) += f * a (3 x 3) * l (3 x 4) */
 static void add_product(double *c, int stride, double f, const double *a, const double *l) {

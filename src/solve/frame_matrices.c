@@ -6,7 +6,7 @@
 #include "../math/rotation.h"
 #include "../member/body.h"
 
-#include <cblas.h>
+#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 #include "drive.h"
 #include "turn.h"
 
-#include <cblas.h>
+#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -17,6 +17,11 @@ typedef double NAME(lanes);
 #endif
 #define L NAME(lanes)
 #define PAIR (2 * W)
+#ifdef SPARI_SHUFFLEVECTOR /* lanes of a and of b, counted through */
+#define MIX(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define MIX(a, b, ...) __builtin_shuffle(a, b, (NAME(bits)){__VA_ARGS__})
+#endif
 #define SPARI_INLINE TARGET static inline SPARI_ALWAYS_INLINE
 
 SPARI_INLINE L NAME(get)(const double *p) {
@@ -63,22 +68,20 @@ SPARI_INLINE double NAME(least)(L v) {
 /* W triples x0 y0 z0 x1 ... from three vectors, and back. */
 SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
 #if W == 2
-    NAME(put)(out, __builtin_shufflevector(x, y, 0, 2));
-    NAME(put)(out + 2, __builtin_shufflevector(z, x, 0, 3));
-    NAME(put)(out + 4, __builtin_shufflevector(y, z, 1, 3));
+    NAME(put)(out, MIX(x, y, 0, 2));
+    NAME(put)(out + 2, MIX(z, x, 0, 3));
+    NAME(put)(out + 4, MIX(y, z, 1, 3));
 #elif W == 4
-    L xy = __builtin_shufflevector(x, y, 0, 4, 2, 6), yz = __builtin_shufflevector(y, z, 1, 5, 3, 7),
-      zx = __builtin_shufflevector(z, x, 0, 5, 2, 7);
-    NAME(put)(out, __builtin_shufflevector(xy, zx, 0, 1, 4, 5));
-    NAME(put)(out + 4, __builtin_shufflevector(yz, xy, 0, 1, 6, 7));
-    NAME(put)(out + 8, __builtin_shufflevector(zx, yz, 2, 3, 6, 7));
+    L xy = MIX(x, y, 0, 4, 2, 6), yz = MIX(y, z, 1, 5, 3, 7), zx = MIX(z, x, 0, 5, 2, 7);
+    NAME(put)(out, MIX(xy, zx, 0, 1, 4, 5));
+    NAME(put)(out + 4, MIX(yz, xy, 0, 1, 6, 7));
+    NAME(put)(out + 8, MIX(zx, yz, 2, 3, 6, 7));
 #elif W == 8
-    L a = __builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 1, 2, 10),
-      b = __builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
-      c = __builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0);
-    NAME(put)(out, __builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7));
-    NAME(put)(out + 8, __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
-    NAME(put)(out + 16, __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
+    L a = MIX(x, y, 0, 8, 0, 1, 9, 1, 2, 10), b = MIX(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
+      c = MIX(x, y, 13, 0, 6, 14, 0, 7, 15, 0);
+    NAME(put)(out, MIX(a, z, 0, 1, 8, 3, 4, 9, 6, 7));
+    NAME(put)(out + 8, MIX(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
+    NAME(put)(out + 16, MIX(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
 #else
     double t[3] = {x, y, z};
     memcpy(out, t, sizeof t);
@@ -88,21 +91,20 @@ SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
 SPARI_INLINE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
 #if W == 2
     L a = NAME(get)(in), b = NAME(get)(in + 2), c = NAME(get)(in + 4);
-    *x = __builtin_shufflevector(a, b, 0, 3);
-    *y = __builtin_shufflevector(a, c, 1, 2);
-    *z = __builtin_shufflevector(b, c, 0, 3);
+    *x = MIX(a, b, 0, 3);
+    *y = MIX(a, c, 1, 2);
+    *z = MIX(b, c, 0, 3);
 #elif W == 4
     L a = NAME(get)(in), b = NAME(get)(in + 4), c = NAME(get)(in + 8);
-    L xy = __builtin_shufflevector(a, b, 0, 1, 6, 7), zx = __builtin_shufflevector(a, c, 2, 3, 4, 5),
-      yz = __builtin_shufflevector(b, c, 0, 1, 6, 7);
-    *x = __builtin_shufflevector(xy, zx, 0, 5, 2, 7);
-    *y = __builtin_shufflevector(xy, yz, 1, 4, 3, 6);
-    *z = __builtin_shufflevector(zx, yz, 0, 5, 2, 7);
+    L xy = MIX(a, b, 0, 1, 6, 7), zx = MIX(a, c, 2, 3, 4, 5), yz = MIX(b, c, 0, 1, 6, 7);
+    *x = MIX(xy, zx, 0, 5, 2, 7);
+    *y = MIX(xy, yz, 1, 4, 3, 6);
+    *z = MIX(zx, yz, 0, 5, 2, 7);
 #elif W == 8
     L a = NAME(get)(in), b = NAME(get)(in + 8), c = NAME(get)(in + 16);
-    *x = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, 0, 0), c, 0, 1, 2, 3, 4, 5, 10, 13);
-    *y = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 10, 13, 0, 0, 0), c, 0, 1, 2, 3, 4, 8, 11, 14);
-    *z = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 8, 11, 14, 0, 0, 0), c, 0, 1, 2, 3, 4, 9, 12, 15);
+    *x = MIX(MIX(a, b, 0, 3, 6, 9, 12, 15, 0, 0), c, 0, 1, 2, 3, 4, 5, 10, 13);
+    *y = MIX(MIX(a, b, 1, 4, 7, 10, 13, 0, 0, 0), c, 0, 1, 2, 3, 4, 8, 11, 14);
+    *z = MIX(MIX(a, b, 2, 5, 8, 11, 14, 0, 0, 0), c, 0, 1, 2, 3, 4, 9, 12, 15);
 #else
     double t[3];
     memcpy(t, in, sizeof t);
@@ -763,4 +765,5 @@ TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count,
 
 #undef L
 #undef PAIR
+#undef MIX
 #undef SPARI_INLINE

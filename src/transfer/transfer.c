@@ -15,6 +15,12 @@
 #define SPARI_UNROLL
 #endif
 
+#if defined(__has_builtin) /* in Clang, and in GCC from 12 on; GCC's own shuffle is older */
+#if __has_builtin(__builtin_shufflevector)
+#define SPARI_SHUFFLEVECTOR 1
+#endif
+#endif
+
 /* s[0] + s[1] += x, the rounding error kept (Knuth's two-sum): the sum over tiles loses nothing that matters. */
 static inline void spari_add(double *s, double x) {
     double a = s[0], t = a + x, b = t - a;

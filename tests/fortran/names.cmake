@@ -1,5 +1,5 @@
 # cmake -DSOURCE=<dir> -P names.cmake: the public headers, cmake/spar.map and the modules name the same functions and constants.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 
 set(headers "")
 file(GLOB paths "${SOURCE}/include/spar/*.h")
