@@ -235,6 +235,34 @@ static void all_at_rest(void **state) {
     end_both(&all, &alone);
 }
 
+/* A file of all ranks is loaded by one process, and one of a process by all ranks. */
+static void from_file(void **state) {
+    (void)state;
+    for (int way = 0; way < 2; way++) {
+        scene all, alone;
+        char file[32];
+        snprintf(file, sizeof file, "mpi_joint_%d.spar", size);
+        begin_both(&all, &alone, 0);
+        scene *from = way ? &alone : &all, *to = way ? &all : &alone;
+        for (int i = 0; i < 6; i++) {
+            drive(from, i);
+            OK(from->session, spar_step(from->session, step, solve, from, NULL));
+        }
+        if (way == 0 || rank == 0) {
+            OK(from->session, spar_session_save(from->session, file));
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        OK(to->session, spar_session_load(to->session, file));
+        same(&all, &alone, 0);
+        run_both(&all, &alone, 6, 6, 0);
+        end_both(&all, &alone);
+        MPI_Barrier(MPI_COMM_WORLD);
+        if (rank == 0) {
+            remove(file);
+        }
+    }
+}
+
 /* The host's owner stands; two of them in one assembly are refused on all ranks, and it goes on with other members. */
 static void given_owners(void **state) {
     (void)state;
@@ -312,10 +340,10 @@ static void fails_on_owner(void **state) {
 }
 
 int main(int argc, char **argv) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),     cmocka_unit_test(nearly_the_same),
-                                       cmocka_unit_test(at_rest),       cmocka_unit_test(all_at_rest),
-                                       cmocka_unit_test(given_owners),  cmocka_unit_test(otherwise),
-                                       cmocka_unit_test(fails_on_owner)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),   cmocka_unit_test(nearly_the_same),
+                                       cmocka_unit_test(at_rest),     cmocka_unit_test(from_file),
+                                       cmocka_unit_test(all_at_rest), cmocka_unit_test(given_owners),
+                                       cmocka_unit_test(otherwise),   cmocka_unit_test(fails_on_owner)};
     int failed, worst = 0;
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -591,8 +591,8 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
    is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
-   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members, save and
-   trials answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
+   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members and trials
+   answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
    where nothing holds an assembly, the message names the motion that is free. spar_member_get_work leaves out what
    joints do. */
 
@@ -882,17 +882,19 @@ SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve
 SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
                                        int *iterations);
 
-/* The whole state of the run to and from one file, between steps or within one: clock, histories, members, solvers, the
-   fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with the same bits. Collective.
+/* The whole state of the run to and from one file, between steps or within one: clock, histories, members, joints with
+   their springs, solvers, the fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with
+   the same bits. Collective.
      path: in; rank 0 writes and reads; on the other ranks it must be given and is not used
    save: the file is written under path.new, flushed and renamed: there is always a whole one, and what a killed process
    has left at path.new goes with the next save. Where path is a symbolic link, all this happens where it leads, and the
    link stays; a file with several hard links is replaced under this name only; mode and owner stay as far as the system
    allows. What is no file (a pipe, a device, a folder) is SPAR_ERR_IO and stays; so is a file that another process is
-   writing. load: into a session with the same members, committed, and the same fluids, mapped, by name, no step under
-   way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them by their reference
-   places. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut off or damaged or
-   cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it was. */
+   writing. load: into a session with the same members, committed, the same joints, and the same fluids, mapped, by
+   name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them
+   by their reference places. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut
+   off or damaged or cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it
+   was. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 

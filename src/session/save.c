@@ -1,6 +1,6 @@
 /* Save and load: the whole session in one file (image.h), in this order:
-     ranks; members: name and description of each; the clock; the state of each member; the coupling;
-     then what is one rank's own, rank by rank: the solvers of its members, its fluids.
+     ranks; members and joints: name and description of each; the clock; the state of each member and joint; the
+     coupling; then what is one rank's own, rank by rank: the solvers of its members, of its assemblies, its fluids.
    Every rank gets the whole image to load from, so that members and fluids may live on other ranks than before. A file
    is taken in two passes: the first checks and gets memory, and only when all ranks can load does the second change the
    session. */
@@ -16,6 +16,7 @@
 
 #include "../member/applied.h"
 #include "../member/joint.h"
+#include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 
 #include <math.h>
@@ -123,6 +124,35 @@ static void pass_member(passage *t, spar_member *m) {
     }
 }
 
+/* Numbers, checked to be some. */
+static void pass_numbers(passage *t, double *words, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, n);
+    if (t->mode == CHECK && !t->image->failed) {
+        t->image->failed = spari_first_nonfinite(there, n) >= 0;
+    }
+}
+
+/* Springs are there where they may be given anew at any time; a line's are part of its description. */
+static void pass_joint(passage *t, spar_joint *j) {
+    enum { SPRING = 3 };
+    const struct {
+        void *words;
+        size_t size;
+    } all[] = {{j->stiffness, sizeof j->stiffness}, {j->damping, sizeof j->damping},
+               {j->preload, sizeof j->preload},     {&j->now, sizeof j->now},
+               {&j->after, sizeof j->after},        {&j->described, sizeof j->described},
+               {j->drive, sizeof j->drive},         {j->given, sizeof j->given}};
+    for (size_t k = j->tie.line ? SPRING : 0; k < sizeof all / sizeof *all; k++) {
+        pass_numbers(t, all[k].words, (int64_t)(all[k].size / sizeof(double)));
+    }
+    if (!j->tie.line) {
+        pass_int(t, &j->sprung);
+    }
+    pass_int(t, &j->drive_given);
+    pass_int(t, &j->balanced);
+}
+
 /* c: of the settings in the image; never only checked */
 static void pass_coupling(passage *t, spari_coupling *c) {
     pass_int(t, &c->iterations);
@@ -197,6 +227,26 @@ static double *put_room(spari_image *image, int64_t n) {
     return room;
 }
 
+/* What the assemblies that are solved here keep, each by its place in the list, which is alike on all ranks. */
+static void put_assemblies(spari_image *image, const spar_session *s) {
+    int64_t count = 0, k = 0;
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        count += spari_assembly_state_size(a) > 0;
+    }
+    spari_image_put_int(image, count);
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a), k++) {
+        int64_t n = spari_assembly_state_size(a);
+        double *state = n > 0 ? put_room(image, n) : NULL;
+        if (state) {
+            spari_assembly_save(a, state);
+            spari_image_put_int(image, k);
+            spari_image_put_int(image, n);
+            spari_image_put(image, state, n);
+            free(state);
+        }
+    }
+}
+
 static int put_own(spari_image *image, const spar_session *s, const char *call) {
     int64_t solvers = 0, fluids = 0;
     int k = 0;
@@ -220,6 +270,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
             }
         }
     }
+    put_assemblies(image, s);
     spari_image_put_int(image, fluids);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         int64_t n = spari_fluid_state_size(f);
@@ -285,9 +336,18 @@ static void put_common(spari_image *image, spar_session *s) {
         spari_image_put_text(image, m->name);
         spari_image_put(image, &hash, 1);
     }
+    spari_image_put_int(image, s->joint_count);
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        uint64_t hash = spari_joint_hash(j);
+        spari_image_put_text(image, j->name);
+        spari_image_put(image, &hash, 1);
+    }
     pass_clock(&t, s);
     for (spar_member *m = s->members; m; m = m->next) {
         pass_member(&t, m);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
     }
     put_coupling(image, s);
 }
@@ -315,7 +375,6 @@ static int write_file(spar_session *s, const double *all, const int64_t *first, 
 static int check_call(spar_session *s, const char *call, const char *path) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
     SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE, "%s: a static solution is under way; save or load after it", call);
-    SPARI_TRY(spari_joints_refuse(s, call));
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -365,6 +424,7 @@ typedef struct reading {
     int phase;               /* where the step stood */
     int ranks;               /* of the saved run */
     const double **solution; /* [members] state of each that is solved for here; NULL: not here */
+    const double **tied;     /* [joints] the same of the assemblies, as many as there are; NULL: nothing is kept */
     record *records;         /* fluids of all ranks */
     int64_t record_count;
     const double **states;    /* of the records that make up each fluid here, one after the other */
@@ -377,6 +437,7 @@ typedef struct reading {
 static void end_loading(reading *l) {
     spari_image_free(&l->image);
     free(l->solution);
+    free(l->tied);
     free(l->records);
     free(l->states);
     free(l->state_count);
@@ -401,6 +462,17 @@ static int compare_scene(spar_session *s, reading *l) {
                       m->name);
         SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
                       "the file is of another session: member '%s' is described otherwise there", m->name);
+    }
+    int64_t joints = spari_image_get_int(&l->image);
+    SPARI_REQUIRE(s, joints == s->joint_count || l->image.failed, SPAR_ERR_ARGUMENT,
+                  "the file is of another session: it has %lld joints, this one %d", (long long)joints, s->joint_count);
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        SPARI_REQUIRE(s, spari_image_is_text(&l->image, j->name), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: joint '%s' is not where it should be; create the same joints in "
+                      "the same order",
+                      j->name);
+        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_joint_hash(j), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: joint '%s' is described otherwise there", j->name);
     }
     return l->image.failed || l->ranks < 1 ? broken(s) : SPAR_OK;
 }
@@ -491,6 +563,28 @@ static int check_solvers(spar_session *s, reading *l) {
     return SPAR_OK;
 }
 
+static int check_assemblies(spar_session *s, reading *l) {
+    int64_t count = spari_image_get_int(&l->image);
+    for (int64_t i = 0; i < count && !l->image.failed; i++) {
+        int64_t k = spari_image_get_int(&l->image), n = spari_image_get_int(&l->image);
+        const double *state = (const double *)(const void *)spari_image_get(&l->image, n);
+        const spari_assembly *a = s->assemblies;
+        for (int64_t j = 0; j < k && a; j++) {
+            a = spari_assembly_next(a);
+        }
+        if (!a || k < 0 || !state) {
+            return broken(s);
+        }
+        if (spari_assembly_state_size(a) > 0) {
+            if (!spari_assembly_is_state(a, state, n)) {
+                return broken(s);
+            }
+            l->tied[k] = state;
+        }
+    }
+    return SPAR_OK;
+}
+
 static int compare_fluids(spar_session *s, reading *l, int rank) {
     int64_t fluids = spari_image_get_int(&l->image);
     for (int64_t i = 0; i < fluids && !l->image.failed; i++) {
@@ -512,7 +606,8 @@ static int compare_fluids(spar_session *s, reading *l, int rank) {
 
 static int check_own(spar_session *s, reading *l) {
     l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
-    if (!l->solution) {
+    l->tied = spari_zalloc(s->joint_count, sizeof *l->tied);
+    if (!l->solution || !l->tied) {
         return no_memory_for_state(s);
     }
     for (int rank = 0; rank < l->ranks; rank++) {
@@ -521,6 +616,7 @@ static int check_own(spar_session *s, reading *l) {
             return broken(s);
         }
         SPARI_TRY(check_solvers(s, l));
+        SPARI_TRY(check_assemblies(s, l));
         SPARI_TRY(compare_fluids(s, l, rank));
         if (l->image.at != end) {
             return broken(s);
@@ -545,6 +641,9 @@ static int check_image(spar_session *s, reading *l) {
         if (l->image.no_memory) {
             return no_memory_for_state(s);
         }
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
     }
     if (l->image.failed) {
         return broken(s);
@@ -663,6 +762,13 @@ static void put_in_force(spar_session *s, reading *l) {
             m->row->load(m, l->solution[k]);
         }
     }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
+    }
+    k = 0;
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a), k++) {
+        spari_assembly_load(a, l->tied[k]);
+    }
     k = 0;
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         spari_fluid_load(f, l->state_count[k], l->states + at, l->takes_loads[k]);
@@ -705,7 +811,8 @@ int spar_session_load(spar_session *session, const char *path) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = fetch(s, &l, path);
+    status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
+    status = status == SPAR_OK ? fetch(s, &l, path) : status;
     if (status == SPAR_OK) {
         status = agree(s, check_image(s, &l));
     }

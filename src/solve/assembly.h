@@ -23,6 +23,12 @@ int spari_assembly_owner(const spari_assembly *assembly);
 int64_t spari_assembly_share_size(const spari_assembly *assembly);
 void spari_assembly_pack(const spari_assembly *assembly, double *to);
 void spari_assembly_unpack(spari_assembly *assembly, const double *from);
+/* All that its owner keeps from step to step beside its members and joints, as doubles, for save and load; 0: it is not
+   here. is_state: whether `count` doubles can be that. state NULL: nothing was kept. */
+int64_t spari_assembly_state_size(const spari_assembly *assembly);
+void spari_assembly_save(const spari_assembly *assembly, double *state);
+int spari_assembly_is_state(const spari_assembly *assembly, const double *state, int64_t count);
+void spari_assembly_load(spari_assembly *assembly, const double *state);
 /* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
    rank. */
 int spari_assembly_advance(spari_assembly *assembly, double dt);

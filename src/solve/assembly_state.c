@@ -1,4 +1,4 @@
-/* What an assembly's owner tells the other ranks. */
+/* What an assembly's owner tells the other ranks, and what it keeps from step to step. */
 #include "assembly.h"
 #include "tied.h"
 
@@ -36,5 +36,52 @@ void spari_assembly_unpack(spari_assembly *a, const double *from) {
             memcpy(&j->drive[0], from + 1 + 2 * RELATIVE, sizeof j->drive[0]);
         }
         memcpy(&j->after, from + 1, sizeof j->after);
+    }
+}
+
+/* ---- save and load ---- */
+
+enum { KEPT_HEAD = 2, TURNING = 144 };
+
+/* Of a factored system: what remains of the members at the joints' nodes, and of the loads' turning. */
+static int64_t kept_size(const spari_assembly *a) {
+    int64_t n = KEPT_HEAD + (int64_t)TURNING * a->links;
+    for (int i = 0; i < a->limbs; i++) {
+        n += spari_condensed_state_size(a->limb[i].solver->condensed);
+    }
+    return n;
+}
+
+int64_t spari_assembly_state_size(const spari_assembly *a) {
+    return !a->here || a->limbs == 0 ? 0 : a->factored ? kept_size(a) : KEPT_HEAD;
+}
+
+void spari_assembly_save(const spari_assembly *a, double *state) {
+    state[0] = a->factored;
+    state[1] = a->limbs;
+    state += KEPT_HEAD;
+    for (int i = 0; i < a->limbs && a->factored; i++) {
+        spari_condensed_save(a->limb[i].solver->condensed, state);
+        state += spari_condensed_state_size(a->limb[i].solver->condensed);
+    }
+    for (int i = 0; i < a->links && a->factored; i++, state += TURNING) {
+        memcpy(state, a->link[i].turning, sizeof a->link[i].turning);
+    }
+}
+
+int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
+    return count >= KEPT_HEAD && state[1] == a->limbs && count == (state[0] == 0 ? KEPT_HEAD : kept_size(a));
+}
+
+void spari_assembly_load(spari_assembly *a, const double *state) {
+    a->factored = state && state[0] != 0;
+    state = state ? state + KEPT_HEAD : NULL;
+    for (int i = 0; i < a->limbs && a->factored; i++) {
+        spari_condensed *c = a->limb[i].solver->condensed;
+        spari_condensed_load(c, spari_member_held(a->limb[i].member), state);
+        state += spari_condensed_state_size(c);
+    }
+    for (int i = 0; i < a->links && a->factored; i++, state += TURNING) {
+        memcpy(a->link[i].turning, state, sizeof a->link[i].turning);
     }
 }

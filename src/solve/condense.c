@@ -125,3 +125,23 @@ void spari_condensed_expand(const spari_condensed *c, double *x) {
         }
     }
 }
+
+int64_t spari_condensed_state_size(const spari_condensed *c) {
+    int64_t m = 6 * (int64_t)c->ends;
+    return m * (2 * (int64_t)c->n + m);
+}
+
+void spari_condensed_save(const spari_condensed *c, double *state) {
+    size_t m = 6 * (size_t)c->ends, n = (size_t)c->n;
+    memcpy(state, c->W, m * n * sizeof *state);
+    memcpy(state + m * n, c->rows, m * n * sizeof *state);
+    memcpy(state + 2 * m * n, c->K, m * m * sizeof *state);
+}
+
+void spari_condensed_load(spari_condensed *c, int fixed, const double *state) {
+    size_t m = 6 * (size_t)c->ends, n = (size_t)c->n;
+    c->fixed = fixed;
+    memcpy(c->W, state, m * n * sizeof *state);
+    memcpy(c->rows, state + m * n, m * n * sizeof *state);
+    memcpy(c->K, state + 2 * m * n, m * m * sizeof *state);
+}

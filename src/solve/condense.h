@@ -26,6 +26,10 @@ void spari_condensed_take(spari_condensed *c, spari_linear *tangent, int fixed);
 int spari_condensed_form(spari_condensed *c, spari_linear *factors);
 /* r [unknowns] := K_ii^-1 r_i, and at the ends what is left of their forces. 0 or 1. */
 int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, double *r);
+/* What a factored tangent keeps here, as doubles, for save and load. */
+int64_t spari_condensed_state_size(const spari_condensed *c);
+void spari_condensed_save(const spari_condensed *c, double *state);
+void spari_condensed_load(spari_condensed *c, int fixed, const double *state);
 /* x: what reduce left, with the ends' solution put in its place; the rest follows. */
 void spari_condensed_expand(const spari_condensed *c, double *x);
 

@@ -96,6 +96,30 @@ static void create_small(scene *c, int variant) {
     }
 }
 
+/* Joints of each kind: a hinge on a spring, an actuator at rest, a rope, a spring between what moves as it is told. */
+static void tie(scene *c) {
+    static const double tip[3] = {10, 0, 0}, x[3] = {0, 5, 0}, up[3] = {0, 0, 5}, load[6] = {0, 0, 0, 0, 0.1, 0};
+    double soft[36] = {0};
+    spar_session *s = c->session;
+    spar_joint *hinge, *actuator, *rope, *tether;
+    for (int i = 0; i < 36; i += 7) {
+        soft[i] = 3;
+    }
+    MUST(s, spar_joint_create(s, "tether", c->member[7], 0, NULL, 0, 63, &tether));
+    MUST(s, spar_joint_set_spring(tether, soft, NULL, NULL));
+    for (int i = 0; i < 36; i++) {
+        soft[i] = i == 28 ? 3 : 0;
+    }
+    MUST(s, spar_joint_create(s, "hinge", c->member[6], 0, c->member[1], 5, SPAR_FREE_RY, &hinge));
+    MUST(s, spar_joint_set_frame(hinge, tip, NULL));
+    MUST(s, spar_joint_set_spring(hinge, soft, NULL, NULL));
+    MUST(s, spar_joint_set_load(hinge, load));
+    MUST(s, spar_line_create(s, "rope", c->member[6], 0, x, NULL, 0, up, &rope));
+    MUST(s, spar_line_set_spring(rope, 5, 0.1, 7, 1));
+    MUST(s, spar_line_create(s, "actuator", c->member[4], 0, tip, NULL, 0, up, &actuator));
+    MUST(s, spar_joint_set_driven(actuator, SPAR_FREE_X));
+}
+
 /* One of each kind, with all that a member can have in a file. */
 static void create_large(scene *c) {
     static const double x[3] = {0, 5, 0}, tip[3] = {10, 0, 0}, mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3},
@@ -124,6 +148,7 @@ static void create_large(scene *c) {
     MUST(s, spar_point_create(s, "point", x, NULL, &m));
     (void)add(c, m);
     commit(c);
+    tie(c);
     MUST(s, spar_beam_set_line_load(c->member[0], SPAR_LOAD_FOLLOWER, 2, eta, lines));
     MUST(s, spar_beam_set_line_load(c->member[1], SPAR_LOAD_DEAD, 2, eta, lines));
     MUST(s, spar_member_set_load(c->member[1], 4, SPAR_LOAD_FOLLOWER, load));
