@@ -99,3 +99,16 @@ if(TARGET examples_rotor_fortran)
   set_tests_properties(example_rotor_reference PROPERTIES FIXTURES_SETUP rotor_reference)
   set_tests_properties(${spar_rotor_tests} PROPERTIES FIXTURES_REQUIRED rotor_reference)
 endif()
+
+# The Fortran host of the turbine gives the numbers of the C program to 1e-8, in a gust in which the blades pitch.
+if(TARGET examples_turbine_fortran)
+  set(run --wind 12 --gust 4 --gust-start 0 --gust-length 2 --seconds 1 --dt 0.02 --nodes 6)
+  add_test(NAME example_turbine_reference
+    COMMAND examples_turbine ${run} --vtk-every 0 --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/turbine_reference)
+  add_test(NAME example_turbine_fortran
+    COMMAND examples_turbine_fortran ${run} --compare ${PROJECT_BINARY_DIR}/tests/turbine_reference/history.csv)
+  spar_set_test(example_turbine_reference fortran 120 ${spar_example_environment})
+  spar_set_test(example_turbine_fortran fortran 120 ${spar_example_environment})
+  set_tests_properties(example_turbine_reference PROPERTIES FIXTURES_SETUP turbine_reference)
+  set_tests_properties(example_turbine_fortran PROPERTIES FIXTURES_REQUIRED turbine_reference)
+endif()
