@@ -789,10 +789,12 @@ SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *for
    A refused push (NaN) leaves the loads as they were, and spar_step_check then fails on all ranks unless a good push
    follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
-/* For a fluid that takes several steps within dt: its loads over the part of the step that ends at t^n + theta dt. The
-   loads in use at t^{n+1} are the mean over the step so far, weighted by the parts' lengths. It pulls at any theta. Not
-   before the first step; otherwise as spar_fluid_push_forces.
-     theta: in, in (0, 1], rising from push to push; one that does not rise begins anew (the next iteration) */
+/* For a fluid that takes several steps within dt: its mean loads over the part of the step that ends at t^n + theta dt
+   (it pulls at any theta). In use at t^{n+1} is m + (e - e^n) / 2: m the mean of the parts over the step so far, e
+   where the line of least squares through them ends, e^n where that of the step before did (T15): of second order in
+   dt, and the parts' impulse is kept. Loads that are known at t^{n+1} itself: spar_fluid_push_forces. Not before the
+   first step; otherwise as that. theta: in, in (0, 1], rising from push to push; one that does not rise begins anew
+   (the next iteration) */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The host's model has failed on this rank: there are no loads of this fluid, for the reason given. spar_step_check (or
    the call that runs the step, or the first spar_step_begin) then fails on all ranks unless a good push follows, with

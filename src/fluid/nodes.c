@@ -91,12 +91,12 @@ void spari_fluid_free(spar_fluid *fluid) {
     spari_node_set_clear(&fluid->set[1]);
     spari_history_free(fluid->history);
     spari_history_free(fluid->history_next);
-    double *all[] = {fluid->modal,   fluid->field[0], fluid->field[1],     fluid->reference,
-                     fluid->work,    fluid->load,     fluid->load_new,     fluid->load_accepted,
-                     fluid->mean[0], fluid->mean[1],  fluid->mean_next[0], fluid->mean_next[1]};
+    double *all[] = {fluid->modal, fluid->field[0], fluid->field[1], fluid->reference,
+                     fluid->work,  fluid->load,     fluid->load_new, fluid->load_accepted};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }
+    spari_parts_free(fluid->parts);
     free(fluid->why);
     free(fluid->name);
     free(fluid);

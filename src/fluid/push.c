@@ -52,14 +52,15 @@ int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
     return pull_forces(fluid, theta, NULL, force, __func__);
 }
 
-static void keep_forces(spari_history *h, spari_source force, int before_start) {
+static void keep_forces(spar_fluid *fluid, spari_source force) {
+    spari_history *h = fluid->history;
     if (!h || h->n == 0) {
         return;
     }
     for (int64_t i = 0; i < 3 * h->n; i++) {
         h->after[i] = force.d ? force.d[i] : (double)force.f[i];
     }
-    if (before_start) {
+    if (fluid->member->session->phase == SPARI_IDLE) {
         memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
     }
     h->pushed = 1;
@@ -174,7 +175,7 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
     return fluid->refused;
 }
 
-static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
+static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
     spar_session *session = fluid->member->session;
     const spari_nodes *s = NULL;
     if (session->phase == SPARI_IDLE && session->started) {
@@ -194,11 +195,19 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
     }
     spari_fluid_forget_refusal(fluid);
     fluid->pushes++;
-    int before_start = session->phase == SPARI_IDLE;
-    if (before_start) {
+    if (session->phase == SPARI_IDLE) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
-    keep_forces(fluid->history, force, before_start);
+    keep_forces(fluid, force);
+    return SPAR_OK;
+}
+
+static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
+    SPARI_TRY(push_loads(fluid, force, moment, caller));
+    if (fluid->parts) {
+        spari_parts_begin(fluid);
+        fluid->parts->plain = 1;
+    }
     return SPAR_OK;
 }
 
@@ -216,30 +225,28 @@ int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const floa
     return push_forces(fluid, f, m, __func__);
 }
 
-/* Room for the means of n forces (which 0) or moments (1), zeros. */
-static int prepare_mean(spar_fluid *fluid, int which, int64_t n, const char *caller) {
-    if (fluid->mean[which] && fluid->mean_count[which] == n) {
-        return SPAR_OK;
+/* The end of the parts at theta into end[1], the load in use into the fluid; or a refusal, and nothing has changed. */
+static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, const char *caller) {
+    spari_parts *p = fluid->parts;
+    const spari_source force = {.d = p->value[0]}, moment = {.d = p->moment_next ? p->value[1] : NULL};
+    int64_t n = 6 * fluid->member->nodes;
+    spari_parts_see(p, theta, 0);
+    int status = gather_loads(fluid, s, force, moment, NULL, caller);
+    if (status != SPAR_OK) {
+        note_refusal(fluid, status, fluid->member->session->message);
+        return status;
     }
-    double *mean = spari_zalloc(3 * n, sizeof *mean), *next = spari_zalloc(3 * n, sizeof *next);
-    if (!mean || !next) {
-        free(mean);
-        free(next);
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the mean of its loads");
+    memcpy(p->mean, fluid->load_new, (size_t)n * sizeof *p->mean);
+    spari_parts_see(p, theta, 1);
+    SPARI_TRY(push_loads(fluid, force, moment, caller));
+    memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
+    const double *begin = p->ended ? p->end[0] : fluid->load_accepted;
+    double slope = fluid->member->session->standing ? 0 : 0.5; /* of time that stands there is no end */
+    for (int64_t i = 0; i < n; i++) {                          /* (T15) */
+        fluid->load[i] = p->mean[i] + slope * (p->end[1][i] - begin[i]);
     }
-    free(fluid->mean[which]);
-    free(fluid->mean_next[which]);
-    fluid->mean[which] = mean, fluid->mean_next[which] = next;
-    fluid->mean_count[which] = n;
+    spari_parts_keep(p, theta);
     return SPAR_OK;
-}
-
-/* The mean of n numbers with a new part in it: mean NULL, from NULL: zeros. */
-static void average(int64_t n, const double *mean, const double *from, double share, double *next) {
-    for (int64_t i = 0; i < n; i++) {
-        double m = mean ? mean[i] : 0;
-        next[i] = m + share * ((from ? from[i] : 0) - m);
-    }
 }
 
 int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment) {
@@ -257,28 +264,9 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     SPARI_FLUID_REQUIRE(fluid, s->n == 0 || force, SPAR_ERR_ARGUMENT,
                         "the force array is NULL though there are force nodes");
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
-    if (fluid->mean_count[0] != s->n) {
-        fluid->mean_theta = 0; /* other nodes than the mean is of */
-    }
-    SPARI_TRY(prepare_mean(fluid, 0, s->n, __func__));
-    double last = theta > fluid->mean_theta ? fluid->mean_theta : 0; /* else the fluid goes through the step again */
-    double share = (theta - last) / theta;
-    int had_moment = last > 0 && fluid->mean_moment, with_moment = had_moment || (moments && moment);
-    average(3 * s->n, last > 0 ? fluid->mean[0] : NULL, force, share, fluid->mean_next[0]);
-    if (with_moment) {
-        SPARI_TRY(prepare_mean(fluid, 1, s->n, __func__));
-        average(3 * s->n, had_moment ? fluid->mean[1] : NULL, moment, share, fluid->mean_next[1]);
-    }
-    const spari_source means = {.d = fluid->mean_next[0]},
-                       mean_moments = {.d = with_moment ? fluid->mean_next[1] : NULL};
-    SPARI_TRY(push_forces(fluid, means, mean_moments, __func__));
-    for (int k = 0; k < 2; k++) {
-        double *old = fluid->mean[k];
-        fluid->mean[k] = fluid->mean_next[k], fluid->mean_next[k] = old;
-    }
-    fluid->mean_theta = theta;
-    fluid->mean_moment = with_moment;
-    return SPAR_OK;
+    int room = spari_parts_add(fluid, s->n, theta, force, moments ? moment : NULL);
+    SPARI_FLUID_REQUIRE(fluid, room == SPAR_OK, room, "no memory for loads over parts of a step");
+    return push_parts(fluid, s, theta, __func__);
 }
 
 int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audit) {
@@ -323,7 +311,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     spari_history *h = fluid->history;
     double w[3];
     spari_fluid_forget_refusal(fluid);
-    fluid->mean_theta = 0;
+    spari_parts_begin(fluid);
     fluid->asked |= fluid->asked & SPARI_ASKED_LOADS ? SPARI_HAD_LOADS : 0;
     if (!h) {
         return;
@@ -341,7 +329,10 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
 void spari_fluid_settle(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
-    fluid->mean_theta = 0;
+    spari_parts_begin(fluid);
+    if (fluid->parts) {
+        fluid->parts->ended = 0;
+    }
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
@@ -353,7 +344,7 @@ void spari_fluid_settle(spar_fluid *fluid) {
 void spari_fluid_accept(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
-    fluid->mean_theta = 0;
+    spari_parts_accept(fluid);
     if (fluid->load) {
         memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
     }
@@ -370,7 +361,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
 void spari_fluid_reject(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
-    fluid->mean_theta = 0;
+    spari_parts_begin(fluid);
     fluid->asked &= fluid->asked & SPARI_HAD_LOADS ? ~0 : ~SPARI_ASKED_LOADS;
     if (fluid->load) {
         memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);

@@ -90,10 +90,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
 
 /* The fluid without anything of its own, as it would be had the host just described it. */
 static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
-    for (int k = 0; k < 2; k++) {
-        f->mean[k] = f->mean_next[k] = NULL;
-        f->mean_count[k] = 0;
-    }
+    f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
     f->history = f->history_next = NULL;
     if (same_nodes) {
@@ -115,6 +112,9 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
             SPARI_TRY(keep_frames(f, old, which));
         }
         spari_history_free(f->history); /* the map has begun it with zeros */
+    }
+    if (old->parts && spari_parts_prepare(f) != SPAR_OK) {
+        return no_memory_for_trial(f);
     }
     int order = f->member->session->predictor;
     return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory_for_trial(f);
@@ -140,6 +140,10 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     int elements = before->elements, P = before->per_element, n = fluid->member->per_element;
     spari_resample_loads(elements, P, n, was.load, fluid->load);
     spari_resample_loads(elements, P, n, was.load_accepted, fluid->load_accepted);
+    if (was.parts) {
+        fluid->parts->ended = was.parts->ended;
+        spari_resample_loads(elements, P, n, was.parts->end[0], fluid->parts->end[0]);
+    }
     return SPAR_OK;
 }
 
@@ -176,9 +180,8 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
     drop_copy(f->load, old->load);
     drop_copy(f->load_new, old->load_new);
     drop_copy(f->load_accepted, old->load_accepted);
-    for (int k = 0; k < 2; k++) {
-        drop_copy(f->mean[k], old->mean[k]);
-        drop_copy(f->mean_next[k], old->mean_next[k]);
+    if (f->parts != old->parts) {
+        spari_parts_free(f->parts);
     }
     if (f->history != old->history) {
         spari_history_free(f->history);

@@ -7,13 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A state: these, then load and load_accepted [nodes][6] if mapped; then, if node forces are kept, the nodes' places,
+/* A state: these, then load and load_accepted [nodes][6] if mapped; then, if loads came over parts of steps, their ends
+   at t^n and t^{n+1} [nodes][6]; then, if node forces are kept, the nodes' places,
    their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not look so far back. */
-enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_AUDIT, S_HEAD = S_AUDIT + 8 };
+enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = S_AUDIT + 8 };
+
+enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of parts */
+
+/* Nodal loads of a state. */
+static int64_t state_loads(const spar_fluid *fluid, const double *head) {
+    return (head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0) + (head[S_PARTS] != 0 ? 12 * fluid->member->nodes : 0);
+}
 
 static int64_t state_size(const spar_fluid *fluid, const double *head) {
-    return S_HEAD + (head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0) +
-           (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
+    return S_HEAD + state_loads(fluid, head) + (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
 }
 
 static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
@@ -24,6 +31,8 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
     head[S_PUSHED] = h && h->pushed;
     head[S_PUSHES] = (double)fluid->pushes;
     head[S_MAPPED] = fluid->load != NULL;
+    const spari_parts *p = fluid->parts;
+    head[S_PARTS] = p ? (p->ended ? PARTS_BEFORE : 0) + (p->theta > 0 ? PARTS_NOW : 0) : 0;
     memcpy(head + S_AUDIT, fluid->audit, sizeof fluid->audit);
 }
 
@@ -34,11 +43,11 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
 }
 
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
-    if (fluid->mean_theta != 0 && fluid->mean_theta != 1) {
+    const spari_parts *p = fluid->parts;
+    if (p && p->theta != 0 && p->theta != 1) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, call,
-            "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1",
-            fluid->mean_theta);
+            "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1", p->theta);
     }
     const spari_history *h = fluid->history;
     state_head(fluid, state);
@@ -48,6 +57,9 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
         memcpy(at, fluid->load, loads * sizeof *at);
         memcpy(at += loads, fluid->load_accepted, loads * sizeof *at);
         at += loads;
+    }
+    for (int k = 0; k < 2 && state[S_PARTS] != 0; k++, at += loads) {
+        memcpy(at, p->end[k], loads * sizeof *at);
     }
     if (state[S_KEPT] != 0) {
         size_t n = 3 * (size_t)h->n;
@@ -68,6 +80,7 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
 
 int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
     return count >= S_HEAD && spari_is_count(state[S_NODES]) && spari_is_count(state[S_PUSHES]) &&
+           spari_is_count(state[S_PARTS]) && state[S_PARTS] <= PARTS_BEFORE + PARTS_NOW &&
            count == state_size(fluid, state);
 }
 
@@ -78,7 +91,7 @@ static int64_t kept_nodes(const double *state) {
 
 /* Where the places of a state begin. */
 static const double *state_places(const spar_fluid *fluid, const double *state) {
-    return state + S_HEAD + (state[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0);
+    return state + S_HEAD + state_loads(fluid, state);
 }
 
 static int compare_places(const void *a, const void *b) {
@@ -183,6 +196,11 @@ int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const doub
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, call,
                                   "it is not mapped yet; give its nodes and call spar_fluid_map first");
     }
+    for (int k = 0; k < count; k++) {
+        if (states[k][S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
+            return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
+        }
+    }
     if (on && s && s->n > 0 && !kept) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_ARGUMENT, call,
@@ -201,13 +219,41 @@ int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const doub
     return SPAR_OK;
 }
 
+/* Ends of parts, a sum over the states; of a state without them, its loads. */
+static void load_parts(spar_fluid *fluid, int count, const double *const *states, int takes_loads) {
+    spari_parts *p = fluid->parts;
+    if (!p) {
+        return;
+    }
+    int64_t n = 6 * fluid->member->nodes;
+    int have = 0;
+    for (int k = 0; k < count; k++) {
+        have |= (int)states[k][S_PARTS];
+    }
+    p->ended = (have & PARTS_BEFORE) != 0;
+    p->theta = have & PARTS_NOW ? 1 : 0;
+    p->plain = 0;
+    for (int which = 0; which < 2; which++) {
+        memset(p->end[which], 0, (size_t)n * sizeof(double));
+        for (int k = 0; k < count && takes_loads; k++) {
+            const double *load = states[k] + S_HEAD + (which == 0 ? n : 0);
+            const double *end = (int)states[k][S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW)
+                                    ? states[k] + S_HEAD + 2 * n + which * n
+                                    : load;
+            for (int64_t i = 0; i < n && states[k][S_MAPPED] != 0; i++) {
+                p->end[which][i] = k > 0 ? p->end[which][i] + end[i] : end[i];
+            }
+        }
+    }
+}
+
 void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states, int takes_loads) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     size_t loads = fluid->load ? 6 * (size_t)fluid->member->nodes : 0;
     int kept = 0, taken = 0;
     fluid->pushes = 0;
     spari_fluid_forget_refusal(fluid);
-    fluid->mean_theta = 0;
+    load_parts(fluid, count, states, takes_loads);
     if (fluid->history_next) {
         spari_history_free(fluid->history);
         fluid->history = fluid->history_next, fluid->history_next = NULL;

@@ -26,6 +26,19 @@ typedef struct spari_history {
     double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
 } spari_history;
 
+/* Loads over the parts of a step (parts.c). s runs from 0 at t^n to 1 at t^{n+1}. */
+typedef struct spari_parts {
+    double theta;            /* where the last part ended; 0: none in this step */
+    int plain;               /* loads at t^{n+1} were pushed in this step instead */
+    int moment, moment_next; /* a part had moments; with the one that is being added */
+    int64_t n[2];            /* nodes that there is room for, of forces and of moments */
+    double *sums[2][2];      /* of both, now and room for the next: integrals of load ds and of load s ds, [2][n][3] */
+    double *value[2];        /* [n][3], for one call */
+    double *end[2];          /* [nodes][6]: nodal loads that the parts tend to at t^n, and at theta */
+    double *mean;            /* [nodes][6], for one call */
+    int ended;               /* end[0] is of parts; else the loads at t^n are those in use */
+} spari_parts;
+
 struct spar_fluid {
     spar_member *member;
     spar_fluid *next;
@@ -49,12 +62,7 @@ struct spar_fluid {
     double *work;      /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     double audit[SPAR_AUDIT_COUNT];
-    /* several pushes within a step: mean force and moment [n][3] over [t^n, t^n + theta dt], and room for the next;
-       moments from the first one given on */
-    double *mean[2], *mean_next[2];
-    int64_t mean_count[2];                 /* n of these */
-    int mean_moment;                       /* the mean has a moment */
-    double mean_theta;                     /* 0: none pushed yet in this step */
+    spari_parts *parts;                    /* of loads that come several times in a step; NULL: none ever did */
     spari_history *history, *history_next; /* NULL: not kept; next: of a file being loaded */
 };
 
@@ -98,6 +106,20 @@ double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
 /* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
+/* Room for the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
+int spari_parts_prepare(spar_fluid *fluid);
+void spari_parts_free(spari_parts *parts);
+/* A part that ends at theta, on n force nodes; moment NULL: none. In the sums to come only. SPAR_ERR_MEMORY without a
+   message. */
+int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, const double *force, const double *moment);
+/* Of these sums the means over [0, theta] (at_end 0), or the ends there of the lines of least squares, into `value`. */
+void spari_parts_see(spari_parts *parts, double theta, int at_end);
+/* The sums to come are those that hold. */
+void spari_parts_keep(spari_parts *parts, double theta);
+/* No part has been pushed in the step. */
+void spari_parts_begin(spar_fluid *fluid);
+void spari_parts_accept(spar_fluid *fluid);
+
 /* Keeps node forces for n nodes from now on, beginning with zeros. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);
 

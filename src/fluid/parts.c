@@ -1,0 +1,152 @@
+/* Loads that come several times in a step, each over a part of it: see docs/theory.md, (T15).
+
+   A part's load is its mean over the part. What the structure asks for is the load at t^{n+1}, between which and that
+   at t^n it takes a straight line. The line of least squares through the parts has their mean m, so their impulse, and
+   tends to e at the step's end; the mean alone would lag by half a step. In use is f^{n+1} = m + (e - e^n) / 2: of
+   second order, and since sum (f^n + f^{n+1}) / 2 = sum m + (e^{N+1} + e^N) / 4 - m / 2, terms of the two ends that
+   cancel for steady loads, the impulse of all parts is kept. It is not 2 m - f^n, which keeps that of each step and
+   rings. */
+#include "state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FORCE, MOMENT };
+
+/* ---- memory ---- */
+
+void spari_parts_free(spari_parts *p) {
+    if (!p) {
+        return;
+    }
+    for (int k = 0; k < 2; k++) {
+        free(p->sums[k][0]);
+        free(p->sums[k][1]);
+        free(p->value[k]);
+        free(p->end[k]);
+    }
+    free(p->mean);
+    free(p);
+}
+
+int spari_parts_prepare(spar_fluid *fluid) {
+    if (fluid->parts) {
+        return SPAR_OK;
+    }
+    spari_parts *p = spari_zalloc(1, sizeof *p);
+    int64_t n = 6 * fluid->member->nodes;
+    if (!p || !(p->end[0] = spari_zalloc(n, sizeof(double))) || !(p->end[1] = spari_zalloc(n, sizeof(double))) ||
+        !(p->mean = spari_zalloc(n, sizeof(double)))) {
+        spari_parts_free(p);
+        return SPAR_ERR_MEMORY;
+    }
+    fluid->parts = p;
+    return SPAR_OK;
+}
+
+/* Room for n forces or moments. */
+static int make_sums(spari_parts *p, int kind, int64_t n) {
+    if (p->sums[kind][0] && p->n[kind] == n) {
+        return SPAR_OK;
+    }
+    double *made[3] = {spari_zalloc(6 * n, sizeof(double)), spari_zalloc(6 * n, sizeof(double)),
+                       spari_zalloc(3 * n, sizeof(double))};
+    if (!made[0] || !made[1] || !made[2]) {
+        for (int k = 0; k < 3; k++) {
+            free(made[k]);
+        }
+        return SPAR_ERR_MEMORY;
+    }
+    free(p->sums[kind][0]);
+    free(p->sums[kind][1]);
+    free(p->value[kind]);
+    p->sums[kind][0] = made[0], p->sums[kind][1] = made[1], p->value[kind] = made[2];
+    p->n[kind] = n;
+    return SPAR_OK;
+}
+
+static int make_room(spar_fluid *fluid, int64_t n, int with_moment) {
+    SPARI_TRY(spari_parts_prepare(fluid));
+    spari_parts *p = fluid->parts;
+    if (p->n[FORCE] != n) {
+        p->theta = 0; /* other nodes than the parts were of */
+    }
+    SPARI_TRY(make_sums(p, FORCE, n));
+    return with_moment ? make_sums(p, MOMENT, n) : SPAR_OK;
+}
+
+/* ---- a part ---- */
+
+/* The sums with a part from `last` to `theta` in them, into the room for the next. before: there were parts; load NULL:
+   zeros. */
+static void sum_up(spari_parts *p, int kind, int before, double last, double theta, const double *load) {
+    int64_t n = 3 * p->n[kind];
+    const double *old = p->sums[kind][0], length = theta - last, middle = 0.5 * (theta + last);
+    double *sum = p->sums[kind][1];
+    for (int64_t i = 0; i < n; i++) {
+        double impulse = load ? length * load[i] : 0;
+        sum[i] = (before ? old[i] : 0) + impulse;
+        sum[n + i] = (before ? old[n + i] : 0) + middle * impulse;
+    }
+}
+
+/* Means over [0, theta] of the parts (at_end 0), or the ends there of the lines of least squares. */
+static void see(spari_parts *p, int kind, double theta, int at_end) {
+    int64_t n = 3 * p->n[kind];
+    const double *sum = p->sums[kind][1];
+    for (int64_t i = 0; i < n; i++) {
+        double mean = sum[i] / theta;
+        p->value[kind][i] = at_end ? mean + 6 / theta * (sum[n + i] / theta - 0.5 * sum[i]) : mean;
+    }
+}
+
+void spari_parts_see(spari_parts *p, double theta, int at_end) {
+    see(p, FORCE, theta, at_end);
+    if (p->moment_next) {
+        see(p, MOMENT, theta, at_end);
+    }
+}
+
+int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, const double *force, const double *moment) {
+    SPARI_TRY(make_room(fluid, n, moment != NULL));
+    spari_parts *p = fluid->parts;
+    double last = theta > p->theta ? p->theta : 0; /* else the fluid goes through the step again */
+    int before = last > 0, had_moment = before && p->moment;
+    sum_up(p, FORCE, before, last, theta, force);
+    p->moment_next = had_moment || moment;
+    if (p->moment_next) {
+        sum_up(p, MOMENT, had_moment, last, theta, moment);
+    }
+    return SPAR_OK;
+}
+
+void spari_parts_keep(spari_parts *p, double theta) {
+    for (int kind = 0; kind < 2; kind++) {
+        double *old = p->sums[kind][0];
+        p->sums[kind][0] = p->sums[kind][1], p->sums[kind][1] = old;
+    }
+    p->theta = theta;
+    p->moment = p->moment_next;
+}
+
+/* ---- the step ---- */
+
+void spari_parts_begin(spar_fluid *fluid) {
+    if (fluid->parts) {
+        fluid->parts->theta = 0;
+        fluid->parts->plain = 0;
+    }
+}
+
+void spari_parts_accept(spar_fluid *fluid) {
+    spari_parts *p = fluid->parts;
+    if (!p) {
+        return;
+    }
+    if (p->theta > 0) {
+        double *old = p->end[0];
+        p->end[0] = p->end[1], p->end[1] = old;
+    }
+    p->ended = p->theta > 0 || (p->ended && !p->plain); /* loads that nobody pushed stay as they were */
+    spari_parts_begin(fluid);
+}
