@@ -27,6 +27,7 @@ typedef struct tally {
 
 struct spari_accelerator {
     spari_accelerator_settings set;
+    const spari_coupling_scheme *scheme;
     int64_t n;
     int period, split;
 
@@ -67,14 +68,14 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
         return NULL;
     }
     a->set = *settings;
+    a->scheme = spari_coupling_scheme_of(settings->scheme);
     a->n = n;
     a->period = period;
     a->split = split;
     a->omega = settings->omega;
-    int quasi_newton = settings->scheme == SPAR_COUPLING_IQN_ILS;
-    int64_t m = quasi_newton ? settings->columns : 0;
+    int64_t m = a->scheme->columns ? settings->columns : 0;
     a->slots = (int)(2 * m);
-    int64_t k = quasi_newton && settings->imaged ? m : 0;
+    int64_t k = settings->imaged ? m : 0;
     int ok = (a->x = spari_zalloc(n, sizeof *a->x)) && (a->g = spari_zalloc(n, sizeof *a->g)) &&
              (a->column = spari_zalloc(2 * m, sizeof *a->column)) && (a->v = spari_zalloc(2 * m * n, sizeof *a->v)) &&
              (a->w = spari_zalloc(2 * m * n, sizeof *a->w)) && (a->q = spari_zalloc(m * n, sizeof *a->q)) &&
@@ -453,10 +454,21 @@ static int step_by_average(spari_accelerator *a, const double *x, const double *
            spari_secants_step(a->secants, x, g, a->residual, longest(a), next);
 }
 
+/* By the columns of this step and of earlier ones, which are averaged where they contradict each other. */
+static int next_by_columns(spari_accelerator *a, const double *x, const double *g, double *next) {
+    return (a->imaged && a->scatter > LOUD && step_by_average(a, x, g, next)) ||
+           (a->used > 0 && quasi_newton(a, x, g, next));
+}
+
 /* ---- Aitken ---- */
 
+/* Kuettler & Wall (2008): a step begins with the last factor, as far as the user's allows. */
+static void aitken_begin(spari_accelerator *a) {
+    a->omega = a->omega_accepted > 0 ? fmin(a->omega_accepted, a->set.omega) : a->set.omega;
+}
+
 /* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; where the residual stalls omega stays. */
-static void aitken(spari_accelerator *a, const double *x, const double *g, const double *image) {
+static void aitken_learn(spari_accelerator *a, const double *x, const double *g, const double *image) {
     double product[2] = {0, 0}, square[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
@@ -477,6 +489,21 @@ static void aitken(spari_accelerator *a, const double *x, const double *g, const
     }
 }
 
+/* ---- the schemes ---- */
+
+static const spari_coupling_scheme
+    scheme_explicit = {.name = "explicit"},
+    scheme_fixed_point = {.name = "fixed point", .iterates = 1},
+    scheme_aitken = {.name = "Aitken", .iterates = 1, .begin = aitken_begin, .learn = aitken_learn},
+    scheme_iqn_ils = {.name = "IQN-ILS", .iterates = 1, .columns = 1, .learn = add_column, .next = next_by_columns};
+
+const spari_coupling_scheme *spari_coupling_scheme_of(int scheme) {
+#define SPARI_SCHEME(number, name) [SPAR_COUPLING_##number] = &scheme_##name,
+    static const spari_coupling_scheme *const table[] = {SPARI_SCHEMES(SPARI_SCHEME)};
+#undef SPARI_SCHEME
+    return table[scheme];
+}
+
 /* ---- the step ---- */
 
 void spari_accelerator_begin(spari_accelerator *a, double dt) {
@@ -487,9 +514,10 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->ratio = 0;
     a->ratios = (tally){0};
     a->most_weight = 0;
-    /* Kuettler & Wall (2008): the last factor, as far as the user's allows */
-    a->omega = a->set.scheme == SPAR_COUPLING_AITKEN && a->omega_accepted > 0 ? fmin(a->omega_accepted, a->set.omega)
-                                                                              : a->set.omega;
+    a->omega = a->set.omega;
+    if (a->scheme->begin) {
+        a->scheme->begin(a);
+    }
     for (int s = 0; s < a->slots; s++) {
         if (a->column[s].state == LIVE && fabs(a->column[s].dt - dt) > 0.1 * dt) {
             a->column[s].state = RESTING;
@@ -533,10 +561,7 @@ static tally all_ratios(const spari_accelerator *a, double fade) {
 }
 
 static void compute_next(spari_accelerator *a, const double *x, const double *g, double *next) {
-    if (a->imaged && a->scatter > LOUD && step_by_average(a, x, g, next)) {
-        return;
-    }
-    if (a->used > 0 && quasi_newton(a, x, g, next)) {
+    if (a->scheme->next && a->scheme->next(a, x, g, next)) {
         return;
     }
     for (int64_t i = 0; i < a->n; i++) {
@@ -583,10 +608,8 @@ static void suspect(spari_accelerator *a) {
 
 static void learn(spari_accelerator *a, const double *x, const double *g, const double *image) {
     estimate_ratio(a, x, g, image);
-    if (a->set.scheme == SPAR_COUPLING_AITKEN) {
-        aitken(a, x, g, image);
-    } else if (a->set.scheme == SPAR_COUPLING_IQN_ILS) {
-        add_column(a, x, g, image);
+    if (a->scheme->learn) {
+        a->scheme->learn(a, x, g, image);
     }
 }
 

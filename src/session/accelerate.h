@@ -16,12 +16,34 @@
 #ifndef SPARI_ACCELERATE_H
 #define SPARI_ACCELERATE_H
 
-#include <stdint.h>
+#include <spar/spar.h>
 
 typedef struct spari_accelerator spari_accelerator;
 
+/* A scheme: a row of the table, by SPAR_COUPLING_*. Of the functions NULL is nothing to do. Beside what they do all
+   schemes have the user's factor at first, and relaxation by the factor in use where `next` gives no loads. */
+typedef struct spari_coupling_scheme {
+    const char *name; /* "fixed point" */
+    int iterates;     /* 0: the step is solved once, and there is no accelerator */
+    int columns;      /* it keeps difference columns, and there is memory for them */
+    void (*begin)(spari_accelerator *a);
+    /* What the last two iterations show; x, g, image are those of the last. */
+    void (*learn)(spari_accelerator *a, const double *x, const double *g, const double *image);
+    int (*next)(spari_accelerator *a, const double *x, const double *g, double *next); /* 0: no loads */
+} spari_coupling_scheme;
+
+/* The table: SPAR_COUPLING_* and the row's name. */
+#define SPARI_SCHEMES(ROW)                                                                                             \
+    ROW(EXPLICIT, explicit)                                                                                            \
+    ROW(FIXED_POINT, fixed_point)                                                                                      \
+    ROW(AITKEN, aitken)                                                                                                \
+    ROW(IQN_ILS, iqn_ils)
+#define SPARI_COUNT_SCHEME(number, name) +1
+enum { SPARI_SCHEME_COUNT = 0 SPARI_SCHEMES(SPARI_COUNT_SCHEME) };
+const spari_coupling_scheme *spari_coupling_scheme_of(int scheme);
+
 typedef struct spari_accelerator_settings {
-    int scheme;    /* SPAR_COUPLING_FIXED_POINT, _AITKEN, _IQN_ILS */
+    int scheme;    /* SPAR_COUPLING_* of one that iterates */
     double omega;  /* relaxation: constant, or of the first iterations and the most that Aitken begins a step with */
     int columns;   /* IQN-ILS: the most difference columns in use, >= 1 */
     int reuse;     /* IQN-ILS: accepted steps whose columns are used again, >= 0 */

@@ -35,7 +35,7 @@ int spari_coupling_wants_motion(const spar_session *s) {
 }
 
 static int make_vectors(const spar_session *s, spari_coupling *c) {
-    int iterated = s->scheme != SPAR_COUPLING_EXPLICIT;
+    int iterated = spari_coupling_scheme_of(s->scheme)->iterates;
     int64_t n = iterated ? c->n : 0;
     spari_accelerator_settings set = {s->scheme,         s->relaxation,      s->coupling_columns,
                                       s->coupling_reuse, s->coupling_filter, c->weighs};
@@ -75,7 +75,7 @@ int spari_coupling_create(spar_session *s, int at_rest, spari_coupling **couplin
     if (c) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
-        c->weighs = !at_rest && s->scheme != SPAR_COUPLING_EXPLICIT && spari_weighs_motion(s);
+        c->weighs = !at_rest && spari_coupling_scheme_of(s->scheme)->iterates && spari_weighs_motion(s);
     }
     if (!c || !make_vectors(s, c)) {
         spari_coupling_free(&c);

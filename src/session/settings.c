@@ -8,6 +8,7 @@
 #include "../math/predictor.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
+#include "accelerate.h"
 
 #include <float.h>
 #include <math.h>
@@ -64,7 +65,7 @@ static const spari_setting settings[] = {
     REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_ALIKE),
     WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_ALIKE),
     WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_ALIKE),
-    WHOLE(COUPLING, "coupling", "scheme", scheme, SPAR_COUPLING_EXPLICIT, SPAR_COUPLING_IQN_ILS, "a SPAR_COUPLING_*",
+    WHOLE(COUPLING, "coupling", "scheme", scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
           SPAR_COUPLING_EXPLICIT, SPARI_ALIKE | SPARI_OF_COUPLING),
     REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_ALIKE),
     REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_ALIKE),

@@ -8,6 +8,7 @@
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
+#include "accelerate.h"
 #include "coupling.h"
 #include "exchange.h"
 #include "lend.h"
@@ -352,7 +353,7 @@ static double growth(const spari_coupling *c) {
 }
 
 static const char *cure_for(const spar_session *s) {
-    return s->scheme == SPAR_COUPLING_IQN_ILS
+    return spari_coupling_scheme_of(s->scheme)->columns
                ? "where loads grow faster with the shape than the stiffness (static divergence) there is no stable "
                  "equilibrium: lower the loads or stiffen the member"
                : "take another scheme (spar_session_set_coupling, IQN-ILS) or a smaller relaxation; where loads grow "
@@ -390,7 +391,8 @@ static int not_solved(spar_session *s, int status) {
 /* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */
 static void warn_of_divergence(const spar_session *s) {
     char text[SPARI_MESSAGE_SIZE];
-    double ratio = s->scheme < SPAR_COUPLING_AITKEN ? 0 : spari_accelerator_ratio(s->own->coupling->accelerator);
+    int learns = spari_coupling_scheme_of(s->scheme)->learn != NULL;
+    double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
     if (!s->log || ratio >= -1) {
         return;
     }
@@ -423,7 +425,7 @@ static int find_equilibrium(spar_session *s, int load_steps, spar_fluid_solver s
         if (status != SPAR_OK) {
             return not_settled(s, status, "they are beyond the range of numbers");
         }
-        if (s->scheme == SPAR_COUPLING_EXPLICIT) {
+        if (!spari_coupling_scheme_of(s->scheme)->iterates) {
             break;
         }
         if (!agreed && s->iteration >= s->coupling_max) {

@@ -66,7 +66,7 @@ double spari_cost_step(const spar_session *s, int iterations) {
     const spari_prices *p = &spari_rule.price;
     const spari_coupling *c = s->own->coupling;
     double nodes = (double)c->n / 6, k = c->report[SPAR_REPORT_COLUMNS],
-           accelerated = s->scheme == SPAR_COUPLING_IQN_ILS ? (double)c->n * k * (p->column + p->column_pair * k) : 0;
+           accelerated = (double)c->n * k * (p->column + p->column_pair * k);
     return whole(nodes * p->step_node + iterations * (nodes * p->solution_node + map_cost(s)) +
                  (iterations - 1) * accelerated);
 }

@@ -5,6 +5,7 @@
 
 #include "../math/basis.h"
 #include "../member/beam.h"
+#include "../session/accelerate.h"
 #include "../solve/fidelity.h"
 
 #include <float.h>
@@ -107,14 +108,14 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
 }
 
 static const char *describe_plan(const spari_advisor *d, const spari_plan *p, char *text, size_t size) {
-    static const char *const scheme[] = {"explicit", "fixed point", "Aitken", "IQN-ILS"};
+    const spari_coupling_scheme *scheme = spari_coupling_scheme_of(p->scheme);
     double dt = d->run.dt * (double)d->run.steps / (double)p->steps;
     int at = snprintf(text, size, "dt %.4g", dt);
     if (p->substeps > 1) {
         at += snprintf(text + at, size - (size_t)at, " in %d substeps", p->substeps);
     }
-    at += snprintf(text + at, size - (size_t)at, ", %s", scheme[p->scheme]);
-    if (p->scheme != SPAR_COUPLING_EXPLICIT) {
+    at += snprintf(text + at, size - (size_t)at, ", %s", scheme->name);
+    if (scheme->iterates) {
         at += snprintf(text + at, size - (size_t)at, " %.0e", p->rtol);
     }
     at += snprintf(text + at, size - (size_t)at, ", predictor %d, Newton %.0e", p->predictor, p->newton);
