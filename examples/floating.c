@@ -55,7 +55,7 @@ static int decay(int direction, double *period, double *rest) {
         (status = spar_joint_create(s, "water", body, 0, NULL, 0, 63, &water)) == SPAR_OK &&
         (status = spar_joint_set_spring(water, stiffness, damping, preload)) == SPAR_OK &&
         (status = moor(s, body)) == SPAR_OK && (status = spar_member_solve_static(body, 5)) == SPAR_OK &&
-        (status = spar_joint_get_motion(water, motion, NULL)) == SPAR_OK) {
+        (status = spar_joint_get_motion(water, motion, NULL, NULL)) == SPAR_OK) {
         *rest = motion[direction];
         pushed[direction] = start * (direction < 3 ? 4e5 : 2e9); /* held aside for the first seconds, then let go */
     }
@@ -64,7 +64,7 @@ static int decay(int direction, double *period, double *rest) {
             status = spar_joint_set_load(water, i == 0 ? pushed : (double[6]){0});
         }
         status = status == SPAR_OK ? spar_step(s, dt, NULL, NULL, NULL) : status;
-        status = status == SPAR_OK ? spar_joint_get_motion(water, motion, NULL) : status;
+        status = status == SPAR_OK ? spar_joint_get_motion(water, motion, NULL, NULL) : status;
         double away = motion[direction] - *rest;
         if (i > 600 && before < 0 && away >= 0) {
             last = dt * (i - away / (away - before));

@@ -60,7 +60,7 @@ static int run(double speed, double *amplitude) {
         double motion[6] = {0};
         status = spar_step(s, 0.004, solve_wake, &w, NULL);
         if (status == SPAR_OK && i > 8000) {
-            status = spar_joint_get_motion(spring, motion, NULL);
+            status = spar_joint_get_motion(spring, motion, NULL, NULL);
             *amplitude = fmax(*amplitude, fabs(motion[1]) / diameter);
         }
     }

@@ -210,8 +210,8 @@ int turbine_get_hub(const turbine *t, double x[3], double axis[3], double q[4]) 
 
 int turbine_get_shaft(const turbine *t, double *angle, double *speed, double *twist) {
     double z[6], wound[6], own[6], frame[6], hub[3], axis[3];
-    TRY(spar_joint_get_motion(t->shaft, z, NULL));
-    TRY(spar_joint_get_motion(t->drivetrain, wound, NULL));
+    TRY(spar_joint_get_motion(t->shaft, z, NULL, NULL));
+    TRY(spar_joint_get_motion(t->drivetrain, wound, NULL, NULL));
     TRY(spar_member_get_motion(t->generator, NULL, own, NULL)); /* a joint has no rate before the first step */
     TRY(spar_member_get_motion(t->nacelle, NULL, frame, NULL));
     TRY(turbine_get_hub(t, hub, axis, NULL));

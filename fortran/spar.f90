@@ -1833,13 +1833,13 @@ contains
     call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
   end subroutine joint_set_load
 
-  subroutine joint_get_motion(self, motion, rate, stat, errmsg)
+  subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
     class(spar_joint), intent(in) :: self
-    real(c_double), intent(inout), optional :: motion(6), rate(6)
+    real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
     integer(c_int), intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_joint_get_motion(self%handle, motion, rate), self%session, stat, errmsg)
+    call finish(spar_joint_get_motion(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
   end subroutine joint_get_motion
 
   subroutine joint_get_load(self, load, stat, errmsg)

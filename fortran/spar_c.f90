@@ -685,10 +685,10 @@ module spar_c
       integer(c_int) :: status
     end function spar_line_set_spring
 
-    function spar_joint_get_motion(joint, motion, rate) bind(c) result(status)
+    function spar_joint_get_motion(joint, motion, rate, acceleration) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: joint
-      real(c_double), intent(inout), optional :: motion(6), rate(6)
+      real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
       integer(c_int) :: status
     end function spar_joint_get_motion
 

@@ -134,7 +134,7 @@ static void look(const scene *c, double *out) {
         OK(c->session, spar_member_get_loads(c->member[k], out + 19 * 16));
     }
     for (int k = 0; k < JOINTS; k++, out += 18) {
-        OK(c->session, spar_joint_get_motion(c->joint[k], out, out + 6));
+        OK(c->session, spar_joint_get_motion(c->joint[k], out, out + 6, NULL));
         OK(c->session, spar_joint_get_load(c->joint[k], out + 12));
     }
 }
@@ -195,7 +195,7 @@ static void same_bits(void **state) {
     assert_int_equal(owner[0], owner[2]);
     assert_int_equal(owner[3], owner[4]);
     assert_true(size == 1 || owner[0] != owner[3]);
-    OK(all.session, spar_joint_get_motion(all.joint[2], z, NULL));
+    OK(all.session, spar_joint_get_motion(all.joint[2], z, NULL, NULL));
     NEAR(z[5], 4 * 20 * step, 1e-12);
     OK(all.session,
        spar_joint_get_load(all.joint[4], load)); /* 10 N/m times 0.1 sin t, the spring's at rest elsewhere */

@@ -72,7 +72,7 @@ static void test_raft(void **state) {
     dip(s, raft, zero, &p);
     OK(s, spar_session_solve_static(s, 3, push_ponds, &p, NULL));
     for (int i = 0; i <= 5; i++) {
-        OK(s, spar_joint_get_motion(slide, z, NULL));
+        OK(s, spar_joint_get_motion(slide, z, NULL, NULL));
         OK(s, spar_joint_get_load(slide, load));
         NEAR(z[2], expected, 1e-13);
         NEAR(load[2], 20 - 500 * expected, 1e-10);
@@ -121,7 +121,7 @@ typedef struct keepsake {
 
 static keepsake look(spar_session *s, const spar_member *m, const spar_joint *j) {
     keepsake k;
-    OK(s, spar_joint_get_motion(j, k.z, k.rate));
+    OK(s, spar_joint_get_motion(j, k.z, k.rate, NULL));
     OK(s, spar_joint_get_load(j, k.load));
     OK(s, spar_member_get_motion(m, k.q, k.v, k.a));
     OK(s, spar_member_get_loads(m, k.loads));
@@ -160,7 +160,7 @@ static void test_refused(void **state) {
     for (int i = 0; i < 200; i++) {
         t = (1 - 0.2 * sin(t)) * cos(t) / 3;
     }
-    OK(s, spar_joint_get_motion(hinge, z, NULL));
+    OK(s, spar_joint_get_motion(hinge, z, NULL, NULL));
     NEAR(z[3], t, 1e-10);
     spar_session_destroy(&s);
 }
@@ -198,7 +198,7 @@ static void test_joint_that_comes_later(void **state) {
     OK(s, spar_joint_set_spring(second, K, NULL, NULL));
     for (int i = 0; i < 2; i++) {
         OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(slide, z, NULL));
+        OK(s, spar_joint_get_motion(slide, z, NULL, NULL));
         NEAR(z[2], -3 * g / 1000, 1e-13);
         OK(s, spar_step(s, 0.1, NULL, NULL, NULL));
     }

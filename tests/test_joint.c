@@ -32,7 +32,7 @@ static double order_of(double coarse, double fine) {
 /* What is held stays, and its rate: the worst of all. */
 static double gap_of(const spar_joint *j, int free_motions) {
     double z[6], rate[6], worst = 0;
-    assert_int_equal(spar_joint_get_motion(j, z, rate), SPAR_OK);
+    assert_int_equal(spar_joint_get_motion(j, z, rate, NULL), SPAR_OK);
     for (int k = 0; k < 6; k++) {
         worst = free_motions >> k & 1 ? worst : fmax(worst, fmax(fabs(z[k]), fabs(rate[k])));
     }
@@ -60,7 +60,7 @@ static swing pendulum(int at_centre, double rho, double dt, double T) {
     double z[6], rate[6], load[6];
     for (int i = 0, n = (int)lround(T / dt); i < n; i++) {
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(j, z, rate));
+        OK(s, spar_joint_get_motion(j, z, rate, NULL));
         OK(s, spar_joint_get_load(j, load));
         double theta = theta0 + z[4], along = load[0] * sin(theta) + load[2] * cos(theta);
         double e = 0.5 * I * rate[4] * rate[4] - m * g * L * (cos(theta) - cos(theta0));
@@ -101,8 +101,8 @@ static void test_pendulum(void **state) {
 /* ---- a double pendulum ---- */
 
 /* Two rods of 1 m and 1 kg, hinged along y at their ends, from the horizontal: energy is kept to dt^2, constraints to
-   rounding. */
-static void double_pendulum(double dt, double *energy, double *gap) {
+   rounding; the elbow's acceleration is the central difference of its rate to dt^2. */
+static void double_pendulum(double dt, double *energy, double *gap, double *jerk) {
     const double g = 9.81, half[3] = {0.5, 0, 0}, J[3] = {0, 1. / 12, 1. / 12}, elbow[3] = {1, 0, 0};
     spar_session *s = scene_session();
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
@@ -110,24 +110,32 @@ static void double_pendulum(double dt, double *energy, double *gap) {
     spar_member *upper = add_body(s, "upper", origin, 1, half, J), *lower = add_body(s, "lower", elbow, 1, half, J);
     spar_joint *shoulder = add_joint(s, "shoulder", upper, 0, NULL, 0, SPAR_FREE_RY, origin);
     spar_joint *joint = add_joint(s, "elbow", lower, 0, upper, 0, SPAR_FREE_RY, elbow);
-    *energy = *gap = 0;
+    double rate[3] = {0, 0, 0}, acceleration[2] = {0, 0};
+    *energy = *gap = *jerk = 0;
     for (int i = 0; i < (int)lround(2 / dt); i++) {
-        double e[2][4];
+        double e[2][4], v[6], a[6];
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
         OK(s, spar_member_get_energy(upper, 4, e[0]));
         OK(s, spar_member_get_energy(lower, 4, e[1]));
         *energy = fmax(*energy, fabs(e[0][0] + e[0][2] + e[1][0] + e[1][2]) / (2 * g));
         *gap = fmax(*gap, fmax(gap_of(shoulder, SPAR_FREE_RY), gap_of(joint, SPAR_FREE_RY)));
+        OK(s, spar_joint_get_motion(joint, NULL, v, a));
+        rate[0] = rate[1], rate[1] = rate[2], rate[2] = v[4];
+        acceleration[0] = acceleration[1], acceleration[1] = a[4];
+        if (i > 2) {
+            *jerk = fmax(*jerk, fabs((rate[2] - rate[0]) / (2 * dt) - acceleration[0]) / g);
+        }
     }
     spar_session_destroy(&s);
 }
 
 static void test_double_pendulum(void **state) {
     (void)state;
-    double coarse, fine, gap;
-    double_pendulum(0.002, &coarse, &gap);
-    double_pendulum(0.001, &fine, &gap);
+    double coarse, fine, gap, jerk[2];
+    double_pendulum(0.002, &coarse, &gap, &jerk[0]);
+    double_pendulum(0.001, &fine, &gap, &jerk[1]);
     NEAR(order_of(coarse, fine), 2, 0.2);
+    NEAR(order_of(jerk[0], jerk[1]), 2, 0.2);
     assert_true(gap < 1e-12);
 }
 
@@ -191,7 +199,7 @@ static double sprung(int direction, double dt) {
     for (int i = 0; i < n; i++) {
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
     }
-    OK(s, spar_joint_get_motion(j, z, NULL));
+    OK(s, spar_joint_get_motion(j, z, NULL, NULL));
     spar_session_destroy(&s);
     return z[direction] - 0.2 / w * exp(-d * 2) * sin(w * 2);
 }
@@ -343,7 +351,7 @@ static double parallelogram(double dt, double T, double *gap) {
         }
     }
     assert_int_equal(warnings, 3);
-    OK(s, spar_joint_get_motion(j[0], z, NULL));
+    OK(s, spar_joint_get_motion(j[0], z, NULL, NULL));
     spar_session_destroy(&s);
     return theta - z[4]; /* a turn about y takes x to -z */
 }
@@ -381,10 +389,10 @@ static void test_slider_crank(void **state) {
                v[6], root = sqrt(l * l - r * r * sin(a) * sin(a));
         OK(s, spar_joint_drive(shaft, motion, rate, NULL));
         OK(s, spar_step(s, 0.03, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(way, z, v));
+        OK(s, spar_joint_get_motion(way, z, v, NULL));
         NEAR(z[0], r * cos(a) + root - pin[0], 1e-12);
         NEAR(v[0], -r * w * sin(a) - r * r * w * sin(a) * cos(a) / root, 1e-11);
-        OK(s, spar_joint_get_motion(shaft, z, v));
+        OK(s, spar_joint_get_motion(shaft, z, v, NULL));
         NEAR(z[4], w * t, 1e-12); /* it counts its turns: 31.5 rad at the end */
     }
     spar_session_destroy(&s);
@@ -439,7 +447,7 @@ static void test_rod(void **state) {
     OK(s, spar_line_create(s, "rod", b[1], 0, right, b[0], 0, left, &rod));
     for (int i = 0; i < 500; i++) {
         OK(s, spar_step(s, 2e-3, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(rod, z, NULL));
+        OK(s, spar_joint_get_motion(rod, z, NULL, NULL));
         OK(s, spar_joint_get_load(rod, load));
         NEAR(z[0], 2, 1e-12);
         NEAR(load[0], -3 * w * w, 1e-4); /* it pulls the right one to the left */
@@ -479,7 +487,7 @@ static void test_cart(void **state) {
             OK(s, spar_member_set_motion(cart, q, v, a0));
             OK(s, spar_step_solve(s));
             OK(s, spar_step_accept(s));
-            OK(s, spar_joint_get_motion(j, z, NULL));
+            OK(s, spar_joint_get_motion(j, z, NULL, NULL));
             OK(s, spar_joint_get_load(j, load));
             NEAR(z[4], 0, 1e-10);
             NEAR(load[0], 2 * accel, 1e-8);
@@ -517,7 +525,7 @@ static void test_rigid_beam(void **state) {
             OK(s, spar_step(s, dt, NULL, NULL, NULL));
             assert_true(gap_of(j, SPAR_FREE_RY) < 1e-12);
         }
-        OK(s, spar_joint_get_motion(j, z, NULL));
+        OK(s, spar_joint_get_motion(j, z, NULL, NULL));
         OK(s, spar_member_get_reaction(b, loads));
         for (int i = 0; i < 6; i++) {
             NEAR(loads[i], 0, 1e-12);
@@ -544,7 +552,7 @@ static void test_sprung_at_rest(void **state) {
     scene_diagonal(K, 1e5, 2e5, 3e5, 4e7, 5e7, 6e7);
     OK(s, spar_joint_set_spring(j, K, NULL, preload));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_joint_get_motion(j, z, NULL));
+    OK(s, spar_joint_get_motion(j, z, NULL, NULL));
     OK(s, spar_joint_get_load(j, load));
     const double expected[6] = {0, 0, -5 * g, 0, 5 * g * 0.2, 0};
     for (int k = 0; k < 6; k++) {
@@ -554,7 +562,7 @@ static void test_sprung_at_rest(void **state) {
     for (int i = 0; i < 5; i++) {
         double z2[6];
         OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(j, z2, NULL));
+        OK(s, spar_joint_get_motion(j, z2, NULL, NULL));
         for (int k = 0; k < 6; k++) {
             NEAR(z2[k], z[k], 1e-14);
         }
@@ -679,7 +687,7 @@ static void let_go(int held_first, double rate[6]) {
     for (int i = 0; i < 50; i++) {
         OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
     }
-    OK(s, spar_joint_get_motion(hinge, NULL, rate));
+    OK(s, spar_joint_get_motion(hinge, NULL, rate, NULL));
     spar_session_destroy(&s);
 }
 

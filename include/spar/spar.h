@@ -650,9 +650,10 @@ SPAR_API int spar_line_create(spar_session *session, const char *name, spar_memb
    Local. */
 SPAR_API int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only);
 /* Relative motion of the latest iterate, t^n between steps; 0 before the first step or static solution.
-     motion[6], rate[6]: out, NULL: not wanted; a line has its distance in the first
+     motion[6], rate[6], acceleration[6]: out, m, rad, and their rates (1/s, 1/s^2), NULL: not wanted; a line has its
+           distance in the first. acceleration is that of the nodes' accelerations
    Local, the same on every rank. */
-SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6]);
+SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6], double acceleration[6]);
 /* The load that the joint puts on a, in its axes and at a's end of it; b takes the opposite.
      load[6]: out, N, N m: of what is held the constraint's, of what is free those of spring, damper and
            spar_joint_set_load

@@ -267,10 +267,13 @@ static void give_six(double *to, const double from[6]) {
     }
 }
 
-int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6]) {
+int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6], double acceleration[6]) {
     SPARI_TRY(need_joint(joint, __func__));
     give_six(motion, joint->after.z);
     give_six(rate, joint->after.rate);
+    if (acceleration) {
+        spari_joint_acceleration(joint, acceleration);
+    }
     return SPAR_OK;
 }
 

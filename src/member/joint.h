@@ -75,6 +75,8 @@ void spari_joint_accept(spar_joint *joint);
 void spari_joint_reject(spar_joint *joint);
 /* Where its two nodes are in the motion after. */
 void spari_joint_places(const spar_joint *joint, spari_place place[2]);
+/* The second rates of its coordinates in the motion after; 0 before it is placed. */
+void spari_joint_acceleration(const spar_joint *joint, double acceleration[6]);
 /* load[6] += what the joints put on a node of a member, in the motion after. */
 void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
 /* SPAR_ERR_UNSUPPORTED where the session has joints: what does not know them yet. */

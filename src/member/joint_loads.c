@@ -1,4 +1,4 @@
-/* What joints put on the nodes of a member, in the motion after. */
+/* Joints in the motion after: what they put on the nodes of a member, and how their coordinates speed up. */
 #include "joint.h"
 
 #include <string.h>
@@ -35,5 +35,27 @@ void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
                 load[k] += f[6 * side + k];
             }
         }
+    }
+}
+
+void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
+    spari_place place[2];
+    double z[6], B[6][12], v[12] = {0}, a[12] = {0};
+    memset(acceleration, 0, 6 * sizeof *acceleration);
+    if (!j->placed) {
+        return;
+    }
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        if (m) {
+            memcpy(v + 6 * side, m->after.v + 6 * j->seat[side], 6 * sizeof *v);
+            memcpy(a + 6 * side, m->after.a + 6 * j->seat[side], 6 * sizeof *a);
+        }
+    }
+    spari_joint_places(j, place);
+    spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
+    spari_tie_drift(&j->tie, &place[0], &place[1], v, acceleration);
+    for (int k = 0; k < 72; k++) {
+        acceleration[k / 12] += B[k / 12][k % 12] * a[k % 12];
     }
 }

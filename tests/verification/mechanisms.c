@@ -104,12 +104,12 @@ static void squeeze(int steps, double angle[7], double *gap) {
     for (int n = 0; n < steps; n++) {
         OK(k.s, spar_step(k.s, 0.03 / steps, NULL, NULL, NULL));
         for (int i = 0; i < 10; i++) {
-            OK(k.s, spar_joint_get_motion(k.hinge[i], z, rate));
+            OK(k.s, spar_joint_get_motion(k.hinge[i], z, rate, NULL));
             *gap = fmax(*gap, fmax(fabs(z[0]), fabs(z[1])));
         }
     }
     for (int i = 0; i < 7; i++) {
-        OK(k.s, spar_joint_get_motion(k.hinge[i], z, rate));
+        OK(k.s, spar_joint_get_motion(k.hinge[i], z, rate, NULL));
         angle[i] = angle_0[i] + z[5];
     }
     spar_session_destroy(&k.s);
@@ -209,7 +209,7 @@ static double bricard(double dt, double *gap, double *way) {
         }
         error = fmax(error, fabs(now - start));
         for (int k = 0; k < 6; k++) {
-            OK(s, spar_joint_get_motion(hinge[k], z, rate));
+            OK(s, spar_joint_get_motion(hinge[k], z, rate, NULL));
             for (int i = 0; i < 6; i++) {
                 *gap = fmax(*gap, about[k] >> i & 1 ? 0 : fmax(fabs(z[i]), fabs(rate[i])));
                 *way = fmax(*way, about[k] >> i & 1 ? fabs(z[i]) : 0);

@@ -134,8 +134,8 @@ void do_spar_joint_set_load(call *c) {
 
 void do_spar_joint_get_motion(call *c) {
     live_joint *j = arg_joint(c, JOINT_ANY);
-    double *z = OUT_OR_NULL(c, 6), *rate = OUT_OR_NULL(c, 6);
-    RUN(c, spar_joint_get_motion(j->j, z, rate));
+    double *z = OUT_OR_NULL(c, 6), *rate = OUT_OR_NULL(c, 6), *acceleration = OUT_OR_NULL(c, 6);
+    RUN(c, spar_joint_get_motion(j->j, z, rate, acceleration));
 }
 
 void do_spar_joint_get_load(call *c) {

@@ -112,7 +112,7 @@ void fuzz_digest(world *w, int session, uint64_t digest[3]) {
     }
     for (int i = 0; i < JOINTS; i++) {
         if (w->joint[i].j && w->joint[i].session == session) {
-            (void)spar_joint_get_motion(w->joint[i].j, seen, seen + 6);
+            (void)spar_joint_get_motion(w->joint[i].j, seen, seen + 6, NULL);
             add_seen(digest, spar_joint_get_load(w->joint[i].j, seen + 12), 18);
         }
     }

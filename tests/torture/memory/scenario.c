@@ -630,7 +630,7 @@ static void act_joints(void) {
     for (int k = 0; k < 2; k++) {
         CALL(spar_joint_drive, hinge, none, NULL, NULL);
         CALL(spar_step, s, 1e-3, NULL, NULL, NULL);
-        CALL(spar_joint_get_motion, hinge, x, NULL);
+        CALL(spar_joint_get_motion, hinge, x, NULL, NULL);
         note(x, sizeof x);
         CALL(spar_joint_get_load, hinge, x);
         note(x, sizeof x);
