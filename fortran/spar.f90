@@ -69,7 +69,9 @@ module spar
   public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC, SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT
   public :: SPAR_AERO_FLAG_BEYOND_POLAR, SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER, SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
   public :: SPAR_ENERGY_KINETIC, SPAR_ENERGY_STRAIN, SPAR_ENERGY_GRAVITY, SPAR_ENERGY_DISSIPATED, SPAR_ENERGY_COUNT
-  public :: SPAR_WORK_LOADS, SPAR_WORK_FLUID, SPAR_WORK_ROOT, SPAR_WORK_COUNT
+  public :: SPAR_WORK_LOADS, SPAR_WORK_FLUID, SPAR_WORK_ROOT, SPAR_WORK_JOINTS, SPAR_WORK_COUNT
+  public :: SPAR_JOINT_ENERGY_SPRING, SPAR_JOINT_ENERGY_DAMPER, SPAR_JOINT_ENERGY_DRIVE, SPAR_JOINT_ENERGY_LOAD, &
+       SPAR_JOINT_ENERGY_COUNT
   public :: SPAR_AUDIT_FORCE, SPAR_AUDIT_MOMENT, SPAR_AUDIT_POWER, SPAR_AUDIT_FORCE_ERROR, SPAR_AUDIT_MOMENT_ERROR
   public :: SPAR_AUDIT_POWER_ERROR, SPAR_AUDIT_FARTHEST, SPAR_AUDIT_NODES, SPAR_AUDIT_COUNT
   public :: SPAR_TRY_MOTION, SPAR_TRY_REACTION, SPAR_TRY_LOAD, SPAR_TRY_SECONDS, SPAR_TRY_SOLUTIONS, SPAR_TRY_COUNT
@@ -212,6 +214,7 @@ module spar
     procedure :: set_load => joint_set_load
     procedure :: get_motion => joint_get_motion
     procedure :: get_load => joint_get_load
+    procedure :: get_energy => joint_get_energy
   end type spar_joint
 
   type :: spar_fluid
@@ -1850,6 +1853,15 @@ contains
 
     call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
   end subroutine joint_get_load
+
+  subroutine joint_get_energy(self, energy, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: energy(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
+  end subroutine joint_get_energy
 
   subroutine fluid_create(self, member, name, stat, errmsg)
     class(spar_fluid), intent(inout) :: self

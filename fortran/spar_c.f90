@@ -52,7 +52,10 @@ module spar_c
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
   integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
       SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
-  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_COUNT = 3
+  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, &
+       SPAR_WORK_JOINTS = 3, SPAR_WORK_COUNT = 4
+  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, SPAR_JOINT_ENERGY_DRIVE = 2, &
+       SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
   integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, SPAR_AUDIT_FORCE_ERROR = 3, &
       SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, SPAR_AUDIT_NODES = 7, &
       SPAR_AUDIT_COUNT = 8
@@ -698,6 +701,14 @@ module spar_c
       real(c_double), intent(inout), optional :: load(6)
       integer(c_int) :: status
     end function spar_joint_get_load
+
+    function spar_joint_get_energy(joint, capacity, energy) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: joint
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: energy(*)
+      integer(c_int) :: status
+    end function spar_joint_get_energy
 
     function spar_fluid_create(member, name, fluid) bind(c) result(status)
       import :: c_char, c_int, c_ptr

@@ -452,6 +452,121 @@ static void test_taut_lines(void **state) {
     spar_session_destroy(&s);
 }
 
+/* ---- energy ---- */
+
+static spar_member *make_accounted(spar_session *s, const char *name, const double x[3], double m, const double c[3],
+                                   const double J[3]) {
+    double mass[36];
+    spar_member *b = NULL;
+    scene_mass(mass, m, c, J);
+    OK(s, spar_rigid_create(s, name, x, upright, mass, &b));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_commit(b));
+    return b;
+}
+
+/* Kinetic and potential energy. */
+static double energy_of(spar_session *s, const spar_member *m) {
+    double e[SPAR_ENERGY_COUNT];
+    OK(s, spar_member_get_energy(m, SPAR_ENERGY_COUNT, e));
+    return e[SPAR_ENERGY_KINETIC] + e[SPAR_ENERGY_GRAVITY];
+}
+
+/* What a run may lose of its balance, J, at worst: of all, and of one member. */
+typedef struct ledger {
+    double all, member, spring, damper, drive, load;
+} ledger;
+
+/* An arm on a hinge with spring, damper, preload and a motor; on it a slide that is driven, with a weight, and a bob on
+   a ball joint that turns about all axes, with a spring and damper that couple two of them, held by a line too. */
+static ledger keep_ledger(double dt) {
+    const double c[3] = {0.5, 0, 0.1}, down[3] = {0, 0.1, -0.4}, J[3] = {0.3, 0.5, 0.4}, tip[3] = {1, 0, 0},
+                 peg[3] = {1, 1, 0.5}, end[3] = {1, 0.1, -0.4}, motor[6] = {0, 0, 0, 0, -3, 0},
+                 wound[6] = {0, 0, 0, 0, 2, 0};
+    double K[36] = {0}, C[36] = {0};
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
+    OK(s, spar_session_set_integrator(s, 1, 1));
+    spar_member *b[3] = {make_accounted(s, "arm", zero, 2, c, J), make_accounted(s, "weight", tip, 1, zero, J),
+                         make_accounted(s, "bob", tip, 1, down, J)};
+    spar_joint *j[4] = {tie(s, "hinge", b[0], 0, NULL, 0, SPAR_FREE_RY), tie(s, "slide", b[1], 0, b[0], 0, SPAR_FREE_Z),
+                        tie(s, "ball", b[2], 0, b[0], 0, 56), NULL};
+    OK(s, spar_joint_set_frame(j[1], tip, NULL));
+    OK(s, spar_joint_set_frame(j[2], tip, NULL));
+    OK(s, spar_line_create(s, "line", b[2], 0, end, NULL, 0, peg, &j[3]));
+    OK(s, spar_line_set_spring(j[3], 20, 0.3, 0.9, 0));
+    K[28] = 15, C[28] = 0.5;
+    OK(s, spar_joint_set_spring(j[0], K, C, wound));
+    OK(s, spar_joint_set_load(j[0], motor));
+    memset(K, 0, sizeof K);
+    memset(C, 0, sizeof C);
+    K[21] = 4, K[28] = 5, K[35] = 6, K[22] = K[27] = 1;
+    C[21] = 0.2, C[28] = 0.3, C[35] = 0.1, C[22] = C[27] = 0.1;
+    OK(s, spar_joint_set_spring(j[2], K, C, NULL));
+    OK(s, spar_joint_set_driven(j[1], SPAR_FREE_Z));
+    ledger worst = {0};
+    double first = 0, first_of[3] = {0};
+    for (int i = 1; i <= (int)lround(1.5 / dt); i++) {
+        double t = i * dt, z[6] = {0}, v[6] = {0}, a[6] = {0}, all = 0;
+        z[2] = 0.1 * (1 - cos(5 * t)), v[2] = 0.5 * sin(5 * t), a[2] = 2.5 * cos(5 * t);
+        OK(s, spar_joint_drive(j[1], z, v, a));
+        OK(s, spar_step(s, dt, NULL, NULL, NULL));
+        for (int k = 0; k < 3; k++) {
+            double work[SPAR_WORK_COUNT], e = energy_of(s, b[k]);
+            OK(s, spar_member_get_work(b[k], SPAR_WORK_COUNT, work));
+            all += e;
+            e -= work[SPAR_WORK_JOINTS];
+            first_of[k] = i == 1 ? e : first_of[k];
+            worst.member = fmax(worst.member, fabs(e - first_of[k]));
+        }
+        worst.spring = worst.damper = worst.drive = worst.load = 0;
+        for (int k = 0; k < 4; k++) {
+            double e[SPAR_JOINT_ENERGY_COUNT];
+            OK(s, spar_joint_get_energy(j[k], SPAR_JOINT_ENERGY_COUNT, e));
+            worst.spring += e[SPAR_JOINT_ENERGY_SPRING], worst.damper += e[SPAR_JOINT_ENERGY_DAMPER];
+            worst.drive += e[SPAR_JOINT_ENERGY_DRIVE], worst.load += e[SPAR_JOINT_ENERGY_LOAD];
+        }
+        all += worst.spring + worst.damper - worst.drive - worst.load;
+        first = i == 1 ? all : first;
+        worst.all = fmax(worst.all, fabs(all - first));
+    }
+    spar_session_destroy(&s);
+    return worst;
+}
+
+/* Nothing is lost, to dt^2: of the whole (energies of members and springs, less what drive and motor give, and the
+   dampers take), and of each member beside what joints give it; every part of the account has its share. */
+static void test_ledger(void **state) {
+    (void)state;
+    ledger a = keep_ledger(0.004), b = keep_ledger(0.002);
+    NEAR(log2(a.all / b.all), 2, 0.2);
+    NEAR(log2(a.member / b.member), 2, 0.2);
+    assert_true(b.all < 1e-3 && b.member < 1e-3);
+    assert_true(b.damper > 0.1 && fabs(b.drive) > 0.1 && fabs(b.load) > 0.1 && fabs(b.spring) > 0.1);
+}
+
+/* A flywheel on a bearing with a motor of 2 N m: the motor gives 2 times the angle, and that is the kinetic energy. A
+   joint of members without SPAR_EFFECT_WORK has no account. */
+static void test_motor(void **state) {
+    (void)state;
+    const double J[3] = {1, 1, 0.5}, load[6] = {0, 0, 0, 0, 0, 2};
+    double z[6], e[SPAR_JOINT_ENERGY_COUNT];
+    spar_session *s = scene_session();
+    spar_member *wheel = make_accounted(s, "wheel", zero, 1, zero, J), *other = make_body(s, "other", zero, 1, J);
+    spar_joint *bearing = tie(s, "bearing", wheel, 0, NULL, 0, SPAR_FREE_RZ), *spare;
+    spare = tie(s, "spare", other, 0, NULL, 0, 63);
+    OK(s, spar_joint_set_load(bearing, load));
+    scene_run(s, 0.01, 100);
+    OK(s, spar_joint_get_motion(bearing, z, NULL, NULL));
+    OK(s, spar_joint_get_energy(bearing, SPAR_JOINT_ENERGY_COUNT, e));
+    NEAR(e[SPAR_JOINT_ENERGY_LOAD], 2 * z[5], 1e-12);
+    NEAR(e[SPAR_JOINT_ENERGY_LOAD], energy_of(s, wheel), 1e-10);
+    NEAR(z[5], 2 / 0.5 / 2, 1e-12); /* a constant acceleration is exact */
+    assert_int_equal(spar_joint_get_energy(spare, SPAR_JOINT_ENERGY_COUNT, e), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(s), "SPAR_EFFECT_WORK"));
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_raft),
@@ -465,6 +580,8 @@ int main(void) {
         cmocka_unit_test(test_drivetrain),
         cmocka_unit_test(test_hanging_parallelogram),
         cmocka_unit_test(test_taut_lines),
+        cmocka_unit_test(test_ledger),
+        cmocka_unit_test(test_motor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -534,13 +534,14 @@ enum {
 SPAR_API int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy);
 /* Work done on a member, J. */
 enum {
-    SPAR_WORK_LOADS = 0, /* by the loads kept: dead, follower, line */
-    SPAR_WORK_FLUID = 1, /* by the fluids */
-    SPAR_WORK_ROOT = 2,  /* by a driven root */
-    SPAR_WORK_COUNT = 3
+    SPAR_WORK_LOADS = 0,  /* by the loads kept: dead, follower, line */
+    SPAR_WORK_FLUID = 1,  /* by the fluids */
+    SPAR_WORK_ROOT = 2,   /* by a driven root */
+    SPAR_WORK_JOINTS = 3, /* by joints: what they give its nodes */
+    SPAR_WORK_COUNT = 4
 };
 /* work[capacity]: out, by SPAR_WORK_*, NULL: not wanted. Of the accepted steps since the motion was set last (commit,
-   static solution, initial velocity, load). Kinetic + strain + potential + dissipated energy less the sum of the three
+   static solution, initial velocity, load). Kinetic + strain + potential + dissipated energy less the sum of the four
    stays constant to the order of the integrator; of a linear or modal member on a root that turns but for the
    shortening of the bent beam, which they neglect. Local. SPAR_ERR_STATE: SPAR_EFFECT_WORK was not asked for. */
 SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, double *work);
@@ -593,8 +594,7 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
    move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members and trials
    answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
-   where nothing holds an assembly, the message names the motion that is free. spar_member_get_work leaves out what
-   joints do. */
+   where nothing holds an assembly, the message names the motion that is free. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied
@@ -659,6 +659,19 @@ SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], do
            spar_joint_set_load
    Local, the same on every rank. */
 SPAR_API int spar_joint_get_load(const spar_joint *joint, double load[6]);
+/* Energies of a joint, J. */
+enum {
+    SPAR_JOINT_ENERGY_SPRING = 0, /* stored in its springs, less what the preload has given; of the latest iterate */
+    SPAR_JOINT_ENERGY_DAMPER = 1, /* taken by its dampers, up to t^n, as the next two */
+    SPAR_JOINT_ENERGY_DRIVE = 2,  /* given by what drives it */
+    SPAR_JOINT_ENERGY_LOAD = 3,   /* given by spar_joint_set_load */
+    SPAR_JOINT_ENERGY_COUNT = 4
+};
+/* energy[capacity]: out, by SPAR_JOINT_ENERGY_*, NULL: not wanted. The account is kept where one of its members has
+   SPAR_EFFECT_WORK, and begins anew with that member's (spar_member_get_work). The work that it does on its two nodes
+   (SPAR_WORK_JOINTS; the ground takes none) is what drive and load give less what the damper takes and the spring
+   stores, to the order of the integrator. Local. SPAR_ERR_STATE: no account is kept. */
+SPAR_API int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *energy);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
 

@@ -42,6 +42,7 @@ struct spar_joint {
     int held; /* mask of motions that are constraints: not free, or driven, and not redundant */
 
     spari_relative now, after; /* at t^n and t^{n+1} */
+    double account[3];         /* what dampers have taken, drives and the host's load given, up to t^n; where kept */
     spari_relative described;  /* now, before the balance at t^0 was found; while `balanced` */
     int balanced;
 };

@@ -4,6 +4,7 @@
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
+#include "../solve/work.h"
 #include "coupling.h"
 #include "exchange.h"
 #include "lend.h"
@@ -238,6 +239,9 @@ int spar_step_accept(spar_session *session) {
     }
     SPARI_TRY(spari_enter(s, __func__, status));
     spari_coupling_accept(s);
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_work_of_joint(j);
+    }
     for (spar_member *m = s->members; m; m = m->next) {
         shift_history(s, m);
         spari_member_accept(m);

@@ -87,8 +87,112 @@ void spari_work_step(spar_member *m) {
     }
 }
 
+/* ---- joints ---- */
+
+static int keeps_account(const spar_joint *j) {
+    return j->member[0]->work || (j->member[1] && j->member[1]->work);
+}
+
+/* The coordinates of a joint and its forces on its two nodes, f[12], at t^n or, at the end, in the motion after. */
+static void joint_at(const spar_joint *j, int end, double z[6], double f[12]) {
+    const spari_relative *at = end ? &j->after : &j->now;
+    spari_place place[2];
+    double B[6][12];
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        place[side] = (spari_place){.q = {1, 0, 0, 0}};
+        if (m) {
+            const double *q = (end ? m->after.q : m->now.q) + 7 * j->seat[side];
+            for (int k = 0; k < 3; k++) {
+                place[side].x[k] = m->xr[3 * j->seat[side] + k] + q[k];
+            }
+            memcpy(place[side].q, q + 3, sizeof place[side].q);
+        }
+    }
+    spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
+    spari_joint_count_turns(j, at->z, z);
+    spari_tie_forces(B, at->load, f);
+}
+
+/* What its dampers take, its drives and the host's load give over the step, by the trapezoidal rule in its coordinates.
+ */
+static void add_to_account(spar_joint *j, const double from[6], const double z[6]) {
+    const spari_relative *now = &j->now, *to = &j->after;
+    int given = spari_joint_given(j), slack = spari_joint_is_slack(j, to), most = j->tie.line ? 1 : 6;
+    for (int k = 0; k < most; k++) {
+        double way = z[k] - from[k], damper = 0;
+        if (j->driven >> k & 1) {
+            j->account[1] += 0.5 * (now->load[k] + to->load[k]) * way;
+        }
+        if (given >> k & 1) {
+            continue;
+        }
+        for (int i = 0; i < most && j->sprung && !slack; i++) {
+            damper += 0.5 * j->damping[6 * k + i] * (now->rate[i] + to->rate[i]);
+        }
+        j->account[0] += damper * way;
+        j->account[2] += j->given[k] * way;
+    }
+}
+
+void spari_work_of_joint(spar_joint *j) {
+    double f[2][12], z[2][6], d[6];
+    if (!keeps_account(j)) {
+        return;
+    }
+    joint_at(j, 0, z[0], f[0]);
+    joint_at(j, 1, z[1], f[1]);
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        if (m && m->work) {
+            increment(m, j->seat[side], d);
+            m->work->sum[SPAR_WORK_JOINTS] += 0.5 * (dot6(f[0] + 6 * side, d) + dot6(f[1] + 6 * side, d));
+        }
+    }
+    add_to_account(j, z[0], z[1]);
+}
+
+/* Stored in its springs, preload included. */
+static double spring_energy(const spar_joint *j) {
+    const double *z = j->after.z;
+    double sum = 0;
+    if (j->tie.line) {
+        double stretch = z[0] - j->length;
+        return spari_joint_given(j) || (j->slack && stretch < 0) ? 0 : 0.5 * j->stiffness[0] * stretch * stretch;
+    }
+    int given = spari_joint_given(j);
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < 6 && !(given >> i & 1); k++) {
+            sum += given >> k & 1 ? 0 : 0.5 * j->stiffness[6 * i + k] * z[i] * z[k];
+        }
+        sum -= given >> i & 1 ? 0 : j->preload[i] * z[i];
+    }
+    return sum;
+}
+
+int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *energy) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, joint, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_capacity(joint->session, __func__, capacity));
+    SPARI_REQUIRE(joint->session, keeps_account(joint), SPAR_ERR_STATE,
+                  "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK of a member that it ties, with "
+                  "spar_member_set_effects before that is committed",
+                  __func__, joint->name);
+    const double *a = joint->account,
+                 all[SPAR_JOINT_ENERGY_COUNT] = {joint->placed ? spring_energy(joint) : 0, a[0], a[1], a[2]};
+    spari_fill(capacity, energy, SPAR_JOINT_ENERGY_COUNT, all);
+    return SPAR_OK;
+}
+
+/* ---- life ---- */
+
 void spari_work_restart(spar_member *m) {
     spari_work *w = m->work;
+    for (spar_joint *j = m->session->joints; j; j = j->next) {
+        if (j->member[0] == m || j->member[1] == m) {
+            memset(j->account, 0, sizeof j->account);
+        }
+    }
     memset(w->sum, 0, sizeof w->sum);
     memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
     spari_member_reaction_in(m, w->room, w->reaction);

@@ -3,13 +3,16 @@
 #ifndef SPARI_WORK_H
 #define SPARI_WORK_H
 
-#include "../member/structure.h"
+#include "../member/joint.h"
 
 /* An account for the member. */
 int spari_work_create(spar_member *member);
 /* The step is accepted: now -> after, before `after` becomes `now`. */
 void spari_work_step(spar_member *member);
-/* The motion has been set anew: the account starts at zero. */
+/* The same of a joint, before its members' accounts: what it has done on them, if they keep one, and its own, where one
+   of them does. */
+void spari_work_of_joint(spar_joint *joint);
+/* The motion has been set anew: the account starts at zero, and those of its joints. */
 void spari_work_restart(spar_member *member);
 void spari_work_free(spari_work *work);
 /* The member has been made anew: the account of what it was goes on, if there is one. */

@@ -103,6 +103,7 @@ program test_bindings
   call refused(spar_joint_set_load(none), 'spar_joint_set_load')
   call refused(spar_joint_get_motion(none), 'spar_joint_get_motion')
   call refused(spar_joint_get_load(none), 'spar_joint_get_load')
+  call refused(spar_joint_get_energy(none, 0_c_int64_t), 'spar_joint_get_energy')
   call refused(spar_fluid_create(none, fluid=made), 'spar_fluid_create')
   made = c_null_ptr
   call spar_fluid_destroy(made)

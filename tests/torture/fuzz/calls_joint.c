@@ -143,3 +143,10 @@ void do_spar_joint_get_load(call *c) {
     double *load = OUT(c, 6);
     RUN(c, spar_joint_get_load(j->j, load));
 }
+
+void do_spar_joint_get_energy(call *c) {
+    live_joint *j = arg_joint(c, JOINT_ANY);
+    int64_t n = arg_count(c, 0, SPAR_JOINT_ENERGY_COUNT + 2);
+    double *energy = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_joint_get_energy(j->j, n, energy));
+}

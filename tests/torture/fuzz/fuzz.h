@@ -121,6 +121,7 @@ enum {
     CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
     CALL(spar_joint_get_motion, 20, FUZZ_PURE)                                                                         \
     CALL(spar_joint_get_load, 20, FUZZ_PURE)                                                                           \
+    CALL(spar_joint_get_energy, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_create, 50, FUZZ_CHANGES)                                                                          \
     CALL(spar_fluid_destroy, 20, FUZZ_TEXT)                                                                            \
     CALL(spar_fluid_set_motion_nodes, 60, FUZZ_CHANGES)                                                                \

@@ -615,6 +615,7 @@ static void act_joints(void) {
     for (int k = 0; k < 2; k++) {
         b[k] = begin_beam(s, k ? "second" : "first", 1, 3, k);
         CALL(spar_member_set_root, b[k], k ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED);
+        CALL(spar_member_set_effects, b[k], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
         CALL(spar_member_commit, b[k]);
     }
     CALL(spar_joint_create, s, "hinge", b[1], 0, b[0], 2, SPAR_FREE_RY, &hinge);
@@ -634,6 +635,7 @@ static void act_joints(void) {
         note(x, sizeof x);
         CALL(spar_joint_get_load, hinge, x);
         note(x, sizeof x);
+        CALL(spar_joint_get_energy, hinge, SPAR_JOINT_ENERGY_COUNT, x);
     }
     end_session(&h.session);
 }
