@@ -67,7 +67,7 @@ static void pendulum(double dt, double T, double out[4]) {
     spar_joint *j = add_joint(s, "hinge", b, NULL, SPAR_FREE_RY, nothing);
     double z[6], rate[6], load[6];
     scene_run(s, dt, lround(T / dt));
-    OK(s, spar_joint_get_motion(j, z, rate));
+    OK(s, spar_joint_get_motion(j, z, rate, NULL));
     OK(s, spar_joint_get_load(j, load)); /* in the ground's axes: b's */
     double theta = a + z[4];
     out[0] = theta, out[1] = rate[4];
@@ -133,8 +133,8 @@ static void double_pendulum(double dt, double T, double out[4]) {
                *b = add_joint(s, "elbow", lower, upper, SPAR_FREE_RY, elbow);
     double z[6], y[6], load[6];
     scene_run(s, dt, lround(T / dt));
-    OK(s, spar_joint_get_motion(a, z, NULL));
-    OK(s, spar_joint_get_motion(b, y, NULL));
+    OK(s, spar_joint_get_motion(a, z, NULL, NULL));
+    OK(s, spar_joint_get_motion(b, y, NULL, NULL));
     OK(s, spar_joint_get_load(b, load)); /* in the upper rod's axes, x along it */
     out[0] = pi / 2 - z[4], out[1] = pi / 2 - z[4] - y[4], out[2] = load[0], out[3] = load[2];
     spar_session_destroy(&s);
@@ -297,7 +297,7 @@ static void test_four_bar(void **state) {
         double phi = at + w * dt * i, beta, psi, z[6], v[6];
         OK(s, spar_joint_drive(shaft, (double[]){0, 0, 0, 0, 0, w * dt * i}, (double[]){0, 0, 0, 0, 0, w}, NULL));
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(far, z, v));
+        OK(s, spar_joint_get_motion(far, z, v, NULL));
         four_bar(phi, &beta, &psi);
         worst[0] = fmax(worst[0], fabs(remainder(z[5] + r0 - psi, 2 * pi)));
         worst[1] = fmax(worst[1], fabs(v[5] - w * 0.4 * sin(beta - phi) / (0.8 * sin(beta - psi))));
@@ -333,7 +333,7 @@ static void test_spatial_slider_crank(void **state) {
         double a = w * dt * i, z[6], v[6], y = 0.1 - 0.08 * sin(a), h = 0.12 + 0.08 * cos(a);
         OK(s, spar_joint_drive(shaft, (double[]){0, 0, 0, a, 0, 0}, (double[]){0, 0, 0, w, 0, 0}, NULL));
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
-        OK(s, spar_joint_get_motion(way, z, v));
+        OK(s, spar_joint_get_motion(way, z, v, NULL));
         double x = sqrt(0.09 - y * y - h * h), rate = -(y * -0.08 * w * cos(a) - h * 0.08 * w * sin(a)) / x;
         worst[0] = fmax(worst[0], fabs(z[0] + 0.2 - x));
         worst[1] = fmax(worst[1], fabs(v[0] - rate));
@@ -359,7 +359,7 @@ static double sprung(int k, double dt, double T) {
     OK(s, spar_joint_set_spring(j, K, D, NULL));
     OK(s, spar_member_set_initial_velocity(b, nothing, v[0], v[1]));
     scene_run(s, dt, lround(T / dt));
-    OK(s, spar_joint_get_motion(j, z, NULL));
+    OK(s, spar_joint_get_motion(j, z, NULL, NULL));
     spar_session_destroy(&s);
     return z[k];
 }
