@@ -28,8 +28,9 @@ typedef struct spari_setting {
     int flags; /* SPARI_ALIKE, ... */
 } spari_setting;
 enum {
-    SPARI_ALIKE = 1,      /* all ranks have it the same: compared in collective calls */
-    SPARI_OF_COUPLING = 2 /* the memory of the coupling is made for it: made anew when it is set, and saved with it */
+    SPARI_ALIKE = 1,       /* all ranks have it the same: compared in collective calls */
+    SPARI_OF_COUPLING = 2, /* the memory of the coupling is made for it: made anew when it is set, and saved with it */
+    SPARI_VARIED = 4       /* trials run with others, and advice gives it */
 };
 
 struct spar_session {

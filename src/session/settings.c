@@ -10,6 +10,7 @@
 #include "../solve/life.h"
 #include "accelerate.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -60,15 +61,15 @@ static const spari_setting settings[] = {
     ALONG("gravity (y)", 1),
     ALONG("gravity (z)", 2),
     REAL(INTEGRATOR, "integrator", "rho_inf", rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9, SPARI_ALIKE),
-    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_ALIKE),
+    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_ALIKE | SPARI_VARIED),
     REAL(NEWTON, "newton", "atol", newton_atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_ALIKE),
-    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_ALIKE),
+    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_ALIKE | SPARI_VARIED),
     WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_ALIKE),
-    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_ALIKE),
+    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_ALIKE | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "scheme", scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
-          SPAR_COUPLING_EXPLICIT, SPARI_ALIKE | SPARI_OF_COUPLING),
+          SPAR_COUPLING_EXPLICIT, SPARI_ALIKE | SPARI_OF_COUPLING | SPARI_VARIED),
     REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_ALIKE),
-    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_ALIKE),
+    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_ALIKE | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "max_iterations", coupling_max, 1, INT32_MAX, one_or_more, 50,
           SPARI_ALIKE | SPARI_OF_COUPLING),
     REAL(RELAXATION, "relaxation", "omega", relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
@@ -136,6 +137,35 @@ int spari_settings_of_coupling(const spar_session *s, double *values) {
         }
     }
     return n;
+}
+
+int spari_settings_varied(const spar_session *s, double *values) {
+    int n = 0;
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].flags & SPARI_VARIED) {
+            assert(n < SPARI_MOST_VARIED);
+            values[n++] = spari_setting_value(s, settings + i);
+        }
+    }
+    return n;
+}
+
+double *spari_settings_place(double *values, size_t field) {
+    int n = 0;
+    for (int i = 0; settings[i].field != field; i++) {
+        n += settings[i].flags & SPARI_VARIED ? 1 : 0;
+    }
+    return values + n;
+}
+
+void spari_settings_vary(spar_session *s, const double *values) {
+    int stale = s->coupling_stale;
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings[i].flags & SPARI_VARIED) {
+            store(s, settings + i, *values++);
+        }
+    }
+    s->coupling_stale = stale;
 }
 
 /* ---- setters and getters ---- */

@@ -403,14 +403,10 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_TRIALS] = d->trials,
     };
     memcpy(advice, made, sizeof made);
-    *d->session->own->advised = (spari_advised){.dt = made[SPAR_ADVICE_DT],
-                                                .coupling_rtol = p->rtol,
-                                                .newton_rtol = p->newton,
-                                                .substeps = p->substeps,
-                                                .scheme = p->scheme,
-                                                .predictor = p->predictor,
-                                                .given = 1,
-                                                .of = spari_advised_of(d->session)};
+    spari_advised *advised = d->session->own->advised;
+    *advised = (spari_advised){.dt = made[SPAR_ADVICE_DT], .given = 1, .of = spari_advised_of(d->session)};
+    (void)spari_settings_varied(d->session, advised->setting);
+    spari_plan_settings(p, advised->setting);
 }
 
 static int check_request(spar_session *s, double tolerance, const spari_run *run, int64_t capacity) {

@@ -32,7 +32,7 @@ typedef struct anew {
 } anew;
 
 typedef struct change {
-    spari_advised before; /* the settings there were */
+    double before[SPARI_MOST_VARIED]; /* the settings there were */
     int past;
     double *pack, *motion; /* what the ranks exchange through, likewise */
     int64_t pack_count, *first;
@@ -50,23 +50,15 @@ static int change_create(spar_session *s, change *c) {
     return SPAR_OK;
 }
 
-static void put_settings(spar_session *s, const spari_advised *to, int past) {
-    s->substeps = to->substeps;
-    s->predictor = to->predictor;
-    s->past = past < to->predictor ? past : to->predictor;
-    s->scheme = to->scheme;
-    s->coupling_rtol = to->coupling_rtol;
-    s->newton_rtol = to->newton_rtol;
+static void put_settings(spar_session *s, const double *values, int past) {
+    spari_settings_vary(s, values);
+    s->past = past < s->predictor ? past : s->predictor;
 }
 
 static void set_advised(spar_session *s, change *c) {
-    c->before = (spari_advised){.coupling_rtol = s->coupling_rtol,
-                                .newton_rtol = s->newton_rtol,
-                                .substeps = s->substeps,
-                                .scheme = s->scheme,
-                                .predictor = s->predictor};
+    (void)spari_settings_varied(s, c->before);
     c->past = s->past;
-    put_settings(s, s->own->advised, s->past);
+    put_settings(s, s->own->advised->setting, s->past);
 }
 
 static int is_as_advised(const spar_member *m) {
@@ -142,7 +134,7 @@ static void undo(spar_session *s, change *c) {
         }
     }
     swap_exchange(s->own, c);
-    put_settings(s, &c->before, c->past);
+    put_settings(s, c->before, c->past);
 }
 
 static void confirm(spar_session *s, change *c) {

@@ -2,13 +2,12 @@
 #ifndef SPARI_APPLY_H
 #define SPARI_APPLY_H
 
-#include "../base/scene.h"
+#include "../session/settings.h"
 
 struct spari_advised {
-    double dt, coupling_rtol, newton_rtol;
-    int substeps, scheme, predictor;
-    int given;   /* the advice has come to its end */
-    uint64_t of; /* the members it is for: spari_advised_of when it was given */
+    double dt, setting[SPARI_MOST_VARIED]; /* session/settings.h */
+    int given;                             /* the advice has come to its end */
+    uint64_t of;                           /* the members it is for: spari_advised_of when it was given */
 };
 
 /* The members as they are described now, as one number. */

@@ -214,9 +214,9 @@ static int in_force(const spar_session *s, int r, int asked) {
 
 static void leave_row_out(const spar_session *s, int r, spari_wish *wish) {
     if (r == SPAR_ROW_PREDICTOR) {
-        wish->predictor = 0;
+        SPARI_VARY(wish->setting, predictor, 0);
     } else if (r == SPAR_ROW_ITERATION) {
-        wish->scheme = SPAR_COUPLING_EXPLICIT;
+        SPARI_VARY(wish->setting, scheme, SPAR_COUPLING_EXPLICIT);
     } else if (rows[r].effect == 0) {
         wish->mute = rows[r].part;
     }

@@ -67,6 +67,14 @@ spari_plan spari_plan_present(const spari_advisor *d) {
     return p;
 }
 
+void spari_plan_settings(const spari_plan *p, double *values) {
+    SPARI_VARY(values, substeps, p->substeps);
+    SPARI_VARY(values, scheme, p->scheme);
+    SPARI_VARY(values, predictor, p->predictor);
+    SPARI_VARY(values, coupling_rtol, p->rtol);
+    SPARI_VARY(values, newton_rtol, p->newton);
+}
+
 int64_t spari_plan_steps(const spari_advisor *d, int j) {
     double n = (double)d->run.steps / SPARI_SAMPLES * pow(2, 0.5 * j);
     return SPARI_SAMPLES * (int64_t)fmax(1, floor(n + 0.5));
@@ -89,9 +97,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
     spari_run run = d->run;
     *record = (spari_record){0};
     SPARI_TRY(spari_wish_create(s, &wish));
-    wish.substeps = p->substeps, wish.scheme = p->scheme, wish.predictor = p->predictor;
-    wish.coupling_rtol = p->rtol;
-    wish.newton_rtol = p->newton;
+    spari_plan_settings(p, wish.setting);
     for (int k = 0; k < s->member_count; k++) {
         if (d->group[k] >= 0) {
             const spari_shape *g = &p->group[d->group[k]];

@@ -50,6 +50,8 @@ int spari_plan_groups(spari_advisor *advisor);
 const spar_member *spari_plan_member(const spari_advisor *advisor, int group);
 /* The session as it is. */
 spari_plan spari_plan_present(const spari_advisor *advisor);
+/* Its settings of the session, as trials vary them: of values[SPARI_MOST_VARIED] those that a plan has. */
+void spari_plan_settings(const spari_plan *plan, double *values);
 /* Steps on a grid of ratios sqrt(2), j = 0: as the host asked; and the nearest place of the grid. */
 int64_t spari_plan_steps(const spari_advisor *advisor, int j);
 int spari_plan_grid(const spari_advisor *advisor, int64_t steps);

@@ -27,9 +27,8 @@ enum { STATIONS = 8, ARMS = 4 };
 /* ---- wishes ---- */
 
 int spari_wish_create(spar_session *s, spari_wish *wish) {
-    *wish =
-        (spari_wish){s->substeps,    s->predictor,   s->scheme, s->coupling_rtol,
-                     s->newton_atol, s->newton_rtol, 0,         spari_zalloc(s->member_count, sizeof *wish->member)};
+    *wish = (spari_wish){.member = spari_zalloc(s->member_count, sizeof *wish->member)};
+    (void)spari_settings_varied(s, wish->setting);
     spari_remake *r = wish->member;
     for (const spar_member *m = s->members; m && r; m = m->next, r++) {
         *r = spari_remake_of(m);
@@ -122,13 +121,8 @@ static const spar_member *member_before(const spar_session *s, const stash *t, c
 }
 
 static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
-    s->substeps = wish->substeps;
-    s->predictor = wish->predictor;
+    spari_settings_vary(s, wish->setting);
     s->past = s->past < s->predictor ? s->past : s->predictor;
-    s->scheme = wish->scheme;
-    s->coupling_rtol = wish->coupling_rtol;
-    s->newton_atol = wish->newton_atol;
-    s->newton_rtol = wish->newton_rtol;
     for (spar_member *m = s->members; m; m = m->next, t->made++) {
         int status = spari_member_remake(m, wish->member + t->made, t->members + t->made);
         if (status != SPAR_OK) {

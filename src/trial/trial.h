@@ -6,6 +6,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../session/own.h"
+#include "../session/settings.h"
 #include "remake.h"
 
 /* Runs are compared at this many times, evenly spread over them. */
@@ -23,10 +24,9 @@ typedef struct spari_run {
 
 /* What is to be otherwise than the session has it. */
 typedef struct spari_wish {
-    int substeps, predictor, scheme;
-    double coupling_rtol, newton_atol, newton_rtol;
-    int mute;             /* SPARI_MUTE_* */
-    spari_remake *member; /* one for each member */
+    double setting[SPARI_MOST_VARIED]; /* session/settings.h */
+    int mute;                          /* SPARI_MUTE_* */
+    spari_remake *member;              /* one for each member */
 } spari_wish;
 
 /* What a run leaves behind. */
