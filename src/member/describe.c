@@ -405,7 +405,7 @@ int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *mode
     SPARI_TRY(spari_need_member(member, __func__));
     hand_int(kind, member->fidelity);
     if (modes) {
-        *modes = member->fidelity == SPAR_FIDELITY_MODAL ? member->modes : 0;
+        *modes = member->modes;
     }
     return SPAR_OK;
 }

@@ -156,6 +156,7 @@ static void exact_load(spar_member *m, const double *state) {
 const spari_fidelity spari_fidelity_exact = {
     .moves = 1,
     .solved = 1,
+    .lower = SPAR_FIDELITY_MODAL,
     .seen = SPARI_SEEN_FIXED,
     .create = exact_create,
     .free = exact_free,

@@ -13,6 +13,10 @@ const char *spari_fidelity_name(int fidelity) {
     return row_name[fidelity];
 }
 
+const spari_fidelity *spari_fidelity_row(int fidelity) {
+    return table[fidelity];
+}
+
 const spari_fidelity *spari_fidelity_of(const spar_member *m) {
     return m->external || m->kind == SPARI_POINT ? &spari_fidelity_given : table[m->fidelity];
 }

@@ -14,6 +14,8 @@ typedef struct spari_fidelity {
     int solved;      /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
     int massive;     /* the body has its mass whatever effects are in force */
     int takes_modes; /* it is asked for with a number of modes */
+    int given_root;  /* it needs a root that is fixed or driven */
+    int lower;       /* the SPAR_FIDELITY_* that advice goes on to from here, 0: none */
     int whole;       /* one body carries all of its nodes, from the root */
     spari_view seen;
 
@@ -87,6 +89,8 @@ extern const spari_fidelity spari_fidelity_given; /* points and external members
 
 /* What a fidelity is called: "exact". */
 const char *spari_fidelity_name(int fidelity);
+/* The row of a fidelity that there is. */
+const spari_fidelity *spari_fidelity_row(int fidelity);
 /* The row of a member, from what it is described as. */
 const spari_fidelity *spari_fidelity_of(const spar_member *member);
 /* What of the description its row cannot serve: a status and a message. */

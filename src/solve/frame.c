@@ -238,5 +238,5 @@ static void frame_load(spar_member *m, const double *state) {
     .shape = frame_shape, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,              \
     .load = frame_load
 
-const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED};
+const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

@@ -218,7 +218,8 @@ void spari_member_end_move(spar_member *m, int owner, void *before, int back) {
     }
 }
 
-void spari_member_disown(spar_member *m) {
+void spari_member_set_aside(spar_member *m, spar_member *aside) {
+    *aside = *m;
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
     }
@@ -226,6 +227,11 @@ void spari_member_disown(spar_member *m) {
     m->applied = m->applied_next = NULL;
     m->solution = NULL;
     m->body = NULL;
+}
+
+void spari_member_take_back(spar_member *m, const spar_member *aside) {
+    spari_member_release(m);
+    *m = *aside;
 }
 
 static int build_body(spar_member *m) {

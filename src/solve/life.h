@@ -14,8 +14,10 @@ void spari_member_release(spar_member *m);
    without a message. Then the end of it: what is not wanted any more goes. back: it stays with its owner of before. */
 int spari_member_move(spar_member *m, int owner, void **before);
 void spari_member_end_move(spar_member *m, int owner, void *before, int back);
-/* The same without freeing: a copy of the struct has it. */
-void spari_member_disown(spar_member *m);
+/* Sets aside what has been made of the description: `aside` is the member as it was and owns all of it, `m` has the
+   description and nothing made of it. And the way back: what has been made since goes. */
+void spari_member_set_aside(spar_member *m, spar_member *aside);
+void spari_member_take_back(spar_member *m, const spar_member *aside);
 /* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m);
 /* The motion now has been set anew: the latest iterate, the root and the solver start from it. */

@@ -22,6 +22,7 @@ static int prescribed_advance(spar_member *m, double dt) {
 
 const spari_fidelity spari_fidelity_prescribed = {
     .moves = 1,
+    .given_root = 1,
     .seen = SPARI_SEEN_CARRIED,
     .check = prescribed_check,
     .advance = prescribed_advance,

@@ -8,6 +8,7 @@
 
 #include "../math/basis.h"
 #include "../member/beam.h"
+#include "../solve/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -47,25 +48,32 @@ static int consider(spari_advisor *d, const spari_plan *p, const spari_record *b
     return SPAR_OK;
 }
 
+/* What is tried of a beam in place of what it is, in this order. after: an earlier row that must have been taken, -1:
+   none is needed. */
+static const struct {
+    int fidelity, after;
+    int64_t modes;
+} fidelities[] = {{SPAR_FIDELITY_LINEAR, -1, 0},   {SPAR_FIDELITY_MODAL, 0, 16}, {SPAR_FIDELITY_MODAL, 0, 8},
+                  {SPAR_FIDELITY_MODAL, 0, 4},     {SPAR_FIDELITY_MODAL, 0, 2},  {SPAR_FIDELITY_RIGID, -1, 0},
+                  {SPAR_FIDELITY_PRESCRIBED, 5, 0}};
+enum { FIDELITIES = sizeof fidelities / sizeof *fidelities };
+
+/* Whether the member can be of that fidelity: what needs a root that is given is not for one that is free. */
+static int is_possible(const spari_advisor *d, int g, int fidelity) {
+    return spari_member_root_is_given(spari_plan_member(d, g)) || !spari_fidelity_row(fidelity)->given_root;
+}
+
 static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
-    static const int64_t modes[] = {16, 8, 4, 2};
     double cost = spari_plan_cost(d, base);
     spari_plan best = *p, q = *p;
-    int taken, small;
-    spari_shape *b = &q.group[g];
-    b->fidelity = SPAR_FIDELITY_LINEAR;
-    SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &small));
-    for (size_t k = 0; k < sizeof modes / sizeof *modes && small; k++) {
-        b->fidelity = SPAR_FIDELITY_MODAL;
-        b->modes = modes[k];
-        SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
-    }
-    b->modes = 0;
-    b->fidelity = SPAR_FIDELITY_RIGID;
-    SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
-    if (taken && spari_member_root_is_given(spari_plan_member(d, g))) {
-        b->fidelity = SPAR_FIDELITY_PRESCRIBED;
-        SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken));
+    int taken[FIDELITIES] = {0};
+    for (int k = 0; k < FIDELITIES; k++) {
+        int after = fidelities[k].after;
+        if ((after < 0 || taken[after]) && is_possible(d, g, fidelities[k].fidelity)) {
+            q.group[g].fidelity = fidelities[k].fidelity;
+            q.group[g].modes = fidelities[k].modes;
+            SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken[k]));
+        }
     }
     *p = best;
     return SPAR_OK;
@@ -238,13 +246,14 @@ static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
     if (d->session->keep_fidelity) {
         return 0;
     }
-    if (b->fidelity == SPAR_FIDELITY_MODAL && b->modes > 1) {
+    if (b->modes > 1) {
         b->modes /= 2;
         return 1;
     }
-    if (b->fidelity == SPAR_FIDELITY_EXACT || b->fidelity == SPAR_FIDELITY_LINEAR) {
-        b->fidelity = SPAR_FIDELITY_MODAL;
-        b->modes = spari_rule.modes;
+    int lower = spari_fidelity_row(b->fidelity)->lower;
+    if (lower > 0) {
+        b->fidelity = lower;
+        b->modes = spari_fidelity_row(lower)->takes_modes ? spari_rule.modes : 0;
         return 1;
     }
     return 0;

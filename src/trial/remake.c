@@ -69,10 +69,9 @@ static void carry_state(spar_member *old, spar_member *m) {
 }
 
 int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *old) {
-    *old = *m;
-    spari_member_disown(m);
+    spari_member_set_aside(m, old);
     m->fidelity = wish->fidelity;
-    m->modes = wish->fidelity == SPAR_FIDELITY_MODAL ? wish->modes : 0;
+    m->modes = spari_fidelity_row(wish->fidelity)->takes_modes ? wish->modes : 0;
     SPARI_TRY(describe_again(m, wish, old));
     SPARI_TRY(spari_fidelity_check(m));
     m->effects = spari_member_effects(m) & ~wish->left_out;
@@ -85,21 +84,22 @@ int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *o
     return SPAR_OK;
 }
 
-void spari_member_restore(spar_member *m, const spar_member *old) {
-    spari_member_release(m);
-    if (m->beam != old->beam) {
-        free(m->beam->node_x);
-        free(m->beam->node_q);
-        free(m->beam);
+/* A copy that describe_again has made, which the member that stays does not have. */
+static void drop_description(spari_beam *beam, const spari_beam *stays) {
+    if (beam != stays) {
+        free(beam->node_x);
+        free(beam->node_q);
+        free(beam);
     }
-    *m = *old;
+}
+
+void spari_member_restore(spar_member *m, const spar_member *old) {
+    spari_beam *made = m->beam;
+    spari_member_take_back(m, old);
+    drop_description(made, m->beam);
 }
 
 void spari_member_adopt(spar_member *m, spar_member *old) {
     spari_member_release(old);
-    if (m->beam != old->beam) {
-        free(old->beam->node_x);
-        free(old->beam->node_q);
-        free(old->beam);
-    }
+    drop_description(old->beam, m->beam);
 }
