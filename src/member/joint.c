@@ -36,7 +36,7 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     SPARI_TRY(check_node(s, call, name, "a", a, node_a));
     if (b) {
         SPARI_TRY(check_node(s, call, name, "b", b, node_b));
-        SPARI_REQUIRE(s, a != b || node_a != node_b, SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(s, a != b || spari_member_unique(a, node_a) != spari_member_unique(b, node_b), SPAR_ERR_ARGUMENT,
                       "%s: '%s' would tie node %lld of '%s' to itself; give two nodes, or b NULL for the ground", call,
                       name, (long long)node_a, a->name);
     }

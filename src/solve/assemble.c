@@ -260,6 +260,9 @@ static int check_members(const spar_joint *j) {
                       "release",
                       j->name, m->name);
     }
+    SPARI_REQUIRE(j->session, j->member[0] != j->member[1] || !j->member[0]->row->whole, SPAR_ERR_ARGUMENT,
+                  "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
+                  j->member[0]->name);
     SPARI_REQUIRE(
         j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_given(j), SPAR_ERR_ARGUMENT,
         "joint '%s' holds or drives motions of nodes that all move as they are told ('%s'); leave its motions "

@@ -1,0 +1,181 @@
+/* Joints that cannot be: each is refused with its status and a message that says what, where and the cure, and leaves
+   the session as it was. */
+#include "scene.h"
+
+static const double upright[4] = {1, 0, 0, 0}, zero[3] = {0, 0, 0};
+
+/* Two bodies 1 m apart, a beam of two elements of three nodes beside them, a hinge to the ground. */
+typedef struct yard {
+    spar_session *s;
+    spar_member *body[2], *beam;
+    spar_joint *hinge;
+} yard;
+
+static yard open_yard(void) {
+    yard y = {.s = scene_session()};
+    const double J[3] = {1, 1, 1}, there[3] = {0, 3, 4};
+    double mass[36], K[36];
+    scene_mass(mass, 1, zero, J);
+    scene_diagonal(K, 1, 1, 1, 1, 1, 1);
+    for (int k = 0; k < 2; k++) {
+        OK(y.s, spar_rigid_create(y.s, k ? "far" : "near", k ? there : zero, upright, mass, &y.body[k]));
+        OK(y.s, spar_member_commit(y.body[k]));
+    }
+    y.beam = scene_beam(y.s, "beam", 2, 3, 1, K, K);
+    OK(y.s, spar_member_commit(y.beam));
+    OK(y.s, spar_joint_create(y.s, "hinge", y.body[0], 0, NULL, 0, SPAR_FREE_RY, &y.hinge));
+    return y;
+}
+
+#define REFUSED(y, call, status, text)                                                                                 \
+    do {                                                                                                               \
+        assert_int_equal(call, status);                                                                                \
+        if (!strstr(spar_session_message((y).s), text)) {                                                              \
+            fail_msg("'%s' does not say '%s'", spar_session_message((y).s), text);                                     \
+        }                                                                                                              \
+    } while (0)
+
+/* The hinge alone: the body turns about y under a moment of 2 N m as J = 1 has it, exactly, for the acceleration is
+   constant. What was refused has left nothing behind. */
+static void still_sound(yard *y) {
+    const double load[6] = {0, 0, 0, 0, 2, 0};
+    double z[6];
+    OK(y->s, spar_joint_set_load(y->hinge, load));
+    scene_run(y->s, 0.1, 10);
+    OK(y->s, spar_joint_get_motion(y->hinge, z, NULL, NULL));
+    for (int k = 0; k < 6; k++) {
+        NEAR(z[k], k == 4 ? 1 : 0, 1e-12);
+    }
+    spar_session_destroy(&y->s);
+}
+
+static void test_create(void **state) {
+    (void)state;
+    yard y = open_yard(), other = open_yard();
+    spar_joint *j = NULL;
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, y.body[0], 0, 0, &j), SPAR_ERR_ARGUMENT,
+            "'j' would tie node 0 of 'near' to itself; give two nodes, or b NULL for the ground");
+    REFUSED(y, spar_joint_create(y.s, "j", y.beam, 2, y.beam, 3, 0, &j), SPAR_ERR_ARGUMENT,
+            "would tie node 2 of 'beam' to itself"); /* where two elements meet a node stands twice */
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, other.body[1], 0, 0, &j), SPAR_ERR_ARGUMENT,
+            "member b, 'far', is of another session");
+    REFUSED(y, spar_joint_create(y.s, "j", y.beam, 6, NULL, 0, 0, &j), SPAR_ERR_ARGUMENT,
+            "'beam' has nodes 0 to 5; there is no node 6");
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, y.beam, -1, 0, &j), SPAR_ERR_ARGUMENT, "there is no node -1");
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 64, &j), SPAR_ERR_ARGUMENT,
+            "free is 64; or SPAR_FREE_* together");
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, -1, &j), SPAR_ERR_ARGUMENT, "free is -1");
+    REFUSED(y, spar_joint_create(y.s, "hinge", y.body[0], 0, NULL, 0, 0, &j), SPAR_ERR_ARGUMENT,
+            "there is a joint 'hinge' already");
+    REFUSED(y, spar_joint_create(y.s, "", y.body[0], 0, NULL, 0, 0, &j), SPAR_ERR_ARGUMENT, "needs a name");
+    REFUSED(y, spar_joint_create(y.s, "j", NULL, 0, NULL, 0, 0, &j), SPAR_ERR_ARGUMENT, "member a is NULL");
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 0, NULL), SPAR_ERR_ARGUMENT, "no place for");
+    REFUSED(y, spar_line_create(y.s, "j", y.body[0], 0, zero, y.body[1], 0, zero, &j), SPAR_ERR_ARGUMENT,
+            "its two points are one, (0, 0, 0)");
+    REFUSED(y, spar_line_create(y.s, "j", y.body[0], 0, zero, NULL, 0, (double[]){0, NAN, 0}, &j), SPAR_ERR_ARGUMENT,
+            "point_b");
+    assert_null(j);
+    spar_session_destroy(&other.s);
+    still_sound(&y);
+}
+
+static void test_describe(void **state) {
+    (void)state;
+    yard y = open_yard();
+    const double long_q[4] = {1, 0.1, 0, 0}, none[6] = {0};
+    double K[36] = {0}, load[6] = {1, 0, 0, 0, 0, 0};
+    spar_joint *line = NULL, *free_joint = NULL;
+    OK(y.s, spar_joint_create(y.s, "free", y.body[1], 0, NULL, 0, 63, &free_joint));
+    OK(y.s, spar_line_create(y.s, "line", y.body[1], 0, (double[]){0, 3, 4}, NULL, 0, zero, &line));
+    OK(y.s, spar_line_set_spring(line, 0, 0, 5, 0));
+    REFUSED(y, spar_joint_set_frame(y.hinge, zero, long_q), SPAR_ERR_ARGUMENT, "q");
+    REFUSED(y, spar_joint_set_frame(y.hinge, (double[]){0, INFINITY, 0}, NULL), SPAR_ERR_ARGUMENT, "x");
+    REFUSED(y, spar_joint_set_frame(line, zero, NULL), SPAR_ERR_STATE, "is a line, whose points are its places");
+    K[0] = 10;
+    REFUSED(y, spar_joint_set_spring(y.hinge, K, NULL, NULL), SPAR_ERR_ARGUMENT,
+            "stiffness has 10 on x, which the joint holds; springs act on free motions");
+    REFUSED(y, spar_joint_set_spring(y.hinge, NULL, K, NULL), SPAR_ERR_ARGUMENT, "damping has 10 on x");
+    REFUSED(y, spar_joint_set_spring(y.hinge, NULL, NULL, load), SPAR_ERR_ARGUMENT, "preload has 1 on x");
+    K[1] = 3;
+    REFUSED(y, spar_joint_set_spring(free_joint, K, NULL, NULL), SPAR_ERR_ARGUMENT,
+            "stiffness is not symmetric: entries (0,1) and (1,0) are 3 and 0");
+    REFUSED(y, spar_joint_set_load(y.hinge, load), SPAR_ERR_ARGUMENT, "x");
+    REFUSED(y, spar_joint_set_spring(line, NULL, NULL, NULL), SPAR_ERR_STATE, "call spar_line_set_spring");
+    REFUSED(y, spar_line_set_spring(y.hinge, 1, 0, 1, 0), SPAR_ERR_STATE, "is no line");
+    REFUSED(y, spar_line_set_spring(line, -1, 0, 1, 0), SPAR_ERR_ARGUMENT, "stiffness is -1; give 0 or more");
+    REFUSED(y, spar_joint_set_driven(y.hinge, SPAR_FREE_RX), SPAR_ERR_ARGUMENT,
+            "mask is 8, free is 16: what is driven must be among what the joint leaves free");
+    REFUSED(y, spar_joint_drive(y.hinge, none, NULL, NULL), SPAR_ERR_STATE,
+            "is not driven; call spar_joint_set_driven");
+    still_sound(&y);
+}
+
+/* Two places that are to be one are 5 m apart; the step says so, and goes on once the joint is placed elsewhere. */
+static void test_contradiction(void **state) {
+    (void)state;
+    yard y = open_yard();
+    spar_joint *weld = NULL;
+    OK(y.s, spar_joint_create(y.s, "weld", y.body[1], 0, y.body[0], 0, 0, &weld));
+    REFUSED(y, spar_step(y.s, 0.1, NULL, NULL, NULL), SPAR_ERR_ARGUMENT,
+            "joint 'weld': node 0 of 'far' and node 0 of 'near' are 5 m apart in the reference");
+    REFUSED(y, spar_member_solve_static(y.body[0], 1), SPAR_ERR_ARGUMENT, "5 m apart");
+    OK(y.s, spar_joint_set_frame(weld, zero, NULL));
+    OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
+    spar_session_destroy(&y.s);
+}
+
+/* A beam that one body carries cannot be tied to itself; two nodes of one that bends can. */
+static void test_two_nodes_of_one(void **state) {
+    (void)state;
+    for (int bends = 0; bends <= 1; bends++) {
+        double K[36];
+        spar_joint *j = NULL;
+        spar_session *s = scene_session();
+        scene_diagonal(K, 1e3, 1e3, 1e3, 1, 1, 1);
+        spar_member *b = scene_beam(s, "beam", 1, 4, 1, K, K);
+        OK(s, spar_member_set_fidelity(b, bends ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_line_create(s, "string", b, 0, zero, b, 3, (double[]){1, 0, 0}, &j));
+        assert_int_equal(spar_step(s, 0.01, NULL, NULL, NULL), bends ? SPAR_OK : SPAR_ERR_ARGUMENT);
+        assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one body"));
+        spar_session_destroy(&s);
+    }
+}
+
+/* Once the clock runs joints are what they are. */
+static void test_late(void **state) {
+    (void)state;
+    yard y = open_yard();
+    spar_joint *j = NULL;
+    OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
+    REFUSED(y, spar_joint_create(y.s, "j", y.body[1], 0, NULL, 0, 0, &j), SPAR_ERR_STATE,
+            "the clock has started; create joints before the first step");
+    REFUSED(y, spar_line_create(y.s, "j", y.body[1], 0, zero, NULL, 0, (double[]){1, 0, 0}, &j), SPAR_ERR_STATE,
+            "create joints before the first step");
+    REFUSED(y, spar_joint_set_frame(y.hinge, zero, NULL), SPAR_ERR_STATE, "describe joints before the first step");
+    REFUSED(y, spar_joint_set_driven(y.hinge, SPAR_FREE_RY), SPAR_ERR_STATE, "before the first step");
+    OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
+    spar_session_destroy(&y.s);
+}
+
+/* A driven hinge is driven before the step begins, not within it. */
+static void test_drive_in_step(void **state) {
+    (void)state;
+    yard y = open_yard();
+    const double motion[6] = {0, 0, 0, 0, 0.1, 0};
+    OK(y.s, spar_joint_set_driven(y.hinge, SPAR_FREE_RY));
+    OK(y.s, spar_step_begin(y.s, 0.1));
+    REFUSED(y, spar_joint_drive(y.hinge, motion, NULL, NULL), SPAR_ERR_STATE, "given before spar_step_begin");
+    REFUSED(y, spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL), SPAR_ERR_STATE, "a step is under way");
+    OK(y.s, spar_step_reject(y.s));
+    REFUSED(y, spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL), SPAR_ERR_ARGUMENT, "motion");
+    spar_session_destroy(&y.s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_create),           cmocka_unit_test(test_describe), cmocka_unit_test(test_contradiction),
+        cmocka_unit_test(test_two_nodes_of_one), cmocka_unit_test(test_late),     cmocka_unit_test(test_drive_in_step),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
