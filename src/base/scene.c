@@ -29,7 +29,16 @@ static void shorten(char *text) {
     }
 }
 
-int(spari_fail)(spar_session *session, int status, const char *format, ...) {
+/* Its message is what a call writes that only reads it. No session is const itself: all are made on the heap. */
+static spar_session *teller(const spar_session *session) {
+    return (spar_session *)(uintptr_t)session;
+}
+
+static char *message_of(const spar_session *session) {
+    return session ? teller(session)->message : thread_message;
+}
+
+int(spari_fail)(const spar_session *session, int status, const char *format, ...) {
     /* Formatted aside first: an argument may point into the message that is about to be replaced. */
     char text[8 * SPARI_MESSAGE_SIZE];
     va_list arguments;
@@ -39,9 +48,9 @@ int(spari_fail)(spar_session *session, int status, const char *format, ...) {
     }
     va_end(arguments);
     shorten(text);
-    memcpy(session ? session->message : thread_message, text, strlen(text) + 1);
+    memcpy(message_of(session), text, strlen(text) + 1);
     if (session) {
-        session->failures++;
+        teller(session)->failures++;
         spari_log(session, SPAR_LOG_ERROR, session->message);
     }
     return status;
@@ -52,14 +61,14 @@ double spari_setting_value(const spar_session *session, const spari_setting *of)
     return of->kind == SPARI_IS_REAL ? *(const double *)field : *(const int *)field;
 }
 
-int spari_need_capacity(spar_session *session, const char *call, int64_t capacity) {
+int spari_need_capacity(const spar_session *session, const char *call, int64_t capacity) {
     SPARI_REQUIRE(session, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
                   "%s: a capacity of %lld; give the length of the array, 0 to 2^40", call, (long long)capacity);
     return SPAR_OK;
 }
 
-int spari_named(spar_session *session, const char *call, int status) {
-    char text[SPARI_MESSAGE_SIZE], *message = session ? session->message : thread_message;
+int spari_named(const spar_session *session, const char *call, int status) {
+    char text[SPARI_MESSAGE_SIZE], *message = message_of(session);
     if (status != SPAR_OK && !strstr(message, call)) {
         size_t n = strlen(call), rest = strlen(message) + 1;
         memcpy(text, message, rest);

@@ -57,7 +57,7 @@ void spari_fluid_release_gone(spar_session *session);
 
 /* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
    set; any NULL. */
-int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q);
+int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q);
 /* Whether the nodes are sections: one set, in the order along the member that the host gave. */
 int spari_fluid_has_sections(const spar_fluid *fluid);
 /* The node forces pushed last, [n][3]; NULL where they are not kept. */

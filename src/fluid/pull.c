@@ -499,9 +499,9 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spari_fluid_look(const spar_fluid *fluid, int which, double *x, double *v, double *q) {
+int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q) {
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    return pull_set(fluid, which, 1, &w, "spar_fluid_write_vtk");
+    return pull_set(fluid, which, 1, &w, call);
 }
 
 int spari_fluid_has_sections(const spar_fluid *fluid) {

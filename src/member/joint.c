@@ -15,11 +15,10 @@ enum { ALL_FREE = 63 };
 
 static int check_node(const spar_session *s, const char *call, const char *name, const char *which,
                       const spar_member *m, int64_t node) {
-    spar_session *to = (spar_session *)(uintptr_t)s;
-    SPARI_REQUIRE(to, m->session == s, SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(s, m->session == s, SPAR_ERR_ARGUMENT,
                   "%s: '%s': member %s, '%s', is of another session; a joint ties members of one", call, name, which,
                   m->name);
-    SPARI_REQUIRE(to, node >= 0 && node < m->nodes, SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(s, node >= 0 && node < m->nodes, SPAR_ERR_ARGUMENT,
                   "%s: '%s': '%s' has nodes 0 to %lld; there is no node %lld", call, name, m->name,
                   (long long)m->nodes - 1, (long long)node);
     return SPAR_OK;

@@ -23,6 +23,7 @@ enum { LINE_SIZE = 4096, MOST = 1000000 };
 
 typedef struct reader {
     spar_session *session;
+    const char *call; /* the public one, for messages */
     const char *beam, *path;
     FILE *file;
     int number; /* of the line read last */
@@ -54,9 +55,7 @@ static void blade_free(blade *b) {
 
 /* ---- lines and numbers ---- */
 
-static const char CALL[] = "spar_beam_read_beamdyn";
-
-#define FAIL(r, status, ...) spari_fail((r)->session, status, "spar_beam_read_beamdyn: " __VA_ARGS__)
+#define FAIL(r, status, format, ...) spari_fail((r)->session, status, "%s: " format, (r)->call, __VA_ARGS__)
 
 static int no_memory_to_read(const reader *r) {
     return FAIL(r, SPAR_ERR_MEMORY, "'%s': no memory for %s", r->beam, r->path);
@@ -441,13 +440,15 @@ static int describe_blade(spar_member *m, const reader *r, blade *b) {
 
 int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_beam(beam, CALL));
-    SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", CALL, beam->name);
+    SPARI_TRY(spari_need_beam(beam, __func__));
+    SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__,
+                  beam->name);
     blade b = {0};
     reader *r = spari_zalloc(1, sizeof *r);
-    SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", CALL, beam->name);
+    SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
     r->session = beam->session;
     r->beam = beam->name;
+    r->call = __func__;
     int status = open_file(r, primary_path);
     if (status == SPAR_OK) {
         status = read_primary(r, &b);

@@ -42,9 +42,9 @@ static void put_foot(const sketch *s, int64_t i) {
 }
 
 /* Fills the nodes of one set, which stand at `first` of all. */
-static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
+static int fill_set(const spar_fluid *fluid, const char *call, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    SPARI_TRY(spari_fluid_look(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first));
+    SPARI_TRY(spari_fluid_look(fluid, call, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first));
     SPARI_TRY(spar_fluid_get_feet(fluid, which, NULL, s->q_map + 4 * first, s->con + 3 * first));
     SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     const double *force = spari_fluid_forces(fluid);
@@ -109,9 +109,9 @@ static int write_nodes(const spar_fluid *fluid, const sketch *s, spar_session *s
 }
 
 static int draw(const spar_fluid *fluid, const sketch *s, spar_session *session, const char *path, const char *call) {
-    SPARI_TRY(fill_set(fluid, SPAR_NODES_MOTION, 0, s));
+    SPARI_TRY(fill_set(fluid, call, SPAR_NODES_MOTION, 0, s));
     if (!spari_fluid_has_sections(fluid)) {
-        SPARI_TRY(fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s));
+        SPARI_TRY(fill_set(fluid, call, SPAR_NODES_FORCE, s->count[0], s));
     }
     copy_to_feet(s);
     return write_nodes(fluid, s, session, path, call);

@@ -226,7 +226,7 @@ static const char diverging_cures[] =
     "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, let the fluid correct its pressure more often before it "
     "pushes, or reject the step";
 
-int spari_coupling_solve_failed(spar_session *s, int status) {
+int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     const spari_coupling *c = s->own->coupling;
     double factor = c->iterations == s->iteration ? grown_lately(c) : 0;
     if (status != SPAR_ERR_NUMERIC || factor == 0) {
@@ -234,14 +234,13 @@ int spari_coupling_solve_failed(spar_session *s, int status) {
     }
     char why[SPARI_MESSAGE_SIZE / 2];
     (void)snprintf(why, sizeof why, "%.*s", (int)sizeof why - 1, s->message);
-    return spari_fail(
-        s, status,
-        "spar_step_solve: the coupling diverges: the change of the loads has grown by a factor of %.3g from "
-        "iteration to iteration, to %.3g N in iteration %d; %s (%.400s)",
-        factor, c->residual[c->iterations - 1], s->iteration, diverging_cures, why);
+    return spari_fail(s, status,
+                      "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from "
+                      "iteration to iteration, to %.3g N in iteration %d; %s (%.400s)",
+                      call, factor, c->residual[c->iterations - 1], s->iteration, diverging_cures, why);
 }
 
-static int not_converged(spar_session *s) {
+static int not_converged(spar_session *s, const char *call) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
     char motion[80] = "", mass[80] = "";
@@ -256,15 +255,14 @@ static int not_converged(spar_session *s) {
     if (factor > 0) {
         return spari_fail(
             s, SPAR_ERR_NUMERIC,
-            "spar_step_check: the coupling has not converged in %d iterations, it diverges: the change of "
+            "%s: the coupling has not converged in %d iterations, it diverges: the change of "
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
-            s->iteration, factor, c->residual[last], c->size[last], motion, mass, diverging_cures);
+            call, s->iteration, factor, c->residual[last], c->size[last], motion, mass, diverging_cures);
     }
-    return spari_fail(
-        s, SPAR_ERR_NUMERIC,
-        "spar_step_check: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
-        "N%s%s); take a smaller relaxation, another scheme or a smaller dt, or reject the step",
-        s->iteration, c->residual[last], c->size[last], motion, mass);
+    return spari_fail(s, SPAR_ERR_NUMERIC,
+                      "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
+                      "N%s%s); take a smaller relaxation, another scheme or a smaller dt, or reject the step",
+                      call, s->iteration, c->residual[last], c->size[last], motion, mass);
 }
 
 /* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
@@ -313,11 +311,11 @@ void spari_coupling_next(spar_session *s) {
 }
 
 /* Told each time, and no more often than the option coupling.patience says on end. */
-static int accept_unconverged(spar_session *s) {
+static int accept_unconverged(spar_session *s, const char *call) {
     spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
     if (c->in_row + 1 >= s->coupling_patience) {
-        return not_converged(s);
+        return not_converged(s, call);
     }
     c->unconverged = 1;
     c->report[SPAR_REPORT_UNCONVERGED] += 1;
@@ -333,19 +331,19 @@ static int accept_unconverged(spar_session *s) {
     return SPAR_OK;
 }
 
-int spari_coupling_check(spar_session *s, int *done) {
+int spari_coupling_check(spar_session *s, const char *call, int *done) {
     spari_coupling *c = s->own->coupling;
     int agreed;
     *done = 1;
-    SPARI_TRY(spari_named(s, "spar_step_check", spari_coupling_compare(s, &agreed)));
+    SPARI_TRY(spari_named(s, call, spari_coupling_compare(s, &agreed)));
     if (agreed || !c->accelerator) {
         return SPAR_OK;
     }
     if (s->iteration >= s->coupling_max) {
         if (!s->accept_unconverged) {
-            return not_converged(s);
+            return not_converged(s, call);
         }
-        return accept_unconverged(s);
+        return accept_unconverged(s, call);
     }
     *done = 0;
     spari_coupling_next(s);
@@ -498,7 +496,7 @@ int spar_session_get_iterations(const spar_session *session, int *iterations, in
                                 double *size) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_TRY(spari_need_capacity((spar_session *)session, __func__, capacity));
+    SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;
     if (iterations) {
         *iterations = c ? c->iterations : 0;
@@ -524,7 +522,7 @@ int spar_session_get_residual(const spar_session *session, double *residual, dou
 int spar_session_get_report(const spar_session *session, int64_t capacity, double *report) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_TRY(spari_need_capacity((spar_session *)session, __func__, capacity));
+    SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;
     spari_fill(capacity, report, c ? SPAR_REPORT_COUNT : 0, c ? c->report : NULL);
     return SPAR_OK;

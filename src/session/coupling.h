@@ -47,10 +47,10 @@ void spari_coupling_begin(spar_session *session);
 int spari_coupling_compare(spar_session *session, int *agreed);
 void spari_coupling_next(spar_session *session);
 /* Both, as a step wants it: done where they agree, or where it goes on with what there is. */
-int spari_coupling_check(spar_session *session, int *done);
+int spari_coupling_check(spar_session *session, const char *call, int *done);
 /* The structure could not be solved with the loads: says so where these have grown from iteration to iteration.
    Returns status. */
-int spari_coupling_solve_failed(spar_session *session, int status);
+int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
 void spari_coupling_reject(spar_session *session);

@@ -356,10 +356,9 @@ static void write_number(double x, char *text, size_t size) {
 int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = (spar_session *)session;
-    SPARI_REQUIRE(s, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
+    SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of = find_option(key);
-    SPARI_REQUIRE(s, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
     char value[40];
     double x = spari_setting_value(session, of);
     if (of->kind == SPARI_IS_WORD) {
@@ -368,9 +367,10 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
         write_number(x, value, sizeof value);
     }
     int64_t needed = (int64_t)strlen(value) + 1;
-    SPARI_TRY(spari_need_capacity(s, __func__, capacity));
-    SPARI_REQUIRE(s, capacity >= needed, SPAR_ERR_ARGUMENT, "%s: the value of '%s' takes %lld characters, not %lld",
-                  __func__, key, (long long)needed, (long long)capacity);
+    SPARI_TRY(spari_need_capacity(session, __func__, capacity));
+    SPARI_REQUIRE(session, capacity >= needed, SPAR_ERR_ARGUMENT,
+                  "%s: the value of '%s' takes %lld characters, not %lld", __func__, key, (long long)needed,
+                  (long long)capacity);
     memcpy(text, value, (size_t)needed);
     return SPAR_OK;
 }

@@ -173,17 +173,14 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
 
 /* ---- all members, with the fluid ---- */
 
-static const char session_call[] = "spar_session_solve_static";
-
-static int check_session_static(spar_session *s, int load_steps) {
+static int check_session_static(spar_session *s, const char *call, int load_steps) {
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  session_call);
-    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", session_call,
-                  load_steps);
+                  call);
+    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", call, load_steps);
     for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_TRY(check_held(m, session_call));
+        SPARI_TRY(check_held(m, call));
     }
-    return s->started ? SPAR_OK : spari_session_pushes(s, session_call);
+    return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
 /* Columns and weights are of this solution alone: those of the steps know another map. What the steps had is put
@@ -312,13 +309,13 @@ static int solve_all(spar_session *s, int load_steps, int onward) {
 }
 
 /* The fluid's loads on these shapes, from all ranks. */
-static int ask_fluid(spar_session *s, spar_fluid_solver solve, void *context) {
-    int status = spari_lend(s, session_call, solve, 0, context);
+static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
+    int status = spari_lend(s, call, solve, 0, context);
     if (status == SPAR_ERR_COMM) {
         return status;
     }
-    status = status == SPAR_OK ? spari_session_pushes(s, session_call) : status;
-    SPARI_TRY(spari_enter(s, session_call, status));
+    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
+    SPARI_TRY(spari_enter(s, call, status));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
@@ -361,35 +358,35 @@ static const char *cure_for(const spar_session *s) {
 }
 
 /* why: what ended the iteration, this rank's or a peer's message; NULL: its limit. */
-static int not_settled(spar_session *s, int status, const char *why) {
+static int not_settled(spar_session *s, const char *call, int status, const char *why) {
     const spari_coupling *c = s->own->coupling;
     int n = c->iterations;
     double factor = growth(c);
     if (n == 0 || !s->members || (factor <= 1 && why)) {
-        return spari_fail(s, status, "%s: %s", session_call, why ? why : "no iterations");
+        return spari_fail(s, status, "%s: %s", call, why ? why : "no iterations");
     }
     const char *member = most_changed(s)->name;
     if (factor > 1) {
         return spari_fail(s, status,
                           "%s: the loads grow from iteration to iteration, %.4g times in each: they changed by %.3g N "
                           "of %.3g N in the last of %d, most on member '%s' (%.400s); %s",
-                          session_call, factor, c->residual[n - 1], c->size[n - 1], n, member,
+                          call, factor, c->residual[n - 1], c->size[n - 1], n, member,
                           why ? why : "the limit of iterations", cure_for(s));
     }
     return spari_fail(s, status,
                       "%s: no equilibrium with the fluid in %d iterations: the loads still change by %.3g N of %.3g N, "
                       "most on member '%s'; allow more iterations, or %s",
-                      session_call, n, c->residual[n - 1], c->size[n - 1], member, cure_for(s));
+                      call, n, c->residual[n - 1], c->size[n - 1], member, cure_for(s));
 }
 
-static int not_solved(spar_session *s, int status) {
+static int not_solved(spar_session *s, const char *call, int status) {
     char why[SPARI_MESSAGE_SIZE];
     memcpy(why, s->message, sizeof why);
-    return status == SPAR_ERR_COMM ? status : not_settled(s, status, why);
+    return status == SPAR_ERR_COMM ? status : not_settled(s, call, status, why);
 }
 
 /* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */
-static void warn_of_divergence(const spar_session *s) {
+static void warn_of_divergence(const spar_session *s, const char *call) {
     char text[SPARI_MESSAGE_SIZE];
     int learns = spari_coupling_scheme_of(s->scheme)->learn != NULL;
     double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
@@ -399,7 +396,7 @@ static void warn_of_divergence(const spar_session *s) {
     (void)snprintf(text, sizeof text,
                    "%s: a change of the fluid's loads comes back %.3g times as large from the shape that it makes: the "
                    "equilibrium found lies beyond static divergence, and a run leaves it",
-                   session_call, -ratio);
+                   call, -ratio);
     spari_log(s, SPAR_LOG_WARNING, text);
 }
 
@@ -413,31 +410,31 @@ static int stands_under_answer(spar_session *s) {
     return same;
 }
 
-static int find_equilibrium(spar_session *s, int load_steps, spar_fluid_solver solve, void *context) {
+static int find_equilibrium(spar_session *s, const char *call, int load_steps, spar_fluid_solver solve, void *context) {
     int agreed = 0;
     while (!agreed) {
         int status = solve_all(s, load_steps, s->iteration > 0);
         if (status != SPAR_OK) {
-            return not_solved(s, status);
+            return not_solved(s, call, status);
         }
-        SPARI_TRY(ask_fluid(s, solve, context));
+        SPARI_TRY(ask_fluid(s, call, solve, context));
         status = spari_coupling_compare(s, &agreed);
         if (status != SPAR_OK) {
-            return not_settled(s, status, "they are beyond the range of numbers");
+            return not_settled(s, call, status, "they are beyond the range of numbers");
         }
         if (!spari_coupling_scheme_of(s->scheme)->iterates) {
             break;
         }
         if (!agreed && s->iteration >= s->coupling_max) {
-            return not_settled(s, SPAR_ERR_NUMERIC, NULL);
+            return not_settled(s, call, SPAR_ERR_NUMERIC, NULL);
         }
         if (!agreed) {
             spari_coupling_next(s);
         }
     }
-    warn_of_divergence(s);
+    warn_of_divergence(s, call);
     int status = stands_under_answer(s) ? SPAR_OK : solve_all(s, load_steps, 1);
-    return status == SPAR_OK ? SPAR_OK : not_solved(s, status);
+    return status == SPAR_OK ? SPAR_OK : not_solved(s, call, status);
 }
 
 int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
@@ -447,7 +444,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, load_steps)));
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, __func__, load_steps)));
     spari_coupling *of_steps = NULL;
     double *aside = NULL;
     int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
@@ -458,7 +455,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
         return spari_named(s, __func__, status);
     }
     status = begin_static(s);
-    status = status == SPAR_OK ? find_equilibrium(s, load_steps, solve, context) : status;
+    status = status == SPAR_OK ? find_equilibrium(s, __func__, load_steps, solve, context) : status;
     if (iterations) {
         *iterations = s->iteration;
     }

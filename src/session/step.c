@@ -162,7 +162,7 @@ int spar_step_solve(spar_session *session) {
             spari_joint_reject(j);
         }
         s->phase = SPARI_BEGUN;
-        return spari_coupling_solve_failed(s, spari_named(s, __func__, status));
+        return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
@@ -196,7 +196,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->iteration++;
     s->phase = SPARI_CHECKED;
-    SPARI_TRY(spari_coupling_check(s, &ended));
+    SPARI_TRY(spari_coupling_check(s, call, &ended));
     s->failed = 0;
     s->iterating = !ended;
     *done = ended;

@@ -238,16 +238,16 @@ static double cost_of_row(const spari_record *record, int r) {
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
 }
 
-static void tell_failure(spar_session *s, int r) {
+static void tell_failure(spar_session *s, const char *call, int r) {
     char text[SPARI_MESSAGE_SIZE + 100];
     if (s->log) {
-        (void)snprintf(text, sizeof text, "spar_session_report_effects: without %s the run fails: %s", rows[r].name,
-                       s->message);
+        (void)snprintf(text, sizeof text, "%s: without %s the run fails: %s", call, rows[r].name, s->message);
         spari_log(s, SPAR_LOG_INFO, text);
     }
 }
 
-static int try_row_out(spar_session *s, const spari_run *run, int r, const spari_record *base, double *out) {
+static int try_row_out(spar_session *s, const char *call, const spari_run *run, int r, const spari_record *base,
+                       double *out) {
     enum { REPEATS = 3 }; /* times are the least of so many, with and without in turn */
     double with = cost_of_row(base, r), without = INFINITY;
     spari_wish wish;
@@ -276,7 +276,7 @@ static int try_row_out(spar_session *s, const spari_run *run, int r, const spari
     }
     spari_wish_free(&wish);
     if (is_of_the_run(status)) {
-        tell_failure(s, r);
+        tell_failure(s, call, r);
         out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
         out[SPAR_COLUMN_SHARE] = 0;
         return SPAR_OK;
@@ -300,7 +300,7 @@ static int asked_anywhere(spar_session *s, int *asked) {
     return SPAR_OK;
 }
 
-static int fill_rows(spar_session *s, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
+static int fill_rows(spar_session *s, const char *call, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
     double size[SPAR_ROW_COUNT] = {0};
     spari_wish wish;
     spari_record base;
@@ -317,7 +317,7 @@ static int fill_rows(spar_session *s, const spari_run *run, double (*table)[SPAR
         if (in_force(s, r, asked)) {
             out[SPAR_COLUMN_IN_FORCE] = 1;
             out[SPAR_COLUMN_SIZE] = size[r];
-            status = try_row_out(s, run, r, &base, out);
+            status = try_row_out(s, call, run, r, &base, out);
         }
     }
     spari_record_free(&base);
@@ -338,7 +338,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_TRY(spari_trial_enter(s, __func__, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, fill_rows(s, &run, made)));
+    SPARI_TRY(spari_named(s, __func__, fill_rows(s, __func__, &run, made)));
     memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
     spari_fill_table(table_rows, table_columns, table, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
