@@ -38,8 +38,22 @@ spar_packages() {
         DEBIAN_FRONTEND=noninteractive $as_root apt-get -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends $missing; } >/dev/null
 }
 
-# What the build needs; the tests and the plots come on top.
-spar_build_packages="gcc g++ gfortran cmake ninja-build pkg-config libc6-dev libgsl-dev libopenblas-serial-dev libopenmpi-dev openmpi-bin"
+# What the build cannot do without, and what it takes where it is found; the tests and the plots come on top.
+spar_needed_packages="gcc cmake libc6-dev libgsl-dev"
+spar_taken_packages="ninja-build gfortran libopenblas-serial-dev libopenmpi-dev openmpi-bin"
+spar_build_packages="$spar_needed_packages $spar_taken_packages g++ pkg-config"
+
+# spar_example_packages: stops for what is needed alone
+spar_example_packages() {
+    if ! command -v ninja >/dev/null 2>&1 && ! command -v make >/dev/null 2>&1; then
+        spar_needed_packages="$spar_needed_packages ninja-build"
+    fi
+    # shellcheck disable=SC2086
+    spar_packages $spar_needed_packages || return 1
+    # shellcheck disable=SC2086
+    spar_packages $spar_taken_packages || say "going on without them: no ranks without Open MPI, no Fortran without gfortran; GSL's own CBLAS is slower"
+    spar_packages gnuplot-nox || say "without gnuplot there are no plots; all else runs"
+}
 
 # Ranks as root, on fewer cores than ranks, without ssh (Open MPI).
 spar_mpi_environment() {
@@ -58,7 +72,10 @@ spar_build() {
     build_dir=$2
     shift 2
     say "configuring $build_dir"
-    cmake -S "$source_dir" -B "$build_dir" -G Ninja "$@" || return 1
+    if [ ! -f "$build_dir/CMakeCache.txt" ] && command -v ninja >/dev/null 2>&1; then
+        set -- -G Ninja "$@"
+    fi
+    cmake -S "$source_dir" -B "$build_dir" "$@" || return 1
     say "building $build_dir"
     cmake --build "$build_dir" -j "$(spar_jobs)"
 }

@@ -1,16 +1,25 @@
-# Target spar::gsl: GSL with a fast CBLAS under it. Sets SPAR_CBLAS_LIBRARY, SPAR_OPENBLAS and SPAR_LAPACK. Used by the build
-# and, for the static library, by the installed package.
+# Target spar::gsl: GSL with a fast CBLAS under it. Sets SPAR_CBLAS_LIBRARY, SPAR_OPENBLAS, SPAR_OPENBLAS_FOLDER (empty where the
+# loader looks anyway) and SPAR_LAPACK. Used by the build and, for the static library, by the installed package.
 find_package(GSL REQUIRED)
 
 # The one-thread build of OpenBLAS first: the members are small, and the host owns the threads.
 find_library(SPAR_OPENBLAS_LIBRARY NAMES openblas PATH_SUFFIXES openblas-serial)
 mark_as_advanced(SPAR_OPENBLAS_LIBRARY)
+set(SPAR_OPENBLAS_FOLDER)
 
-if(SPAR_OPENBLAS_LIBRARY)
+if(SPAR_OPENBLAS_LIBRARY AND (SPAR_OPENBLAS OR NOT DEFINED SPAR_OPENBLAS))
   set(SPAR_OPENBLAS ON)
+  get_filename_component(SPAR_OPENBLAS_FOLDER "${SPAR_OPENBLAS_LIBRARY}" DIRECTORY)
+  if(SPAR_OPENBLAS_FOLDER IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES)
+    set(SPAR_OPENBLAS_FOLDER)
+  endif()
   set(SPAR_CBLAS_LIBRARY "${SPAR_OPENBLAS_LIBRARY}")
   include(CheckFunctionExists)
   set(CMAKE_REQUIRED_LIBRARIES "${SPAR_OPENBLAS_LIBRARY}")
+  if(NOT SPAR_OPENBLAS_LIBRARY STREQUAL SPAR_OPENBLAS_CHECKED) # another one than last time
+    unset(SPAR_OPENBLAS_HAS_LAPACK CACHE)
+    set(SPAR_OPENBLAS_CHECKED "${SPAR_OPENBLAS_LIBRARY}" CACHE INTERNAL "whose LAPACK was looked for")
+  endif()
   check_function_exists(dgetrf_ SPAR_OPENBLAS_HAS_LAPACK)
   unset(CMAKE_REQUIRED_LIBRARIES)
   if(SPAR_OPENBLAS_HAS_LAPACK)

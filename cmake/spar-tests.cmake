@@ -1,9 +1,6 @@
 # The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count,
 # torture, house.
 find_package(PkgConfig QUIET)
-find_path(SPAR_CMOCKA_INCLUDE cmocka.h)
-find_library(SPAR_CMOCKA_LIBRARY cmocka)
-mark_as_advanced(SPAR_CMOCKA_INCLUDE SPAR_CMOCKA_LIBRARY)
 if(NOT SPAR_CMOCKA_INCLUDE OR NOT SPAR_CMOCKA_LIBRARY)
   message(FATAL_ERROR "SPAR_BUILD_TESTS needs CMocka (Debian: libcmocka-dev); or set SPAR_BUILD_TESTS=OFF")
 endif()
@@ -61,7 +58,7 @@ endfunction()
 function(spar_add_ranks target label timeout)
   foreach(ranks IN ITEMS 1 2 4)
     add_test(NAME ${target}_np${ranks}
-      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} --oversubscribe --allow-run-as-root
+      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
               $<TARGET_FILE:${target}> ${ARGN}
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     # Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
@@ -120,7 +117,9 @@ if(TARGET spar_fortran)
   include("${PROJECT_SOURCE_DIR}/tests/fortran/fortran.cmake" OPTIONAL)
 endif()
 
-include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake" OPTIONAL)
+if(SPAR_INSTALL)
+  include("${PROJECT_SOURCE_DIR}/tests/package/package.cmake")
+endif()
 include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/torture/torture.cmake")

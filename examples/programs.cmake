@@ -20,7 +20,7 @@ if(TARGET test_rotor AND TARGET examples_rotor)
   target_compile_definitions(test_rotor PRIVATE ROTOR_PROGRAM="$<TARGET_FILE:examples_rotor>"
     EFFECTS_PROGRAM="$<TARGET_FILE:examples_spar-effects>")
   if(SPAR_MPI)
-    target_compile_definitions(test_rotor PRIVATE ROTOR_LAUNCHER="${MPIEXEC_EXECUTABLE} --allow-run-as-root --oversubscribe ${MPIEXEC_NUMPROC_FLAG}")
+    target_compile_definitions(test_rotor PRIVATE ROTOR_LAUNCHER="${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG}")
   endif()
 endif()
 
@@ -71,7 +71,7 @@ set_tests_properties(example_external PROPERTIES PASS_REGULAR_EXPRESSION " 100 +
 add_test(NAME example_wing COMMAND examples_wing)
 set(spar_wing_tests example_wing)
 if(SPAR_MPI)
-  add_test(NAME example_wing_np3 COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 3 --oversubscribe --allow-run-as-root $<TARGET_FILE:examples_wing>)
+  add_test(NAME example_wing_np3 COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 3 $<TARGET_FILE:examples_wing>)
   list(APPEND spar_wing_tests example_wing_np3)
 endif()
 foreach(name IN LISTS spar_wing_tests)

@@ -44,6 +44,10 @@ if(SPAR_PKG_CONFIG)
     "${CMAKE_C_COMPILER}" "${here}/c/main.c" spar --static)
 endif()
 
+if(SPAR_OPENBLAS_FOLDER AND EXISTS "${SPAR_OPENBLAS_FOLDER}/libopenblas.so.0" AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  spar_package_test(openblas sh "${here}/openblas.sh" "${prefix}" "${work}/openblas" "${CMAKE_C_COMPILER}" "${SPAR_OPENBLAS_FOLDER}")
+endif()
+
 if(TARGET spar_fortran AND EXISTS "${here}/fortran/main.f90")
   spar_consumer(fortran_cmake fortran)
   if(SPAR_PKG_CONFIG)

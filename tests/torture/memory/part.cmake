@@ -11,7 +11,7 @@ add_test(NAME torture_memory COMMAND torture_memory short WORKING_DIRECTORY "${P
 spar_set_test(torture_memory torture 300)
 if(SPAR_MPI)
   add_test(NAME torture_memory_np2
-    COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 --oversubscribe --allow-run-as-root $<TARGET_FILE:torture_memory> short
+    COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 $<TARGET_FILE:torture_memory> short
     WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   # as with the tests of many ranks: Open MPI leaves what the leak checker cannot tell from ours
   spar_set_test(torture_memory_np2 torture 300 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)

@@ -8,7 +8,7 @@ if(SPAR_MPI)
   set(seconds_3 6)
   foreach(ranks IN ITEMS 2 3)
     add_test(NAME torture_ranks_np${ranks}
-      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} --oversubscribe --allow-run-as-root
+      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
               $<TARGET_FILE:torture_ranks> ${seconds_${ranks}}
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     spar_set_test(torture_ranks_np${ranks} torture 120 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
