@@ -117,7 +117,6 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     SPARI_TRY(spari_named(session, __func__, status));
     spar_aero *made = spari_zalloc(1, sizeof *made);
     SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "%s: no memory", __func__);
-    spari_gsl_quiet();
     made->session = session;
     made->blades = blades;
     made->n = n;

@@ -144,7 +144,6 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                   __func__);
     SPARI_TRY(check_rows(n, alpha_rad, value, __func__));
     SPARI_TRY(check_turn(n, alpha_rad, value, __func__));
-    spari_gsl_quiet();
     spar_polar *made = spari_zalloc(1, sizeof *made);
     spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;
     if (!table) {

@@ -1,7 +1,8 @@
 /* The surroundings that the library computes in, whatever those of the host are. Floating-point traps are held: a host
    that traps invalid operations, divisions by zero and overflows (usual in Fortran) gets a status where a signal would
-   end it. Numbers are read and written with a point. Rounding and the treatment of denormal numbers stay the host's;
-   flags raised inside are not seen outside. */
+   end it. Numbers are read and written with a point. GSL's errors go to nobody: its handler may abort, is the host's
+   outside, and being one for the process is off as long as any thread is inside. Rounding and the treatment of denormal
+   numbers stay the host's; flags raised inside are not seen outside. */
 #ifndef SPARI_QUIET_H
 #define SPARI_QUIET_H
 
@@ -27,7 +28,8 @@ static inline void spari_quiet_leave(const int *scope) {
 }
 
 /* First in a public function that computes, or looks at numbers of the host: until it returns. Other compilers than GCC
-   and Clang have no end of a scope to hang it on; their hosts must not trap. */
+   and Clang have no end of a scope to hang it on; their hosts must not trap, and switch GSL's handler off themselves.
+ */
 #if defined(__GNUC__)
 #define SPARI_QUIET                                                                                                    \
     const int spari_quiet_ __attribute__((unused, cleanup(spari_quiet_leave))) = 0;                                    \

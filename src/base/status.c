@@ -1,9 +1,7 @@
 /* Names and texts of statuses, messages, memory: what every file uses. */
 #include "status.h"
 
-#include <gsl/gsl_errno.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,18 +129,4 @@ uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size) {
         hash = (hash ^ byte[i]) * UINT64_C(1099511628211);
     }
     return hash;
-}
-
-/* GSL has one error handler for the whole process and its default one aborts. gsl_set_error_handler_off answers with
-   the handler in force before: NULL is the default (which stays off), anything else is the host's own and goes back. */
-static void quiet_once(void) {
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    if (handler) {
-        gsl_set_error_handler(handler);
-    }
-}
-
-void spari_gsl_quiet(void) {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, quiet_once);
 }

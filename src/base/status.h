@@ -1,4 +1,4 @@
-/* Statuses, and what every file may need: checks of numbers, memory, a quiet GSL. Knows nobody. */
+/* Statuses, and what every file may need: checks of numbers, memory. Knows nobody. */
 #ifndef SPARI_STATUS_H
 #define SPARI_STATUS_H
 
@@ -48,8 +48,5 @@ void spari_fill_table(int64_t rows, int64_t columns, double *to, int64_t known_r
 /* Bytes into a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
 #define SPARI_HASH_BEGIN UINT64_C(14695981039346656037)
 uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size);
-
-/* GSL's default error handler aborts: turns it off, once for the process; a handler that a user has set stays. */
-void spari_gsl_quiet(void);
 
 #endif

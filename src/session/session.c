@@ -24,7 +24,6 @@ static spar_session *session_new(void) {
     }
     spar_session *s = &whole->scene; /* comes first: freed as one */
     s->own = &whole->own;
-    spari_gsl_quiet();
     spari_settings_default(s);
     return s;
 }
