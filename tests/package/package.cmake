@@ -19,6 +19,14 @@ spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDI
 spar_package_test(contract "${CMAKE_C_COMPILER}" -std=c11 -Wall -Wextra -Werror "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" -c
   "${PROJECT_SOURCE_DIR}/tests/contract.c" -o "${work}/contract.o")
 
+# what hosts were compiled with is still there, and the check would see it go
+find_program(SPAR_AWK awk)
+mark_as_advanced(SPAR_AWK)
+if(SPAR_AWK)
+  spar_package_test(interface sh "${here}/interface" "${CMAKE_C_COMPILER}")
+  spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
+endif()
+
 # the same symbols without MPI
 if(SPAR_MPI)
   spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
