@@ -192,6 +192,27 @@ static void totals_over_ranks(void **state) {
     spar_session_destroy(&alone.session);
 }
 
+/* What another iteration would move is found on every rank, as on one process (1e-9: accelerations are as near). */
+static void explicit_error_over_ranks(void **state) {
+    (void)state;
+    scene all, alone;
+    double x[SPAR_REPORT_COUNT], y[SPAR_REPORT_COUNT];
+    create(&all, rank, size, SPAR_COUPLING_EXPLICIT);
+    create(&alone, 0, 1, SPAR_COUPLING_EXPLICIT);
+    OK(all.session, spar_session_set_option(all.session, "coupling.estimate", "on"));
+    OK(alone.session, spar_session_set_option(alone.session, "coupling.estimate", "on"));
+    for (int step = 0; step < 3; step++) {
+        OK(all.session, spar_step(all.session, 0.02, solve, &all, NULL));
+        OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
+        OK(all.session, spar_session_get_report(all.session, SPAR_REPORT_COUNT, x));
+        OK(alone.session, spar_session_get_report(alone.session, SPAR_REPORT_COUNT, y));
+        assert_true(y[SPAR_REPORT_MOTION_ERROR] > 0);
+        NEAR(x[SPAR_REPORT_MOTION_ERROR], y[SPAR_REPORT_MOTION_ERROR], 1e-9 * y[SPAR_REPORT_MOTION_ERROR]);
+    }
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
+}
+
 static void nan_on_one_rank(void **state) {
     (void)state;
     int carriers = size > 1 ? size - 1 : 1;
@@ -429,6 +450,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_serial),
         cmocka_unit_test(totals_over_ranks),
+        cmocka_unit_test(explicit_error_over_ranks),
         cmocka_unit_test(totals_over_ranks),
         cmocka_unit_test(nan_on_one_rank),
         cmocka_unit_test(callback_fails_on_one_rank),

@@ -175,6 +175,50 @@ static void added_mass_with_spread(void **state) {
     }
 }
 
+/* What another iteration would have moved is told of an explicit step without it: as far as a twin that is solved again
+   with the loads pushed goes, which is exact for bodies that do not turn. Off by default, and then 0. */
+static void explicit_error_is_told(void **state) {
+    (void)state;
+    const double r[2] = {0.2, 0.3};
+    for (int on = 0; on < 2; on++) {
+        pistons p[2];
+        for (int k = 0; k < 2; k++) {
+            pistons_create(&p[k], 2, r);
+            p[k].b[0] = 1, p[k].b[1] = -4;
+        }
+        OK(p[0].session, spar_session_set_option(p[0].session, "coupling.estimate", on ? "on" : "off"));
+        OK(p[1].session, spar_session_set_coupling(p[1].session, SPAR_COUPLING_FIXED_POINT, 0, 1e-15, 50));
+        for (int step = 0; step < 4; step++) {
+            double q[2][7], again[7], rep[SPAR_REPORT_COUNT], want = 0;
+            int done;
+            for (int k = 0; k < 2; k++) {
+                OK(p[k].session, spar_step_begin(p[k].session, 0.1));
+                OK(p[k].session, spar_step_solve(p[k].session));
+                OK(p[k].session, pistons_fluid(p[k].session, 0, 0.1, 0, &p[k]));
+                for (int i = 0; i < 2; i++) {
+                    OK(p[k].session, spar_member_get_motion(p[k].body[i], q[i], NULL, NULL));
+                }
+                OK(p[k].session, spar_step_check(p[k].session, &done));
+            }
+            OK(p[1].session, spar_step_solve(p[1].session));
+            for (int i = 0; i < 2; i++) {
+                OK(p[1].session, spar_member_get_motion(p[1].body[i], again, NULL, NULL));
+                want = fmax(want, fabs(again[0] - q[i][0]));
+            }
+            OK(p[1].session, spar_step_reject(p[1].session)); /* and as the other one did */
+            OK(p[0].session, spar_session_get_report(p[0].session, SPAR_REPORT_COUNT, rep));
+            assert_true(want > 1e-6);
+            NEAR(rep[SPAR_REPORT_MOTION_ERROR], on ? want : 0, 1e-12);
+            OK(p[0].session, spar_step_accept(p[0].session));
+            OK(p[1].session, spar_session_set_coupling(p[1].session, SPAR_COUPLING_EXPLICIT, 0, 1e-15, 50));
+            OK(p[1].session, spar_step(p[1].session, 0.1, pistons_fluid, &p[1], NULL));
+            OK(p[1].session, spar_session_set_coupling(p[1].session, SPAR_COUPLING_FIXED_POINT, 0, 1e-15, 50));
+        }
+        pistons_destroy(&p[0]);
+        pistons_destroy(&p[1]);
+    }
+}
+
 /* ---- loops that the host drives ---- */
 
 static double use_of(const pistons *p) {
@@ -734,6 +778,7 @@ int main(void) {
         cmocka_unit_test(channel_modes),
         cmocka_unit_test(report),
         cmocka_unit_test(added_mass_with_spread),
+        cmocka_unit_test(explicit_error_is_told),
         cmocka_unit_test(fixed_number_of_iterations),
         cmocka_unit_test(on_after_done),
         cmocka_unit_test(own_loop_to_the_limit),

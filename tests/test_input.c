@@ -243,6 +243,9 @@ static void test_steps(void **state) {
 static void test_read_back(void **state) {
     (void)state;
     static const char *const option[][3] = {{"coupling.unconverged", "error", "accept"},
+                                            {"coupling.patience", "3", "1000000"},
+                                            {"coupling.norm", "motion", "loads"},
+                                            {"coupling.estimate", "off", "on"},
                                             {"coupling.columns", "30", "7"},
                                             {"coupling.reuse", "5", "0"},
                                             {"coupling.filter", "0.0001", "0.12345678901234566"},

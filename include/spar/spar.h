@@ -156,7 +156,9 @@ enum {
     SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
     SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
     SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
-    SPAR_REPORT_COUNT = 9
+    SPAR_REPORT_MOTION_ERROR = 9, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
+                                     predicted, would have moved the farthest node in this step, [m] */
+    SPAR_REPORT_COUNT = 10
 };
 
 /* A session of this process alone. session: out. Local. */
@@ -227,6 +229,9 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
                             weigh loads by: the motion that the structure answers them with in the step, so that a load
                             that moves nothing (drag on a stiff direction) counts nothing; or the loads themselves. With
                             a member whose motion the host gives (points, external) it is loads in any case
+     coupling.estimate      off (default) | on: explicit: spar_step_check also finds what another iteration would have
+                            moved, SPAR_REPORT_MOTION_ERROR, by one back-substitution and no solution of the fluid; of
+                            members that joints tie, and those whose motion the host gives, it knows nothing
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
      coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
      coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, part of a column that newer ones must not contain already

@@ -39,7 +39,7 @@ static int make_vectors(const spar_session *s, spari_coupling *c) {
     int64_t n = iterated ? c->n : 0;
     spari_accelerator_settings set = {s->scheme,         s->relaxation,      s->coupling_columns,
                                       s->coupling_reuse, s->coupling_filter, c->weighs};
-    int64_t largest = 0, images = c->weighs ? n : 0;
+    int64_t largest = 0, images = c->weighs ? 2 * n : c->estimates ? c->n : 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         largest = m->nodes > largest ? m->nodes : largest;
     }
@@ -51,8 +51,8 @@ static int make_vectors(const spar_session *s, spari_coupling *c) {
                 spari_zalloc(iterated && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
            (iterated || (c->missed = spari_zalloc(c->n, sizeof(double)))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
-           (c->image = spari_zalloc(2 * images + 1, sizeof(double))) &&
-           (c->room = spari_zalloc(c->weighs ? 6 * largest : 0, sizeof(double))) &&
+           (c->image = spari_zalloc(images + 1, sizeof(double))) &&
+           (c->room = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
 
@@ -75,7 +75,9 @@ int spari_coupling_create(spar_session *s, int at_rest, spari_coupling **couplin
     if (c) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
-        c->weighs = !at_rest && spari_coupling_scheme_of(s->scheme)->iterates && spari_weighs_motion(s);
+        int iterates = spari_coupling_scheme_of(s->scheme)->iterates;
+        c->estimates = !at_rest && !iterates && s->coupling_estimate;
+        c->weighs = !at_rest && iterates && spari_weighs_motion(s);
     }
     if (!c || !make_vectors(s, c)) {
         spari_coupling_free(&c);
@@ -193,6 +195,7 @@ void spari_coupling_begin(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->iterations = 0;
     c->report[SPAR_REPORT_CONTRACTION] = c->report[SPAR_REPORT_COLUMNS] = c->report[SPAR_REPORT_DROPPED] = 0;
+    c->report[SPAR_REPORT_MOTION_ERROR] = 0;
     if (c->accelerator) {
         double *at = c->predicted;
         for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
@@ -295,6 +298,9 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     }
     SPARI_TRY(weigh_residual(s, size, &residual));
     record(c, residual, size);
+    if (c->estimates) {
+        SPARI_TRY(spari_weigh_miss(s, c->n, c->image, c->room, c->report + SPAR_REPORT_MOTION_ERROR));
+    }
     *agreed = residual <= s->coupling_atol + s->coupling_rtol * size &&
               (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled);
     return SPAR_OK;

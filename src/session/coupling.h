@@ -11,6 +11,7 @@ typedef struct spari_coupling {
     int64_t n; /* six for every node of every member */
     int members;
     int weighs;        /* iterated: loads are weighed by the motion they cause */
+    int estimates;     /* explicit: what another iteration would move is told (option coupling.estimate) */
     int weighed;       /* and were in the last check: `image` holds */
     double *length;    /* of each member: moments count as moment over length, turns as turn times length */
     double *unit;      /* of each member: the power of two next to 1/length, which scales moments without rounding */

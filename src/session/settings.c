@@ -79,6 +79,7 @@ static const spari_setting settings[] = {
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_ALIKE),
     OPTION_WORD("coupling.norm", norm_of_loads, "motion", "loads", SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_WORD("coupling.estimate", coupling_estimate, "off", "on", SPARI_ALIKE | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.columns", coupling_columns, 1, 10000, "a whole number from 1 to 10000", 30,
                  SPARI_ALIKE | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.reuse", coupling_reuse, 0, 10000, "a whole number from 0 to 10000", 5,

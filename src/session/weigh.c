@@ -63,3 +63,27 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
 }
+
+int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, double *farthest) {
+    int rank = spari_comm_rank(s->comm);
+    double square = 0, *at = image;
+    memset(image, 0, (size_t)(n + 1) * sizeof *image);
+    for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
+        if (m->owner != rank || !m->row->answer || m->assembly) {
+            continue;
+        }
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            room[i] = m->load_pushed[i] - m->load_used[i];
+        }
+        if (m->row->answer(m, room, at)) {
+            at[0] = NAN;
+        }
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));
+    for (int64_t i = 0; i < n; i += 6) {
+        double way = image[i] * image[i] + image[i + 1] * image[i + 1] + image[i + 2] * image[i + 2];
+        square = isfinite(way) ? fmax(square, way) : INFINITY;
+    }
+    *farthest = sqrt(square);
+    return SPAR_OK;
+}

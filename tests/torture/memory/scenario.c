@@ -263,6 +263,7 @@ static void settings(spar_session *s) {
     static const char *const option[][2] = {{"coupling.unconverged", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},
+                                            {"coupling.estimate", "on"},
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
                                             {"coupling.filter", "1e-5"},
