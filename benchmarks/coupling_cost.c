@@ -3,7 +3,7 @@
    external beams of 10 nodes with one fluid node each, so that there is no structure to solve; the pushes are not
    counted.
 
-   coupling [iterations a step, default 10]      a table; the median over the steps */
+   coupling_cost [iterations a step, default 10]      a table; the median over the steps */
 #define _GNU_SOURCE
 #include <malloc.h>
 #include <math.h>
@@ -17,7 +17,7 @@ enum { STEPS = 9, NODES = 10 };
 
 static void check(const spar_session *s, int status) {
     if (status != SPAR_OK) {
-        fprintf(stderr, "coupling: %s: %s\n", spar_status_text(status), spar_session_message(s));
+        fprintf(stderr, "coupling_cost: %s: %s\n", spar_status_text(status), spar_session_message(s));
         exit(1);
     }
 }
@@ -92,7 +92,7 @@ int main(int argc, char **argv) {
     static const char *const name[] = {"explicit", "fixed point", "Aitken", "IQN-ILS"};
     int iterations = argc > 1 ? atoi(argv[1]) : 10;
     if (iterations < 1) {
-        fprintf(stderr, "usage: coupling [iterations a step, at least 1]\n");
+        fprintf(stderr, "usage: coupling_cost [iterations a step, at least 1]\n");
         return 1;
     }
     printf("spar_step_check, %d iterations a step, members of %d nodes\n", iterations, NODES);

@@ -31,3 +31,7 @@ foreach(kind IN ITEMS portable native)
   target_sources(benchmarks_transfer PRIVATE $<TARGET_OBJECTS:benchmarks_plain_${kind}>)
 endforeach()
 target_compile_options(benchmarks_plain_native PRIVATE $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-O3;-march=native;-ffp-contract=fast>)
+
+# The coupling benchmark plays the flows of the stability tests.
+target_sources(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/flows.c")
+target_include_directories(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests")

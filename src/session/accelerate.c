@@ -193,8 +193,8 @@ static void over_sizes(const spari_accelerator *a, const double *in, double *out
 /* ---- columns ---- */
 
 /* Adds a column to the factorisation, by Gram-Schmidt done twice (Giraud et al. 2005: orthogonal to rounding). Returns
-   0, and adds nothing, where too little of it is new. */
-static int append(spari_accelerator *a, int slot) {
+   0, and adds nothing, where too little of it is new: no more than `filter`. */
+static int append(spari_accelerator *a, int slot, double filter) {
     int k = a->used;
     if (k == a->set.columns) {
         return 0;
@@ -222,7 +222,7 @@ static int append(spari_accelerator *a, int slot) {
         }
     }
     r[k] = size_in(q, p, a->n);
-    if (!(r[k] > a->set.filter * whole) || !isfinite(r[k])) {
+    if (!(r[k] > filter * whole) || !isfinite(r[k])) {
         return 0;
     }
     for (int64_t i = 0; i < a->n; i++) {
@@ -232,6 +232,11 @@ static int append(spari_accelerator *a, int slot) {
     a->order[k] = slot;
     a->used++;
     return 1;
+}
+
+/* Of what is new in a column less than the fluid's scatter is that. */
+static double least_new(const spari_accelerator *a) {
+    return a->imaged ? fmax(a->set.filter, a->scatter) : a->set.filter;
 }
 
 static int newest_before(const spari_accelerator *a, int64_t serial) {
@@ -260,7 +265,7 @@ static void factor_columns(spari_accelerator *a) {
     for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
         serial = a->column[s].serial;
         int full = a->used == a->set.columns;
-        if (!append(a, s)) {
+        if (!append(a, s, least_new(a))) {
             a->dropped += !full;
             if (a->scatter <= QUIET) {
                 drop_column(a, s);
@@ -336,7 +341,7 @@ static void add_column(spari_accelerator *a, const double *x, const double *g, c
         note_scatter(a, s);
     }
     a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt};
-    if (!append(a, s)) {
+    if (!append(a, s, least_new(a))) {
         factor_columns(a);
     }
 }
@@ -885,7 +890,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     }
     a->used = 0;
     for (int j = 0; j < used; j++) { /* in the order of the first time: the same bits */
-        (void)append(a, (int)state[j]);
+        (void)append(a, (int)state[j], 0);
     }
     return 1;
 }
