@@ -64,6 +64,14 @@ if(TARGET spar_fortran AND EXISTS "${here}/fortran/main.f90")
   endif()
 endif()
 
+find_program(SPAR_DPKG_SHLIBDEPS dpkg-shlibdeps)
+find_program(SPAR_FILE file) # CPack asks it what is a library
+mark_as_advanced(SPAR_DPKG_SHLIBDEPS SPAR_FILE)
+if(SPAR_DPKG_SHLIBDEPS AND SPAR_FILE AND SPAR_PKG_CONFIG)
+  spar_package_test(deb sh "${here}/deb.sh" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}" "${work}/deb" "${CMAKE_CPACK_COMMAND}"
+    "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}")
+endif()
+
 check_language(CXX)
 if(CMAKE_CXX_COMPILER)
   set(mpi_flags)

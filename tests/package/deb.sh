@@ -1,0 +1,25 @@
+#!/bin/sh
+# deb.sh <source> <build> <work> <cpack> <compiler> <release>: the three Debian packages, unpacked side by side, are an installation
+# that a host builds and runs with; each has its files, its licence, and says what it needs.
+set -eu
+source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6
+rm -rf "$work"
+mkdir -p "$work/root"
+"$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
+for package in libspar1 libspar-dev spar-doc; do
+    file=$(find "$work" -maxdepth 1 -name "${package}_${release}_*.deb")
+    [ -n "$file" ] || { echo "no $package of release $release"; ls "$work"; exit 1; }
+    [ "$(dpkg-deb -f "$file" Package)" = "$package" ]
+    dpkg-deb -c "$file" | sed 's, -> .*,,; s,.* \./,,' | grep -v '/$' >"$work/$package.files"
+    grep -q "usr/share/doc/$package/copyright" "$work/$package.files" || { echo "$package has no licence"; exit 1; }
+    dpkg-deb -x "$file" "$work/root"
+    echo "$package: $(wc -l <"$work/$package.files") files; needs $(dpkg-deb -f "$file" Depends)"
+done
+# nothing is in two packages, and nothing that an installation has is in none
+sort "$work"/*.files | uniq -d >"$work/twice"
+[ ! -s "$work/twice" ] || { echo "in two packages:"; cat "$work/twice"; exit 1; }
+[ "$(grep -v /doc/ "$work/libspar1.files" | grep -vE 'lib/libspar\.so\.[0-9.]+$|lib/[a-z0-9_-]+/libspar\.so\.[0-9.]+$')" = "" ]
+dpkg-deb -f "$work"/libspar1_*.deb Depends | grep -q libgsl
+dpkg-deb -f "$work"/libspar-dev_*.deb Depends | grep -q "libspar1 (= $release)"
+sh "$source/tests/package/pkgconfig.sh" "$work/root/usr" "$work/consumer" "$compiler" "$source/tests/package/c/main.c" spar
+rm -rf "$work/_CPack_Packages"
