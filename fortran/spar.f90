@@ -207,7 +207,8 @@ module spar
     procedure :: exists => joint_exists
     procedure :: c_handle => joint_handle
     procedure :: set_frame => joint_set_frame
-    procedure :: set_spring => joint_set_spring
+    procedure, private :: joint_set_spring, joint_at_node_64, joint_at_node_32
+    generic :: set_spring => joint_set_spring, joint_at_node_64, joint_at_node_32
     procedure :: set_line_spring => joint_set_line_spring
     procedure :: set_driven => joint_set_driven
     procedure :: drive => joint_drive
@@ -1794,6 +1795,35 @@ contains
 
     call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
   end subroutine joint_set_spring
+
+  ! A joint of one node with the ground, made with its springs.
+  subroutine joint_at_node_64(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int64_t), intent(in) :: node
+    integer(c_int), intent(in) :: free_motions
+    real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    made = c_null_ptr
+    status = spar_member_set_spring(member%handle, node - 1, free_motions, stiffness, damping, preload, made)
+    call joint_take(self, made, member%session, status)
+    call finish(status, member%session, stat, errmsg)
+  end subroutine joint_at_node_64
+
+  subroutine joint_at_node_32(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int), intent(in) :: node, free_motions
+    real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call joint_at_node_64(self, member, int(node, c_int64_t), free_motions, stiffness, damping, preload, stat, errmsg)
+  end subroutine joint_at_node_32
 
   subroutine joint_set_line_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self

@@ -650,6 +650,16 @@ module spar_c
       integer(c_int) :: status
     end function spar_joint_set_spring
 
+    function spar_member_set_spring(member, node, free_motions, stiffness, damping, preload, joint) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: node
+      integer(c_int), value :: free_motions
+      real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+      type(c_ptr), intent(inout) :: joint
+      integer(c_int) :: status
+    end function spar_member_set_spring
+
     function spar_joint_set_driven(joint, mask) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: joint

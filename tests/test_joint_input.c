@@ -110,6 +110,38 @@ static void test_describe(void **state) {
     still_sound(&y);
 }
 
+/* The short form says what the long one does: one body on each, the same motion to the bit; what it refuses leaves no
+   joint, so that the name is free. */
+static void test_short_form(void **state) {
+    (void)state;
+    const double J[3] = {1, 2, 3}, x[2][3] = {{0, 0, 0}, {0, 0, 0}}, preload[6] = {0, 3, 0, 0, 0, 0};
+    double mass[36], K[36] = {0}, C[36] = {0}, z[2][6];
+    yard y = {.s = scene_session()};
+    spar_joint *j[2] = {NULL, NULL};
+    scene_mass(mass, 2, zero, J);
+    for (int k = 0; k < 2; k++) {
+        OK(y.s, spar_rigid_create(y.s, k ? "b" : "a", x[k], upright, mass, &y.body[k]));
+        OK(y.s, spar_member_commit(y.body[k]));
+    }
+    K[7] = 50, C[7] = 1;
+    REFUSED(y, spar_member_set_spring(y.body[0], 0, SPAR_FREE_X, K, C, preload, &j[0]), SPAR_ERR_ARGUMENT,
+            "'a.0': stiffness has 50 on y, which the joint holds");
+    REFUSED(y, spar_member_set_spring(y.body[0], 0, 64, K, C, preload, &j[0]), SPAR_ERR_ARGUMENT, "free is 64");
+    REFUSED(y, spar_member_set_spring(y.body[0], 1, 2, K, C, preload, &j[0]), SPAR_ERR_ARGUMENT, "there is no node 1");
+    OK(y.s, spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, preload, &j[0]));
+    REFUSED(y, spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL), SPAR_ERR_ARGUMENT,
+            "there is a joint 'a.0' already");
+    OK(y.s, spar_joint_create(y.s, "b.0", y.body[1], 0, NULL, 0, SPAR_FREE_Y, &j[1]));
+    OK(y.s, spar_joint_set_spring(j[1], K, C, preload));
+    scene_run(y.s, 0.05, 30);
+    for (int k = 0; k < 2; k++) {
+        OK(y.s, spar_joint_get_motion(j[k], z[k], NULL, NULL));
+    }
+    assert_memory_equal(z[0], z[1], sizeof z[0]);
+    assert_true(z[0][1] > 0.01);
+    spar_session_destroy(&y.s);
+}
+
 /* Two places that are to be one are 5 m apart; the step says so, and goes on once the joint is placed elsewhere. */
 static void test_contradiction(void **state) {
     (void)state;
@@ -175,7 +207,8 @@ static void test_drive_in_step(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),           cmocka_unit_test(test_describe), cmocka_unit_test(test_contradiction),
-        cmocka_unit_test(test_two_nodes_of_one), cmocka_unit_test(test_late),     cmocka_unit_test(test_drive_in_step),
+        cmocka_unit_test(test_two_nodes_of_one), cmocka_unit_test(test_late),     cmocka_unit_test(test_short_form),
+        cmocka_unit_test(test_drive_in_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

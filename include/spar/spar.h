@@ -627,6 +627,15 @@ SPAR_API int spar_joint_set_frame(spar_joint *joint, const double x[3], const do
    Local, the same on every rank. */
 SPAR_API int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
                                    const double preload[6]);
+/* The short form: a joint of one node with the ground, at the node and in its section axes (a rigid body's own). What
+   spar_joint_create, with the name "MEMBER.NODE", and spar_joint_set_spring do in one call. Before the first step.
+     node: in
+     free_motions: in, SPAR_FREE_* or-ed; the others are held: a cylinder in a stream has SPAR_FREE_Y
+     stiffness, damping, preload: in, as in spar_joint_set_spring
+     joint: out, NULL: not wanted
+   Local, the same on every rank. */
+SPAR_API int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, const double stiffness[36],
+                                    const double damping[36], const double preload[6], spar_joint **joint);
 /* Which of the free motions spar_joint_drive moves. They begin as the members do. Before the first step.
      mask: in, SPAR_FREE_* or-ed, of the free ones
    Local. */

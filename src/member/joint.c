@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "edge.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,28 +167,59 @@ static int check_spring(const spar_joint *j, const char *call, const char *what,
     return SPAR_OK;
 }
 
+/* All of a spring that a joint may be given. */
+static int check_springs(const spar_joint *j, const char *call, const double *stiffness, const double *damping,
+                         const double *preload) {
+    SPARI_TRY(check_spring(j, call, "stiffness", stiffness));
+    SPARI_TRY(check_spring(j, call, "damping", damping));
+    if (preload) {
+        SPARI_TRY(spari_need_finite(j->session, call, j->name, "preload", 6, preload));
+    }
+    for (int i = 0; i < 6 && preload; i++) {
+        SPARI_REQUIRE(j->session, preload[i] == 0 || (j->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+                      "%s: '%s': preload has %g on %s, which the joint holds", call, j->name, preload[i],
+                      motion_name[i]);
+    }
+    return SPAR_OK;
+}
+
+static void take_springs(spar_joint *j, const double *stiffness, const double *damping, const double *preload) {
+    static const double none[36] = {0};
+    memcpy(j->stiffness, stiffness ? stiffness : none, sizeof j->stiffness);
+    memcpy(j->damping, damping ? damping : none, sizeof j->damping);
+    memcpy(j->preload, preload ? preload : none, sizeof j->preload);
+    j->sprung = stiffness || damping || preload;
+}
+
 int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
                           const double preload[6]) {
     SPARI_QUIET;
     SPARI_TRY(need_joint(joint, __func__));
-    spar_session *s = joint->session;
-    SPARI_REQUIRE(s, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line; call spar_line_set_spring", __func__,
-                  joint->name);
-    SPARI_TRY(check_spring(joint, __func__, "stiffness", stiffness));
-    SPARI_TRY(check_spring(joint, __func__, "damping", damping));
-    if (preload) {
-        SPARI_TRY(spari_need_finite(s, __func__, joint->name, "preload", 6, preload));
-        for (int i = 0; i < 6; i++) {
-            SPARI_REQUIRE(s, preload[i] == 0 || (joint->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
-                          "%s: '%s': preload has %g on %s, which the joint holds", __func__, joint->name, preload[i],
-                          motion_name[i]);
-        }
+    SPARI_REQUIRE(joint->session, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line; call spar_line_set_spring",
+                  __func__, joint->name);
+    SPARI_TRY(check_springs(joint, __func__, stiffness, damping, preload));
+    take_springs(joint, stiffness, damping, preload);
+    return SPAR_OK;
+}
+
+int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, const double stiffness[36],
+                           const double damping[36], const double preload[6], spar_joint **joint) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_member(member, __func__));
+    spar_session *s = member->session;
+    char name[SPARI_MESSAGE_SIZE];
+    spar_joint *j = NULL;
+    (void)snprintf(name, sizeof name, "%.1000s.%lld", member->name, (long long)node);
+    SPARI_REQUIRE(s, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name, free_motions);
+    const spar_joint probe = {.session = s, .name = name, .tie.free = free_motions};
+    SPARI_TRY(check_springs(&probe, __func__, stiffness, damping, preload));
+    SPARI_TRY(joint_create(s, __func__, name, member, node, NULL, 0, &j));
+    j->tie.free = free_motions;
+    take_springs(j, stiffness, damping, preload);
+    if (joint) {
+        *joint = j;
     }
-    static const double none[36] = {0};
-    memcpy(joint->stiffness, stiffness ? stiffness : none, sizeof joint->stiffness);
-    memcpy(joint->damping, damping ? damping : none, sizeof joint->damping);
-    memcpy(joint->preload, preload ? preload : none, sizeof joint->preload);
-    joint->sprung = stiffness || damping || preload;
     return SPAR_OK;
 }
 

@@ -111,6 +111,26 @@ void do_spar_line_set_spring(call *c) {
     RUN(c, spar_line_set_spring(j->j, k, d, length, slack));
 }
 
+void do_spar_member_set_spring(call *c) {
+    static const int masks[] = {2, 16, 63, 7};
+    live_joint *at = free_joint(c);
+    if (!at) {
+        return;
+    }
+    live_member *m = arg_member(c, -1);
+    int64_t node = arg_node(c, m);
+    int mask = odd(c) ? arg_int(c, -1, 64) : masks[below(c, 4)], nowhere = chance(c, 20);
+    const live_joint as = {.free_motions = mask};
+    text(c, ", %lld, %d", (long long)node, mask);
+    double *K = arg_spring(c, &as, 100), *D = arg_spring(c, &as, 5);
+    spar_joint *j = NULL;
+    text(c, ", NULL, %s", nowhere ? "NULL" : "&j");
+    RUN(c, spar_member_set_spring(m->m, node, mask, K, D, NULL, nowhere ? NULL : &j));
+    if (!nowhere) {
+        joint_made(c, at, j, m->session, 0, mask);
+    }
+}
+
 void do_spar_joint_set_driven(call *c) {
     live_joint *j = arg_joint(c, JOINT_ANY);
     int mask = odd(c) ? arg_int(c, -1, 64) : j->free_motions & (int)(word(c) & 63);

@@ -115,6 +115,7 @@ enum {
     CALL(spar_line_create, 40, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_frame, 60, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_spring, 50, FUZZ_CHANGES)                                                                      \
+    CALL(spar_member_set_spring, 30, FUZZ_CHANGES)                                                                     \
     CALL(spar_line_set_spring, 50, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_joint_drive, 60, FUZZ_CHANGES)                                                                           \
