@@ -718,6 +718,32 @@ static void test_nothing_to_try(void **state) {
     spar_session_destroy(&s);
 }
 
+static int idle(spar_session *s, double t, double dt, int iteration, void *context) {
+    (void)s, (void)t, (void)dt, (void)iteration, (void)context;
+    return 0;
+}
+
+/* Loads that the host cannot give, whatever status it names, end a trial before it begins: that status, or that there
+   is no reference run. "A peer failed" is one of them, also where there is no other rank. */
+static void test_loads_that_are_not_there(void **state) {
+    (void)state;
+    for (int why = SPAR_ERR_ARGUMENT; why <= SPAR_ERR_USER; why++) {
+        double K[36], M[36], advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
+        spar_fluid *f = NULL;
+        spar_session *s = scene_session();
+        scene_diagonal(K, 100, 100, 100, 100, 100, 100);
+        scene_diagonal(M, 1, 1, 1, 1, 1, 1);
+        spar_member *beam = scene_beam(s, "beam", 1, 4, 1, K, M);
+        OK(s, spar_member_commit(beam));
+        OK(s, spar_fluid_create(beam, "air", &f));
+        OK(s, spar_fluid_fail(f, why, "the solver has stopped"));
+        assert_int_equal(spar_session_try(s, 0.01, 8, NULL, idle, NULL, 0, SPAR_TRY_COUNT, report), why);
+        int status = spar_session_advise(s, 0.1, 0.01, 8, NULL, idle, NULL, SPAR_ADVICE_COUNT, advice);
+        assert_true(status == why || status == SPAR_ERR_NUMERIC);
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_goes_back_to_the_bit),
@@ -737,6 +763,7 @@ int main(void) {
         cmocka_unit_test(test_destroyed_within),
         cmocka_unit_test(test_capacities),
         cmocka_unit_test(test_nothing_to_try),
+        cmocka_unit_test(test_loads_that_are_not_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

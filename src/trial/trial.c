@@ -453,10 +453,10 @@ static int share_failure(spar_session *s, int own) {
                    : spari_fail(s, SPAR_ERR_PEER, "another rank has no memory for a trial run, or no file");
     }
     int shared = SPAR_OK + 1;
-    while (there[shared] == 0 || shared == SPAR_ERR_PEER) {
+    while (shared < CODES && (there[shared] == 0 || shared == SPAR_ERR_PEER)) {
         shared++;
     }
-    return shared;
+    return shared < CODES ? shared : SPAR_ERR_PEER; /* a host may say of its fluid, on all ranks, that a peer failed */
 }
 
 int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
