@@ -452,6 +452,81 @@ static void test_taut_lines(void **state) {
     spar_session_destroy(&s);
 }
 
+/* ---- constraints ---- */
+
+enum { CHAIN = 4 };
+
+/* Links of 0.5 m and 1 kg that hang on hinges about y and z in turn, the lowest welded; a load pushes the last aside.
+ */
+static spar_session *hang_chain(spar_joint *joint[CHAIN]) {
+    const double down[3] = {0, 0, -0.25}, J[3] = {0.02, 0.03, 0.01}, push[6] = {0.3, 0.2, 0, 0, 0, 0.01};
+    double mass[36];
+    spar_session *s = scene_session();
+    spar_member *above = NULL, *link = NULL;
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
+    scene_mass(mass, 1, down, J);
+    for (int k = 0; k < CHAIN; k++) {
+        const double x[3] = {0, 0, -0.5 * k};
+        OK(s, spar_rigid_create(s, (const char *[]){"first", "second", "third", "fourth"}[k], x, upright, mass, &link));
+        OK(s, spar_member_commit(link));
+        joint[k] = tie(s, (const char *[]){"1", "2", "3", "4"}[k], link, 0, above, 0,
+                       k == CHAIN - 1 ? 0
+                       : k % 2        ? SPAR_FREE_RX
+                                      : SPAR_FREE_RY);
+        OK(s, spar_joint_set_frame(joint[k], x, NULL));
+        above = link;
+    }
+    OK(s, spar_member_set_load(link, 0, SPAR_LOAD_DEAD, push));
+    return s;
+}
+
+/* How far the worst hold is off, m and rad, and m/s and rad/s. */
+static double worst_hold(spar_session *s, spar_joint *const joint[CHAIN]) {
+    double worst = 0;
+    for (int k = 0; k < CHAIN; k++) {
+        double z[6], rate[6];
+        int free_motion = k == CHAIN - 1 ? -1 : k % 2 ? 3 : 4;
+        OK(s, spar_joint_get_motion(joint[k], z, rate, NULL));
+        for (int i = 0; i < 6; i++) {
+            worst = i == free_motion ? worst : fmax(worst, fmax(fabs(z[i]), fabs(rate[i])));
+        }
+    }
+    return worst;
+}
+
+/* Whatever the step, a microsecond or a second, holds hold in place and rate: 1e-12, and the chain moves. */
+static void test_any_step(void **state) {
+    (void)state;
+    for (double dt = 1e-6; dt < 2; dt *= 10) {
+        spar_joint *joint[CHAIN];
+        double z[6];
+        spar_session *s = hang_chain(joint);
+        OK(s, spar_session_set_integrator(s, 0.8, 1));
+        for (int i = 0; i < 20; i++) {
+            OK(s, spar_step(s, dt, NULL, NULL, NULL));
+            assert_true(worst_hold(s, joint) < 1e-12);
+        }
+        OK(s, spar_joint_get_motion(joint[0], z, NULL, NULL));
+        assert_true(fabs(z[4]) > 1e-13 && fabs(z[4]) < 1);
+        spar_session_destroy(&s);
+    }
+}
+
+/* Nothing adds up over 1e5 steps: 1e-12 still. */
+static void test_many_steps(void **state) {
+    (void)state;
+    spar_joint *joint[CHAIN];
+    spar_session *s = hang_chain(joint);
+    OK(s, spar_session_set_integrator(s, 0.95, 1));
+    for (int i = 0; i < 100000; i++) {
+        OK(s, spar_step(s, 2e-3, NULL, NULL, NULL));
+        if (i % 1000 == 0 || i > 99990) {
+            assert_true(worst_hold(s, joint) < 1e-12);
+        }
+    }
+    spar_session_destroy(&s);
+}
+
 /* ---- energy ---- */
 
 static spar_member *make_accounted(spar_session *s, const char *name, const double x[3], double m, const double c[3],
@@ -580,6 +655,8 @@ int main(void) {
         cmocka_unit_test(test_drivetrain),
         cmocka_unit_test(test_hanging_parallelogram),
         cmocka_unit_test(test_taut_lines),
+        cmocka_unit_test(test_any_step),
+        cmocka_unit_test(test_many_steps),
         cmocka_unit_test(test_ledger),
         cmocka_unit_test(test_motor),
     };
