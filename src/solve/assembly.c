@@ -133,13 +133,16 @@ static int kept_serves(const spari_assembly *a) {
     return kept;
 }
 
-static const double SLOW_TIED = 0.5, longest_tied = 0.5;
+/* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
+   contracts by about as much. */
+static const double SLOW_TIED = 0.5, longest_tied = 0.5, near_tied = 0.01;
 enum { TIED_PATIENCE = 5 };
 
 /* One attempt from the predicted states, as alpha.c's for one member. NULL, or what went wrong. */
 static const char *attempt_all(spari_assembly *a, effort how, double s, double dt, int *iterations) {
     double last = 0, longest = how.full ? longest_tied : INFINITY;
     a->factored = how.kept && kept_serves(a);
+    a->standing = 0; /* what a solution begins with is not to depend on those before it */
     int fresh = !a->factored;
     for (int it = 1; it <= a->session->newton_max; it++, ++*iterations) {
         double noise, scale = balance(a, s, dt, &noise);
@@ -159,6 +162,8 @@ static const char *attempt_all(spari_assembly *a, effort how, double s, double d
             return "found a singular tangent";
         }
         double correction = correct(a, longest);
+        a->moved += correction;
+        a->standing = a->standing && a->moved < near_tied;
         for (int i = 0; i < a->limbs; i++) {
             a->limb[i].solver->newton++;
         }

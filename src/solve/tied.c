@@ -54,6 +54,7 @@ static void turn_block(const double *row, const double *column, int stride, doub
 }
 
 void spari_tied_keep(spari_assembly *a) {
+    a->standing = 0;
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
         memset(l->turning, 0, sizeof l->turning);
@@ -162,9 +163,13 @@ static int factor_system(spari_assembly *a) {
 
 int spari_tied_solve(spari_assembly *a, double cv) {
     size_t band = (size_t)a->band;
-    fill_system(a, cv);
-    if (factor_system(a)) {
-        return 1;
+    if (!a->standing || fabs(a->cv - cv) > 0) {
+        a->standing = 0;
+        fill_system(a, cv);
+        if (factor_system(a)) {
+            return 1;
+        }
+        a->standing = 1, a->cv = cv, a->moved = 0;
     }
     for (int i = 0; i < a->limbs; i++) {
         const spari_limb *p = a->limb + i;
@@ -241,6 +246,7 @@ static double slip_of(const spari_link *l, const double *x, int k) {
    motion is given a little stiffness, so that there are factors. 0 or 1. */
 static int free_motion(spari_assembly *a) {
     const size_t band = (size_t)a->band;
+    a->standing = 0;
     fill_system(a, 0);
     for (int i = 0; i < a->limbs; i++) {
         for (int k = 0; k < 6 * a->limb[i].solver->condensed->ends; k++) {

@@ -44,7 +44,9 @@ struct spari_assembly {
     spari_limb *limb;
     spari_link *link; /* on every rank; what follows is the owner's */
     int n, band, factored;
-    double scale; /* of the constraints' rows */
+    int standing;     /* the system below is factored, for the tangents there are and this cv, */
+    double cv, moved; /* and the parts' way since; only within a solution */
+    double scale;     /* of the constraints' rows */
     gsl_matrix *A;
     gsl_vector_uint *swap;
     double *x;
