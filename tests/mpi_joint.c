@@ -263,6 +263,59 @@ static void from_file(void **state) {
     }
 }
 
+static int drive_next(spar_session *s, double t, double dt, void *context) {
+    (void)s, (void)dt;
+    drive(context, (int)lround(t / step));
+    return 0;
+}
+
+/* Trials over all ranks leave nothing behind, before the first step and after some. */
+static void trials(void **state) {
+    (void)state;
+    for (int first = 0; first <= 4; first += 4) {
+        scene all, alone;
+        double seen[SPAR_TRY_COUNT];
+        begin_both(&all, &alone, 0);
+        run_both(&all, &alone, 0, first, 0);
+        OK(all.session, spar_session_try(all.session, step, 8, drive_next, solve, &all, 0, SPAR_TRY_COUNT, seen));
+        same(&all, &alone, 0);
+        run_both(&all, &alone, first, 3, 0);
+        end_both(&all, &alone);
+    }
+}
+
+/* Advice within a run comes into force on all ranks: tied members are made anew on their owner, joints hold and know
+   their turns. */
+static void advised(void **state) {
+    (void)state;
+    scene all;
+    double advice[SPAR_ADVICE_COUNT], z[6];
+    int64_t nodes = 8;
+    begin(&all, size);
+    ready(&all, rank, size, 1);
+    spar_session *s = all.session;
+    for (int i = 0; i < 12; i++) {
+        drive(&all, i);
+        OK(s, spar_step(s, step, solve, &all, NULL));
+        if (i == 3) {
+            OK(s, spar_session_set_option(s, "advise.dt", "keep"));
+            OK(s, spar_session_set_option(s, "advise.coupling", "keep"));
+            OK(s, spar_session_set_option(s, "advise.fidelity", "keep"));
+            OK(s, spar_session_advise(s, 0.3, step, 8, drive_next, solve, &all, SPAR_ADVICE_COUNT, advice));
+            OK(s, spar_session_apply_advice(s, NULL));
+        }
+    }
+    OK(s, spar_member_get_count(all.member[0], &nodes));
+    assert_true(nodes < 8);
+    OK(s, spar_joint_get_motion(all.joint[0], z, NULL, NULL));
+    for (int k = 0; k < 6; k++) {
+        assert_true(k == 4 || fabs(z[k]) < fmax(1e-11, advice[SPAR_ADVICE_NEWTON_RTOL]));
+    }
+    OK(s, spar_joint_get_motion(all.joint[2], z, NULL, NULL));
+    NEAR(z[5], 4 * 12 * step, 1e-11);
+    spar_session_destroy(&all.session);
+}
+
 /* The host's owner stands; two of them in one assembly are refused on all ranks, and it goes on with other members. */
 static void given_owners(void **state) {
     (void)state;
@@ -342,6 +395,7 @@ static void fails_on_owner(void **state) {
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),   cmocka_unit_test(nearly_the_same),
                                        cmocka_unit_test(at_rest),     cmocka_unit_test(from_file),
+                                       cmocka_unit_test(trials),      cmocka_unit_test(advised),
                                        cmocka_unit_test(all_at_rest), cmocka_unit_test(given_owners),
                                        cmocka_unit_test(otherwise),   cmocka_unit_test(fails_on_owner)};
     int failed, worst = 0;

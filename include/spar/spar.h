@@ -599,9 +599,10 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
    is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
    In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
-   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members and trials
-   answer SPAR_ERR_UNSUPPORTED with joints. spar_member_solve_static solves for all that a member is tied to;
-   where nothing holds an assembly, the message names the motion that is free. */
+   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members answer
+   SPAR_ERR_UNSUPPORTED with joints. In a trial, and with advice in force, a beam may have other nodes: its joints stay
+   where they are, at ends of elements; a beam held within an element keeps its nodes. spar_member_solve_static solves
+   for all that a member is tied to; where nothing holds an assembly, the message names the motion that is free. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied

@@ -446,13 +446,6 @@ void spari_joint_drive_at(const spar_joint *j, double s, double dt, spari_driven
     }
 }
 
-int spari_joints_refuse(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->joints, SPAR_ERR_UNSUPPORTED,
-                  "%s: the session has joints ('%s' is one), with which this does not work in this release", call,
-                  s->joints->name);
-    return SPAR_OK;
-}
-
 void spari_joint_hold(spar_joint *j) {
     if (j->driven && !j->drive_given) {
         memcpy(j->drive[1].z, j->drive[0].z, sizeof j->drive[1].z);

@@ -80,8 +80,6 @@ void spari_joint_places(const spar_joint *joint, spari_place place[2]);
 void spari_joint_acceleration(const spar_joint *joint, double acceleration[6]);
 /* load[6] += what the joints put on a node of a member, in the motion after. */
 void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
-/* SPAR_ERR_UNSUPPORTED where the session has joints: what does not know them yet. */
-int spari_joints_refuse(spar_session *session, const char *call);
 void spari_joint_free(spar_joint *joint);
 
 #endif

@@ -72,14 +72,25 @@ static void copy_loads(const spar_member *m, const double *from, double *to) {
     memcpy(to, from, (size_t)(6 * m->nodes) * sizeof *to);
 }
 
-/* What the owner's solvers keep of a member (NULL: of all), to be put back where no equilibrium is found: each with its
-   length in front. */
-static int put_aside(spar_session *s, const spar_member *only, double **aside) {
+static int is_of(const spar_member *only, const spari_assembly *a) {
+    return !only || only->assembly == a;
+}
+
+static int64_t size_aside(const spar_session *s, const spar_member *only) {
     int64_t n = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         n += is_with(only, m) ? 1 + spari_fidelity_state_size(m) : 0;
     }
-    double *at = *aside = spari_zalloc(n, sizeof *at);
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        n += is_of(only, a) ? 1 + spari_assembly_state_size(a) : 0;
+    }
+    return n;
+}
+
+/* What the owner's solvers keep of a member and of all that it is tied to (NULL: of all), to be put back where no
+   equilibrium is found: each with its length in front. */
+static int put_aside(spar_session *s, const spar_member *only, double **aside) {
+    double *at = *aside = spari_zalloc(size_aside(s, only), sizeof *at);
     SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
     for (const spar_member *m = s->members; m; m = m->next) {
         if (!is_with(only, m)) {
@@ -88,6 +99,16 @@ static int put_aside(spar_session *s, const spar_member *only, double **aside) {
         *at = (double)spari_fidelity_state_size(m);
         if (*at > 0) {
             m->row->save(m, at + 1);
+        }
+        at += 1 + (int64_t)*at;
+    }
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        if (!is_of(only, a)) {
+            continue;
+        }
+        *at = (double)spari_assembly_state_size(a);
+        if (*at > 0) {
+            spari_assembly_save(a, at + 1);
         }
         at += 1 + (int64_t)*at;
     }
@@ -101,6 +122,15 @@ static void put_back(spar_session *s, const spar_member *only, const double *asi
         }
         if (*aside > 0) {
             m->row->load(m, aside + 1);
+        }
+        aside += 1 + (int64_t)*aside;
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        if (!is_of(only, a)) {
+            continue;
+        }
+        if (*aside > 0) {
+            spari_assembly_load(a, aside + 1);
         }
         aside += 1 + (int64_t)*aside;
     }

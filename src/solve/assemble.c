@@ -54,9 +54,6 @@ static int condense(const spar_member *m, spari_solver *solver) {
 }
 
 static void assembly_free(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].member->assembly = NULL;
-    }
     spari_tied_free(a);
     free(a->limb);
     free(a->link);
@@ -341,7 +338,6 @@ int spari_assemblies_make(spar_session *s, const char *call) {
         return SPAR_OK;
     }
     spari_assemblies_free(s);
-    s->joints_stale = 1;
     int status = agree_on_joints(s, call, make_all(s));
     for (spari_assembly *a = s->assemblies; a; a = a->next) {
         end_moves(a, status != SPAR_OK);
@@ -355,9 +351,33 @@ int spari_assemblies_make(spar_session *s, const char *call) {
 }
 
 void spari_assemblies_free(spar_session *s) {
-    while (s->assemblies) {
-        spari_assembly *a = s->assemblies;
-        s->assemblies = a->next;
+    spari_assemblies_drop(spari_assemblies_take(s));
+}
+
+spari_assembly *spari_assemblies_take(spar_session *s) {
+    spari_assembly *all = s->assemblies;
+    for (spar_member *m = s->members; m; m = m->next) {
+        m->assembly = NULL;
+    }
+    s->assemblies = NULL;
+    s->joints_stale = s->joints != NULL;
+    return all;
+}
+
+void spari_assemblies_give(spar_session *s, spari_assembly *all) {
+    spari_assemblies_free(s);
+    s->assemblies = all;
+    for (spari_assembly *a = all; a; a = a->next) {
+        for (int i = 0; i < a->limbs; i++) {
+            a->limb[i].member->assembly = a;
+        }
+    }
+}
+
+void spari_assemblies_drop(spari_assembly *all) {
+    while (all) {
+        spari_assembly *a = all;
+        all = a->next;
         assembly_free(a);
     }
 }

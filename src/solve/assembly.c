@@ -288,11 +288,11 @@ static void forget_start(spari_limb *p) {
     p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
 }
 
-/* A driven motion begins as the members do. */
+/* A driven motion begins as the members do; later it is where it was driven to. */
 static void begin_drive(spari_link *l) {
     spar_joint *j = l->joint;
     for (int k = 0; k < 6; k++) {
-        if (j->driven >> k & 1) {
+        if (j->session->step == 0 && (j->driven >> k & 1)) {
             j->drive[0].z[k] = j->after.z[k];
             j->drive[0].rate[k] = j->after.rate[k];
             j->drive[0].acceleration[k] = 0;

@@ -16,6 +16,10 @@ int spari_assemblies_make(spar_session *session, const char *call);
 /* Where joints are in the reference, as far as that comes before; local. A status and a message. */
 int spari_joints_place(spar_session *session);
 void spari_assemblies_free(spar_session *session);
+/* The session's assemblies, which it then has no more; given back in place of those it has then; or freed. */
+spari_assembly *spari_assemblies_take(spar_session *session);
+void spari_assemblies_give(spar_session *session, spari_assembly *all);
+void spari_assemblies_drop(spari_assembly *all);
 spari_assembly *spari_assembly_next(const spari_assembly *assembly);
 /* The rank that solves it. */
 int spari_assembly_owner(const spari_assembly *assembly);

@@ -246,6 +246,8 @@ void spari_assembly_settle(spari_assembly *a) {
         spar_joint *j = a->link[i].joint;
         j->now = j->after;
         j->drive[0] = j->drive[1];
+        memset(j->drive[0].rate, 0, sizeof j->drive[0].rate);
+        memset(j->drive[0].acceleration, 0, sizeof j->drive[0].acceleration);
     }
 }
 

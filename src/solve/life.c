@@ -227,6 +227,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     m->applied = m->applied_next = NULL;
     m->solution = NULL;
     m->body = NULL;
+    m->assembly = NULL;
 }
 
 void spari_member_take_back(spar_member *m, const spar_member *aside) {

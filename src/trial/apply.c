@@ -7,10 +7,12 @@
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/beam.h"
+#include "../member/joint.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
 #include "../solve/work.h"
 #include "remake.h"
+#include "retie.h"
 
 #include <stdlib.h>
 
@@ -38,6 +40,7 @@ typedef struct change {
     int64_t pack_count, *first;
     anew *made; /* [count] in their order */
     int64_t count;
+    spari_ties ties; /* of the members; laid aside where one that is tied is made anew */
 } change;
 
 static int change_create(spar_session *s, change *c) {
@@ -67,17 +70,37 @@ static int is_as_advised(const spar_member *m) {
                    (to->points == 0 || to->points == m->beam->points));
 }
 
+/* Members that are tied begin anew together: whether one of them has to. */
+static int ties_change(const spar_session *s) {
+    int any = 0;
+    for (const spar_member *m = s->members; m && s->joints; m = m->next) {
+        any = any || (!is_as_advised(m) && spari_member_is_tied(m));
+    }
+    return any;
+}
+
+static int remake_member(spar_member *m, spar_member *was) {
+    const spari_remake as_it_is = spari_remake_of(m);
+    SPARI_TRY(spari_member_remake(m, m->advice ? m->advice : &as_it_is, was));
+    SPARI_TRY(spari_ties_follow(m, was));
+    spari_work_carry(was, m);
+    return SPAR_OK;
+}
+
 static int remake_members(spar_session *s, change *c) {
+    int tied = ties_change(s);
+    if (tied) {
+        SPARI_TRY(spari_ties_lay_aside(s, &c->ties));
+    }
     for (spar_member *m = s->members; m; m = m->next) {
-        if (is_as_advised(m)) {
+        if (is_as_advised(m) && !(tied && spari_member_is_tied(m))) {
             SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             continue;
         }
         anew *a = &c->made[c->count++];
         a->member = m;
-        SPARI_TRY(spari_member_remake(m, m->advice, &a->was));
-        spari_work_carry(&a->was, m);
+        SPARI_TRY(remake_member(m, &a->was));
     }
     return SPAR_OK;
 }
@@ -133,6 +156,7 @@ static void undo(spar_session *s, change *c) {
             spari_member_restore(a->member, &a->was);
         }
     }
+    spari_ties_restore(s, &c->ties);
     swap_exchange(s->own, c);
     put_settings(s, c->before, c->past);
 }
@@ -146,6 +170,7 @@ static void confirm(spar_session *s, change *c) {
             spari_member_adopt(a->member, &a->was);
         }
     }
+    spari_ties_adopt(s, &c->ties);
     s->coupling_stale = 1;
     s->own->advised->of = spari_advised_of(s);
 }
@@ -186,6 +211,10 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
         lay_exchange_aside(s->own, &c);
         set_advised(s, &c);
         status = make_change(s, &c);
+    }
+    if (s->joints) { /* whether there are any is alike on all ranks, whether they change too where all goes well */
+        status = spari_enter(s, "advice", status);
+        status = status == SPAR_OK ? spari_assemblies_make(s, __func__) : status;
     }
     status = spari_session_seal(s, status);
     if (status == SPAR_OK) {

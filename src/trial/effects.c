@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
+#include "../member/joint.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,6 +111,9 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     }
     if (m->applied) {
         spari_applied_nodal(m, m->now.q, loads);
+    }
+    for (int64_t i = 0; i < m->nodes && m->session->joints; i++) {
+        spari_joints_on(m, i, loads + 6 * i);
     }
     sum[LOADS] += squares(loads, m->nodes, length);
     free(q);

@@ -2,6 +2,7 @@
 #include "plan.h"
 
 #include "cost.h"
+#include "retie.h"
 
 #include "../math/basis.h"
 #include "../member/beam.h"
@@ -17,7 +18,7 @@
 /* ---- plans ---- */
 
 static int is_varied(const spar_member *m) {
-    return m->kind == SPARI_BEAM && !m->external;
+    return m->kind == SPARI_BEAM && !m->external && !spari_ties_hold_within(m);
 }
 
 /* Whether two beams are copies of each other. */

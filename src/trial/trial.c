@@ -2,6 +2,7 @@
 #include "trial.h"
 
 #include "cost.h"
+#include "retie.h"
 
 #include "../base/quiet.h"
 #include "../comm/enter.h"
@@ -9,7 +10,6 @@
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
-#include "../member/joint.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
@@ -80,6 +80,7 @@ typedef struct stash {
     spari_coupling *coupling;
     spar_member *members; /* [member_count] what they were; */
     int made;             /* so many have been made anew */
+    spari_ties ties;      /* of the members */
     spar_fluid **fluids;  /* what they were, in their order */
     int fluid_count, fluids_made;
 } stash;
@@ -104,6 +105,12 @@ static int stash_create(spar_session *s, stash *t) {
         free(t->fluids);
         return spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     }
+    int status = spari_ties_lay_aside(s, &t->ties);
+    if (status != SPAR_OK) {
+        free(t->members);
+        free(t->fluids);
+        return status;
+    }
     own->coupling = NULL;
     s->coupling_stale = 1;
     own->pack = own->motion = NULL;
@@ -125,6 +132,7 @@ static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
     s->past = s->past < s->predictor ? s->past : s->predictor;
     for (spar_member *m = s->members; m; m = m->next, t->made++) {
         int status = spari_member_remake(m, wish->member + t->made, t->members + t->made);
+        status = status == SPAR_OK ? spari_ties_follow(m, t->members + t->made) : status;
         if (status != SPAR_OK) {
             t->made++;
             return status;
@@ -152,6 +160,7 @@ static void go_back(spar_session *s, stash *t) {
     for (int k = 0; k < t->made; k++, m = m->next) {
         spari_member_restore(m, t->members + k);
     }
+    spari_ties_restore(s, &t->ties);
     spari_coupling_free(&s->own->coupling);
     free(s->own->pack);
     free(s->own->first);
@@ -465,6 +474,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
     int status = stash_create(s, &t), away = status == SPAR_OK;
     status = away ? make_anew(s, &t, wish) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
     if (status == SPAR_OK) {
         status = run_there(s, run, record);
     }
@@ -488,7 +498,6 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_TRY(spari_joints_refuse(s, call));
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     for (const spar_member *m = s->members; m; m = m->next) {

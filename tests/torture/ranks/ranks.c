@@ -17,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LIMIT = 20, NODES = 4, STATE = 25 * NODES + 25 + 2, FAILURES = 20 };
+enum { LIMIT = 20, NODES = 4, STATE = 25 * NODES + 25 + 18 + 2, FAILURES = 20 };
 
 static const double dt = 0.02;
 static int rank, size;
@@ -55,6 +55,7 @@ void *__wrap_realloc(void *p, size_t n) {
 typedef struct scene {
     spar_session *session;
     spar_member *beam, *body;
+    spar_joint *rope; /* between them, on a spring: one of the ranks moves its member to the other */
     spar_fluid *fluid;
     spar_aero *aero;
     double beginning[3]; /* where the body was at t^n; unused but by the fluid */
@@ -92,6 +93,8 @@ static void ready(scene *c) {
     spar_session *s = c->session;
     MUST(s, spar_member_commit(c->beam));
     MUST(s, spar_member_commit(c->body));
+    MUST(s, spar_line_create(s, "rope", c->beam, NODES - 1, tip, c->body, 0, (double[]){0, 5, 0}, &c->rope));
+    MUST(s, spar_line_set_spring(c->rope, 2, 0.1, 9, 0));
     MUST(s, spar_fluid_create(c->beam, "tip", &c->fluid));
     MUST(s, spar_fluid_set_motion_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
     MUST(s, spar_fluid_set_force_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
@@ -150,8 +153,10 @@ static void look(const scene *c, double *out) {
     out += 25 * NODES;
     MUST(c->session, spar_member_get_motion(c->body, out, out + 7, out + 13));
     MUST(c->session, spar_member_get_loads(c->body, out + 19));
-    MUST(c->session, spar_session_get_time(c->session, out + 25, &steps, NULL));
-    out[26] = (double)steps;
+    MUST(c->session, spar_joint_get_motion(c->rope, out + 25, out + 31, NULL));
+    MUST(c->session, spar_joint_get_load(c->rope, out + 37));
+    MUST(c->session, spar_session_get_time(c->session, out + 43, &steps, NULL));
+    out[44] = (double)steps;
 }
 
 /* ---- the collective calls ---- */

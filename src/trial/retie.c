@@ -1,0 +1,78 @@
+/* Joints of members made anew: see retie.h. */
+#include "retie.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int spari_ties_lay_aside(spar_session *s, spari_ties *t) {
+    *t = (spari_ties){0};
+    if (!s->joints) {
+        return SPAR_OK;
+    }
+    t->joints = spari_zalloc(s->joint_count, sizeof *t->joints);
+    SPARI_REQUIRE(s, t->joints, SPAR_ERR_MEMORY, "no memory for the joints of a trial");
+    spar_joint *copy = t->joints;
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        *copy++ = *j;
+    }
+    t->stale = s->joints_stale;
+    t->assemblies = spari_assemblies_take(s);
+    return SPAR_OK;
+}
+
+/* The end of an element that a node is; -1: it lies within. */
+static int end_of(const spar_member *m, int64_t node) {
+    int64_t k = node % m->per_element;
+    return k == 0 ? 0 : k == m->per_element - 1 ? 1 : -1;
+}
+
+int spari_ties_follow(const spar_member *m, const spar_member *old) {
+    for (spar_joint *j = m->session->joints; j && m->per_element != old->per_element; j = j->next) {
+        for (int side = 0; side < 2; side++) {
+            if (j->member[side] != m) {
+                continue;
+            }
+            int end = end_of(old, j->node[side]);
+            SPARI_REQUIRE(m->session, end >= 0, SPAR_ERR_STATE,
+                          "joint '%s' holds node %lld of '%s', which lies within an element: the member cannot have "
+                          "other nodes; tie ends of elements",
+                          j->name, (long long)j->node[side], m->name);
+            j->node[side] = j->node[side] / old->per_element * m->per_element + (end ? m->per_element - 1 : 0);
+        }
+    }
+    return SPAR_OK;
+}
+
+void spari_ties_restore(spar_session *s, spari_ties *t) {
+    if (!t->joints) {
+        return;
+    }
+    const spar_joint *copy = t->joints;
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        *j = *copy++;
+    }
+    spari_assemblies_give(s, t->assemblies);
+    s->joints_stale = t->stale;
+    free(t->joints);
+    *t = (spari_ties){0};
+}
+
+void spari_ties_adopt(spar_session *s, spari_ties *t) {
+    const spar_joint *copy = t->joints;
+    for (spar_joint *j = s->joints; j && copy; j = j->next, copy++) { /* their account goes on */
+        memcpy(j->account, copy->account, sizeof j->account);
+    }
+    spari_assemblies_drop(t->assemblies);
+    free(t->joints);
+    *t = (spari_ties){0};
+}
+
+int spari_ties_hold_within(const spar_member *m) {
+    int within = 0;
+    for (const spar_joint *j = m->session->joints; j; j = j->next) {
+        for (int side = 0; side < 2; side++) {
+            within = within || (j->member[side] == m && end_of(m, j->node[side]) < 0);
+        }
+    }
+    return within;
+}

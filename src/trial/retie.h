@@ -1,0 +1,26 @@
+/* Joints of members made anew: they tie the nodes that stand where those of before stood, and go on from the motion and
+   the loads that they have. What they were waits in copies; the handles stay. */
+#ifndef SPARI_RETIE_H
+#define SPARI_RETIE_H
+
+#include "../solve/assembly.h"
+
+typedef struct spari_ties {
+    spar_joint *joints; /* [joint_count] as they were; NULL: there is nothing to go back to */
+    spari_assembly *assemblies;
+    int stale;
+} spari_ties;
+
+/* What the joints and assemblies are is put aside, and the session has assemblies no more. A status and a message.
+   Local, as all below. */
+int spari_ties_lay_aside(spar_session *session, spari_ties *ties);
+/* After a member has been made anew, `old` being what it was: its joints' nodes. A joint at a node that other nodes per
+   element have not is refused. The assemblies are then to be made. */
+int spari_ties_follow(const spar_member *member, const spar_member *old);
+/* As it was laid aside, after the members have been restored; or it stays as it is now. */
+void spari_ties_restore(spar_session *session, spari_ties *ties);
+void spari_ties_adopt(spar_session *session, spari_ties *ties);
+/* Whether a joint holds a node of the member within an element. */
+int spari_ties_hold_within(const spar_member *member);
+
+#endif
