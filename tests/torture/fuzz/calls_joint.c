@@ -128,6 +128,8 @@ void do_spar_member_set_spring(call *c) {
     RUN(c, spar_member_set_spring(m->m, node, mask, K, D, NULL, nowhere ? NULL : &j));
     if (!nowhere) {
         joint_made(c, at, j, m->session, 0, mask);
+    } else if (c->status == SPAR_OK) {
+        c->w->session[m->session].tied = 1;
     }
 }
 

@@ -229,6 +229,7 @@ typedef struct live_session {
     int wild; /* an odd number has been accepted: solutions may not exist */
     int logs; /* it has a log */
     long logged;
+    int tied; /* it has joints whose handles were not asked for */
 } live_session;
 typedef struct live_member {
     spar_member *m;

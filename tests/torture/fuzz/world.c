@@ -374,7 +374,7 @@ static int is_tied(const world *w, int session) {
             return 1;
         }
     }
-    return 0;
+    return w->session[session].tied;
 }
 
 static void end_session(world *w, int session) {
