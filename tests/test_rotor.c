@@ -77,7 +77,7 @@ static int run_program(const char *program, int ranks, const char *arguments, co
     if (ranks > 0) {
         snprintf(launcher, sizeof launcher, "%s %d ", ROTOR_LAUNCHER, ranks);
     }
-    snprintf(command, sizeof command, "%s%s --quiet --no-plots --out %s %s >%s.log 2>&1", launcher, program, folder,
+    snprintf(command, sizeof command, "%s'%s' --quiet --no-plots --out %s %s >%s.log 2>&1", launcher, program, folder,
              arguments, folder);
     int status = system(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

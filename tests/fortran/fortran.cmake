@@ -19,3 +19,13 @@ if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GN
   add_test(NAME fortran_types COMMAND "${CMAKE_COMMAND}" --build "${PROJECT_BINARY_DIR}" --target fortran_types)
   spar_set_test(fortran_types fortran 300)
 endif()
+
+# Each argument goes where its name says: no compiler sees two of one type exchanged.
+find_program(SPAR_AWK awk)
+mark_as_advanced(SPAR_AWK)
+if(SPAR_AWK)
+  add_test(NAME fortran_arguments COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/arguments")
+  spar_set_test(fortran_arguments fortran 30)
+  add_test(NAME fortran_arguments_fails COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/arguments_fails" "${PROJECT_BINARY_DIR}/tests/arguments_fails")
+  spar_set_test(fortran_arguments_fails fortran 60)
+endif()
