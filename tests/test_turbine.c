@@ -168,8 +168,8 @@ static double mean_of(const char *text, const char *name) {
 
 static void run_program(const char *arguments, char *text, size_t size) {
     char command[1024];
-    snprintf(command, sizeof command, "'%s' %s --quiet --no-plots --nodes 6 --dt 0.04 --out turbine_out", TURBINE_PROGRAM,
-             arguments);
+    snprintf(command, sizeof command, "'%s' %s --quiet --no-plots --nodes 6 --dt 0.04 --out turbine_out",
+             TURBINE_PROGRAM, arguments);
     FILE *out = popen(command, "r");
     assert_non_null(out);
     size_t n = fread(text, 1, size - 1, out);
