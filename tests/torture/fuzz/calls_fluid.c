@@ -104,7 +104,7 @@ void do_spar_fluid_get_member(call *c) {
 
 void do_spar_fluid_get_name(call *c) {
     live_fluid *f = arg_fluid(c);
-    RUN_VOID(c, is_text(spar_fluid_get_name(f->f)));
+    RUN_VOID(c, is_name(spar_fluid_get_name(f->f)));
 }
 
 void do_spar_fluid_fail(call *c) {

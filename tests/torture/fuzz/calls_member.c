@@ -308,7 +308,7 @@ void do_spar_member_get_session(call *c) {
 
 void do_spar_member_get_name(call *c) {
     live_member *m = arg_member(c, -1);
-    RUN_VOID(c, is_text(spar_member_get_name(m->m)));
+    RUN_VOID(c, is_name(spar_member_get_name(m->m)));
 }
 
 void do_spar_member_get_root(call *c) {

@@ -332,6 +332,7 @@ int chance(call *c, int percent); /* of anything */
 double uniform(call *c, double lo, double hi);
 int odd(call *c);                 /* is this argument to be odd? */
 void is_text(const char *answer); /* is read to its end */
+void is_name(const char *answer); /* the same */
 void text(call *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 live_session *arg_session(call *c);
