@@ -228,7 +228,6 @@ typedef struct live_session {
     int busy; /* a call on it is under way */
     int wild; /* an odd number has been accepted: solutions may not exist */
     int logs; /* it has a log */
-    int tied; /* it has a joint that nobody holds a handle of */
     long logged;
     int tied; /* it has joints whose handles were not asked for */
 } live_session;

@@ -369,9 +369,6 @@ static void unload(world *w, int session) {
 
 /* Random joints may ask for what cannot be. */
 static int is_tied(const world *w, int session) {
-    if (w->session[session].tied) {
-        return 1;
-    }
     for (int i = 0; i < JOINTS; i++) {
         if (w->joint[i].j && w->joint[i].session == session) {
             return 1;
