@@ -27,10 +27,10 @@ if(SPAR_AWK)
   spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
 endif()
 
-# the same symbols without MPI
+# the same symbols with nothing but GSL: no MPI, no OpenBLAS (the short form of tests/configurations)
 if(SPAR_MPI)
   spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
-    --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF
+    --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF -DSPAR_OPENBLAS=OFF
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
     "-DCMAKE_C_FLAGS=-O0 -g0"
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
