@@ -10,8 +10,11 @@
    axis.
    - Four-bar with a driven crank: the rocker's angle from the circle equations; spatial slider-crank on ball and
      universal joint: the slider from the rod's length. Whatever dt is.
-   - Body on springs and dampers in six directions: exp(-d t)(cos w t + d/w sin w t). */
+   - Body on springs and dampers in six directions: exp(-d t)(cos w t + d/w sin w t).
+   - The same in a fluid of ten times its mass: no more coupling iterations than where the spring is the fluid's load. */
 #include "verification.h"
+
+#include "pistons.h"
 
 #include <gsl/gsl_sf_ellint.h>
 #include <gsl/gsl_sf_elljac.h>
@@ -378,7 +381,47 @@ static void test_springs(void **state) {
     verified();
 }
 
+/* ---- a heavy fluid ---- */
+
+/* Iterations of 100 steps of a body of 2 kg in a fluid of ten times its mass, swinging by a spring of 800 N/m: a
+   joint's, or one that the fluid's load has. */
+static int iterate(int scheme, int joint) {
+    const double ratio = 10, K[36] = {[0] = 800};
+    pistons p;
+    int sum = 0;
+    pistons_create(&p, 1, &ratio);
+    p.b[0] = 30;
+    p.stiffness = joint ? 0 : 800;
+    OK(p.session, spar_session_set_integrator(p.session, 0.9, 1));
+    OK(p.session, spar_session_set_coupling(p.session, scheme, 1e-9, 1e-8, 60));
+    if (joint) {
+        spar_joint *j = NULL;
+        OK(p.session, spar_joint_create(p.session, "spring", p.body[0], 0, NULL, 0, SPAR_FREE_X, &j));
+        OK(p.session, spar_joint_set_spring(j, K, NULL, NULL));
+    }
+    for (int i = 0; i < 100; i++) {
+        int taken = 0;
+        OK(p.session, spar_step(p.session, 0.02, pistons_fluid, &p, &taken));
+        sum += taken;
+    }
+    pistons_destroy(&p);
+    return sum;
+}
+
+static void test_heavy_fluid(void **state) {
+    (void)state;
+    for (int iqn = 0; iqn <= 1; iqn++) {
+        int scheme = iqn ? SPAR_COUPLING_IQN_ILS : SPAR_COUPLING_AITKEN;
+        int sprung = iterate(scheme, 1), loaded = iterate(scheme, 0);
+        verify(iqn ? "added mass 10 on a spring, IQN-ILS: more iterations"
+                   : "added mass 10 on a spring, Aitken: more iterations",
+               fmax(0, sprung - loaded), 0, 0, "spring as the fluid's load");
+        assert_in_range(loaded, 100, 600);
+    }
+    verified();
+}
+
 VERIFICATION_MAIN("Joints", cmocka_unit_test(test_pendulum), cmocka_unit_test(test_double_pendulum),
                   cmocka_unit_test(test_spherical_pendulum), cmocka_unit_test(test_gyroscope),
                   cmocka_unit_test(test_four_bar), cmocka_unit_test(test_spatial_slider_crank),
-                  cmocka_unit_test(test_springs))
+                  cmocka_unit_test(test_springs), cmocka_unit_test(test_heavy_fluid))
