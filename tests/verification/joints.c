@@ -11,7 +11,8 @@
    - Four-bar with a driven crank: the rocker's angle from the circle equations; spatial slider-crank on ball and
      universal joint: the slider from the rod's length. Whatever dt is.
    - Body on springs and dampers in six directions: exp(-d t)(cos w t + d/w sin w t).
-   - The same in a fluid of ten times its mass: no more coupling iterations than where the spring is the fluid's load. */
+   - The same in a fluid of ten times its mass: no more coupling iterations than where the spring is the fluid's load.
+ */
 #include "verification.h"
 
 #include "pistons.h"
