@@ -486,6 +486,157 @@ static void loads_are_the_formula(void **unused) {
     }
 }
 
+/* One node's shares in the line's nodes as kernel_bins.h has them, operation by operation: bits, not only numbers. */
+static void shares_of(const scene *s, int64_t j, int consistent, int has_moment, double (*share)[6]) {
+    double phi[SPARI_MAX_NODES], chained[4 * SPARI_MAX_NODES], t[SPARI_MAX_NODES] = {1, s->xi[j]}, Q[4], r[3], a[3],
+                                                               b[3], m[3], w = 0;
+    int P = s->nodes, few = consistent && P > 1;
+    spari_chain(P, s->q[s->element[j] * P] + 3, 7, chained);
+    for (int k = 2; k < P; k++) {
+        t[k] = 2 * s->xi[j] * t[k - 1] - t[k - 2];
+    }
+    for (int l = 0; l < P; l++) {
+        phi[l] = s->modal[l];
+        for (int k = 1; k < P; k++) {
+            phi[l] += t[k] * s->modal[k * P + l];
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        Q[i] = phi[0] * chained[i];
+        for (int l = 1; l < P; l++) {
+            Q[i] += phi[l] * chained[4 * l + i];
+        }
+    }
+    double over = 1 / ((Q[0] * Q[0] + Q[1] * Q[1]) + (Q[2] * Q[2] + Q[3] * Q[3]));
+    spari_cross(Q + 1, s->con[j], a);
+    spari_cross(Q + 1, a, b);
+    for (int i = 0; i < 3; i++) {
+        r[i] = s->con[j][i] + 2 * over * (Q[0] * a[i] + b[i]);
+    }
+    spari_cross(r, s->force[j], m);
+    for (int i = 0; i < 3 && has_moment; i++) {
+        m[i] += s->moment[j][i];
+    }
+    if (few) {
+        spari_cross(m, Q + 1, b);
+        w = -(m[0] * Q[1] + m[1] * Q[2] + m[2] * Q[3]) * over;
+        for (int i = 0; i < 3; i++) {
+            m[i] = (m[i] * Q[0] + b[i]) * over;
+        }
+    }
+    for (int l = 0; l < P; l++) {
+        const double *q = chained + 4 * l;
+        spari_cross(m, q + 1, b);
+        for (int i = 0; i < 3; i++) {
+            share[l][i] = phi[l] * s->force[j][i];
+            share[l][3 + i] = phi[l] * (few ? (m[i] * q[0] - w * q[1 + i]) - b[i] : m[i]);
+        }
+    }
+}
+
+/* The nodes in another order. */
+static void reorder(scene *s, unsigned long long *seed) {
+    uint8_t *flags = calloc((size_t)s->n + 1, 1);
+    for (int64_t i = s->n - 1; i > 0; i--) {
+        int64_t j = (int64_t)(0.49999 * (1 + line_random(seed)) * (double)(i + 1));
+        int e = s->element[i];
+        double x = s->xi[i], t[3];
+        s->element[i] = s->element[j], s->element[j] = e;
+        s->xi[i] = s->xi[j], s->xi[j] = x;
+        double(*all[])[3] = {s->con, s->force, s->moment};
+        for (int k = 0; k < 3; k++) {
+            memcpy(t, all[k][i], sizeof t);
+            memcpy(all[k][i], all[k][j], sizeof t);
+            memcpy(all[k][j], t, sizeof t);
+        }
+    }
+    spari_nodes_free(s->set);
+    s->set = spari_nodes_create(s->n, s->elements, s->nodes);
+    spari_nodes_put(s->set, s->element, s->xi, s->n ? s->con[0] : NULL, flags);
+    free(flags);
+}
+
+/* Reproducible loads: bit by bit the sums of the shares, whatever the width of the vectors and the order of the nodes;
+   rounded, the loads above to the rounding of these. */
+static void reproducible_loads(void **unused) {
+    (void)unused;
+    unsigned long long seed = 41;
+    static scene s;
+    static spari_bins want[MOST][6], got[MOST][6];
+    static double plain[MOST][6], work[MOST * 14], share[SPARI_MAX_NODES][6];
+    for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 5 ? 1 : 5) {
+        for (int n = 0; n <= 600; n += n < 18 ? 1 : 194) {
+            int elements = nodes == 1 ? 1 : 1 + n % 3;
+            scene_start(&s, elements, nodes, n, &seed);
+            for (int64_t j = 0; j < n && n % 2; j++) { /* of all sizes */
+                for (int i = 0; i < 3; i++) {
+                    s.force[j][i] = ldexp(s.force[j][i], (int)(60 * line_random(&seed)));
+                }
+            }
+            for (int kind = 0; kind < 4; kind++) {
+                int consistent = kind % 2, has_moment = kind / 2, finite, size = 6 * elements * nodes;
+                const spari_source force = {.d = s.force[0]}, moment = {.d = has_moment ? s.moment[0] : NULL};
+                memset(want, 0, sizeof want);
+                for (int64_t j = 0; j < n; j++) {
+                    shares_of(&s, j, consistent, has_moment, share);
+                    for (int l = 0; l < 6 * nodes; l++) {
+                        spari_bins_add(want[s.element[j] * nodes + l / 6] + l % 6, share[l / 6][l % 6]);
+                    }
+                }
+                for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+                    s.set->lanes = widths[w];
+                    spari_bin_loads(s.set, s.modal, consistent, s.q[0], force, moment, got[0], &finite);
+                    assert_true(finite);
+                    assert_memory_equal(got, want, (size_t)size * sizeof got[0][0]);
+                    reorder(&s, &seed);
+                }
+                fill(&s, consistent, SPARI_UPTO_PLACE);
+                spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], (spari_source){.d = s.force[0]}, moment,
+                                   work, plain[0], NULL);
+                double most = 1;
+                for (int64_t j = 0; j < 3 * n; j++) {
+                    most = fmax(most, fabs(s.force[0][j]));
+                }
+                for (int i = 0; i < size; i++) {
+                    CLOSE(spari_bins_value(got[0] + i), plain[0][i], 1e-12 * (1 + n) * most);
+                }
+            }
+            scene_end(&s);
+        }
+    }
+}
+
+/* A number that is none, or a share that is too large, is seen wherever it stands; lanes past the end are not. */
+static void reproducible_loads_tell(void **unused) {
+    (void)unused;
+    enum { N = 300 };
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1.7e308};
+    unsigned long long seed = 42;
+    static scene s;
+    static spari_bins load[MOST][6];
+    int finite;
+    scene_start(&s, 2, 4, N, &seed);
+    for (int j = 0; j < N; j++) {
+        s.con[j][0] = s.con[j][1] = s.con[j][2] = 40 + j;
+    }
+    reorder(&s, &seed);
+    for (int64_t j = 0; j < N; j += 7) {
+        for (int k = 0; k < 4; k++) {
+            s.set->lanes = widths[k % 3];
+            double was = s.force[j][1];
+            s.force[j][1] = bad[k];
+            spari_bin_loads(s.set, s.modal, k % 2, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, load[0],
+                            &finite);
+            assert_false(finite);
+            s.force[j][1] = was;
+        }
+        spari_bin_loads(s.set, s.modal, 0, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, load[0],
+                        &finite);
+        assert_true(finite);
+    }
+    scene_end(&s);
+}
+
 /* Force, moment about the origin and power on either side of the map, in the current configuration, relative to the
    sums of the sizes of their terms: nothing is lost but rounding. */
 static void force_moment_and_power_are_kept(void **unused) {
@@ -589,6 +740,8 @@ int main(void) {
         cmocka_unit_test(signs_do_not_matter),
         cmocka_unit_test(velocity_is_the_derivative_of_place),
         cmocka_unit_test(loads_are_the_formula),
+        cmocka_unit_test(reproducible_loads),
+        cmocka_unit_test(reproducible_loads_tell),
         cmocka_unit_test(force_moment_and_power_are_kept),
         cmocka_unit_test(rotations_that_cancel_are_seen),
     };

@@ -763,6 +763,8 @@ TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count,
 #undef CARRY
 }
 
+#include "kernel_bins.h"
+
 #undef L
 #undef PAIR
 #undef MIX

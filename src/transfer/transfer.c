@@ -3,6 +3,7 @@
 
 #include "../base/status.h"
 #include "../math/rotation.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,6 +112,8 @@ typedef struct kernels {
                      double (*buf)[SPARI_ROW], int at);
     double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
                     double (*f)[SPARI_ROW], int at, int audited, double *modal, double *sums, double *tops);
+    int (*bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q, int consistent,
+                int has_moment, double (*f)[SPARI_ROW], int at, double *least, spari_bin_cut *cut, spari_bins *load);
     void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
     void (*store)(double (*row)[SPARI_ROW], int count, double *out);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
@@ -121,13 +124,14 @@ static kernels choose_kernels(const spari_nodes *s) {
 #ifdef SPARI_X86
     int most = s->lanes ? s->lanes : SPARI_LANES_MAX;
     if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-        return (kernels){motion_avx512, loads_avx512, carry_to_avx512, store_triples_avx512, load_triples_avx512};
+        return (kernels){motion_avx512,   loads_avx512,         bins_avx512,
+                         carry_to_avx512, store_triples_avx512, load_triples_avx512};
     }
     if (most >= 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        return (kernels){motion_avx2, loads_avx2, carry_to_avx2, store_triples_avx2, load_triples_avx2};
+        return (kernels){motion_avx2, loads_avx2, bins_avx2, carry_to_avx2, store_triples_avx2, load_triples_avx2};
     }
 #endif
-    return (kernels){motion_plain, loads_plain, carry_to_plain, store_triples_plain, load_triples_plain};
+    return (kernels){motion_plain, loads_plain, bins_plain, carry_to_plain, store_triples_plain, load_triples_plain};
 }
 
 /* ---- node sets ---- */
@@ -425,6 +429,34 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
     spread(s->elements, s->per_element, modal, consistent, q, work, load);
     if (audit) {
         finish_audit(sums, tops, audit);
+    }
+    return least;
+}
+
+double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent, const double *q, spari_source force,
+                       spari_source moment, spari_bins *load, int *finite) {
+    const kernels kernel = choose_kernels(s);
+    const int has_moment = moment.d || moment.f, P = s->per_element;
+    double f[6][SPARI_ROW] = {{0}}, chained[4 * SPARI_MAX_NODES], least = HUGE_VAL;
+    spari_bin_cut cut;
+    spari_bins_cut(0, &cut);
+    memset(load, 0, sizeof *load * 6 * (size_t)s->elements * (size_t)P);
+    *finite = 1;
+    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
+        int count = spari_tile_count(s, first);
+        fetch_rows(&kernel, s, first, count, force, f);
+        if (has_moment) {
+            fetch_rows(&kernel, s, first, count, moment, f + 3);
+        }
+        for (int at = 0; at < count;) {
+            int run = run_length(s, first + at, count - at);
+            ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * P;
+            spari_chain(P, q + 7 * node + 3, 7, chained);
+            *finite = kernel.bins(s, first + at, run, modal, chained, consistent && P > 1, has_moment, f, at, &least,
+                                  &cut, load + 6 * node) &&
+                      *finite;
+            at += run;
+        }
     }
     return least;
 }

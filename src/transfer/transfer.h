@@ -9,6 +9,7 @@
 #define SPARI_TRANSFER_H
 
 #include "../math/basis.h"
+#include "../math/bins.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -110,5 +111,11 @@ void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)
 double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,
                           const double *q, spari_source force, spari_source moment, double *work, double *load,
                           spari_audit *audit);
+
+/* The same loads as sums that depend on no order of the nodes and no width of vectors, load [nodes][6]; rounded to
+   doubles they differ from those above by rounding. *finite 0: one of the shares is not, or is too large for a double,
+   and the sums are of no use. */
+double spari_bin_loads(const spari_nodes *nodes, const double *modal, int consistent, const double *q,
+                       spari_source force, spari_source moment, spari_bins *load, int *finite);
 
 #endif
