@@ -54,9 +54,14 @@ function(spar_add_test file label timeout)
   spar_set_test(${name} ${label} ${timeout})
 endfunction()
 
-# spar_add_ranks(<target> <label> <timeout> [arguments]): the program of a target under 1, 2 and 4 ranks
+# spar_add_ranks(<target> <label> <timeout> [arguments]): the program of a target under 1, 2 and 4 ranks; where sums
+# have to have the same bits, under 3 and 7 too
 function(spar_add_ranks target label timeout)
-  foreach(ranks IN ITEMS 1 2 4)
+  set(counts 1 2 4)
+  if(target MATCHES "_sums$")
+    set(counts 1 2 3 4 7)
+  endif()
+  foreach(ranks IN LISTS counts)
     add_test(NAME ${target}_np${ranks}
       COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
               $<TARGET_FILE:${target}> ${ARGN}

@@ -217,8 +217,11 @@ SPAR_API int spar_session_get_coupling(const spar_session *session, int *scheme,
 /* omega: in, part of the change of loads that is taken in an iteration, in (0,2]; default 1. */
 SPAR_API int spar_session_set_relaxation(spar_session *session, double omega);
 SPAR_API int spar_session_get_relaxation(const spar_session *session, double *omega);
-/* on: in, 1: nodal loads come out the same to the last bit however the fluid nodes are spread over the ranks; 0
-   (default): to rounding. SPAR_ERR_UNSUPPORTED: on several ranks in this release. */
+/* on: in, 1: nodal loads come out the same to the last bit however many ranks there are, however the fluid nodes are
+   spread over them and over fluids, in whatever order they are given and whatever vectors the processor has; 0
+   (default): to rounding. A run that is saved and goes on with other ranks stays the same too, if it is on in both. It
+   has to be on when forces are pushed; with up to 2^31 force nodes of a member, rounding to the nearest, and what the
+   host pushes for a node independent of the ranks. What it costs: docs/accuracy.md. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);
 /* All other settings, by name and text. key, value: in.
@@ -825,7 +828,8 @@ SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, cons
    where the line of least squares through them ends, e^n where that of the step before did (T15): of second order in
    dt, and the parts' impulse is kept. Loads that are known at t^{n+1} itself: spar_fluid_push_forces. Not before the
    first step; otherwise as that. theta: in, in (0, 1], rising from push to push; one that does not rise begins anew
-   (the next iteration) */
+   (the next iteration)
+   SPAR_ERR_UNSUPPORTED: on several ranks with spar_session_set_reproducible, whose sums such loads have not. */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The host's model has failed on this rank: there are no loads of this fluid, for the reason given. spar_step_check (or
    the call that runs the step, or the first spar_step_begin) then fails on all ranks unless a good push follows, with

@@ -5,6 +5,7 @@
 #define SPARI_COMM_H
 
 #include "../base/status.h"
+#include "../math/bins.h"
 
 typedef struct spari_comm spari_comm;
 
@@ -67,6 +68,11 @@ int spari_comm_enter(spari_comm *comm, const char *call, const spari_alike *alik
 /* x[n] becomes its sum over the ranks, the same bits on all of them; a failing rank's x counts as zero. x must have
    room for n + 1 doubles: the last one carries the status. One message up, one down. Returns as spari_comm_agree. */
 int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
+
+/* The same for sums that are the same in any order of the ranks: x[n] becomes its sum over them, with room for n + 1 of
+   them. prepare: what it takes, before; local, again costs nothing. */
+int spari_comm_prepare_bins(spari_comm *comm, char *message, size_t size);
+int spari_comm_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size);
 
 /* Each rank owns x[first[rank] .. first[rank+1]-1] and gets all the others': the last double of each rank's own block
    carries its status (so every block has at least one). Returns as spari_comm_agree. */

@@ -13,6 +13,9 @@ typedef struct mpi_comm {
     spari_comm base;
     MPI_Comm handle; /* our own duplicate, with MPI_ERRORS_RETURN */
     int *counts, *offsets;
+    int has_bins; /* the next two are there */
+    MPI_Datatype bins;
+    MPI_Op merge;
     int gone; /* another rank has destroyed its session: there is nobody to talk to any more */
 } mpi_comm;
 
@@ -183,6 +186,10 @@ static void mpi_destroy(spari_comm *comm) {
         if (!c->gone) {
             (void)MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle);
         }
+        if (c->has_bins) {
+            (void)MPI_Op_free(&c->merge);
+            (void)MPI_Type_free(&c->bins);
+        }
         (void)MPI_Comm_free(&c->handle);
     }
     free(c->counts);
@@ -204,6 +211,46 @@ static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
         TRY_MPI(MPI_Bcast(p, part, MPI_DOUBLE, 0, c->handle));
     }
     return x[n] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
+}
+
+static void merge_bins(void *from, void *into, int *count, MPI_Datatype *type) {
+    const spari_bins *f = from;
+    spari_bins *t = into;
+    (void)type;
+    for (int i = 0; i < *count; i++) {
+        spari_bins_merge(t + i, f + i);
+    }
+}
+
+static int mpi_prepare_bins(spari_comm *comm, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    if (c->has_bins) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(check_up(c, message, size));
+    TRY_MPI(MPI_Type_contiguous((int)sizeof(spari_bins), MPI_BYTE, &c->bins));
+    int code = MPI_Type_commit(&c->bins);
+    code = code == MPI_SUCCESS ? MPI_Op_create(merge_bins, 1, &c->merge) : code;
+    if (code != MPI_SUCCESS) {
+        (void)MPI_Type_free(&c->bins);
+        return mpi_failure(code, message, size);
+    }
+    c->has_bins = 1;
+    return SPAR_OK;
+}
+
+static int mpi_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    SPARI_TRY(check_up(c, message, size));
+    if (status != SPAR_OK) {
+        memset(x, 0, (size_t)n * sizeof *x);
+    }
+    x[n] = (spari_bins){.part = {status != SPAR_OK}};
+    for (int64_t at = 0; at <= n; at += INT_MAX) { /* the same bits on all ranks, in whatever order they are added */
+        int part = (int)(n + 1 - at < INT_MAX ? n + 1 - at : INT_MAX);
+        TRY_MPI(MPI_Allreduce(MPI_IN_PLACE, x + at, part, c->bins, c->merge, c->handle));
+    }
+    return x[n].part[0] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
 }
 
 static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
@@ -238,7 +285,8 @@ static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *mess
     return SPAR_OK;
 }
 
-static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree, mpi_enter, mpi_sum, mpi_share, mpi_broadcast};
+static const spari_comm_ops mpi_ops = {mpi_destroy,      mpi_agree,    mpi_enter, mpi_sum,
+                                       mpi_prepare_bins, mpi_sum_bins, mpi_share, mpi_broadcast};
 
 /* ---- create ---- */
 

@@ -10,6 +10,8 @@ typedef struct spari_comm_ops {
     int (*enter)(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
                  size_t size);
     int (*sum)(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
+    int (*prepare_bins)(spari_comm *comm, char *message, size_t size);
+    int (*sum_bins)(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size);
     int (*share)(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
     int (*broadcast)(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
 } spari_comm_ops;

@@ -57,6 +57,14 @@ int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
     return comm->ops ? comm->ops->sum(comm, x, n, status, message, size) : status;
 }
 
+int spari_comm_prepare_bins(spari_comm *comm, char *message, size_t size) {
+    return comm->ops ? comm->ops->prepare_bins(comm, message, size) : SPAR_OK;
+}
+
+int spari_comm_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size) {
+    return comm->ops ? comm->ops->sum_bins(comm, x, n, status, message, size) : status;
+}
+
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
     return comm->ops ? comm->ops->share(comm, x, first, status, message, size) : status;
 }

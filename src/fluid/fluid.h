@@ -2,12 +2,15 @@
 #ifndef SPARI_FLUID_H
 #define SPARI_FLUID_H
 
+#include "../math/bins.h"
 #include "../member/structure.h"
 
 /* What the session asks of a fluid; the public calls are in fluid.c. */
 
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
+/* The same to reproducible sums. */
+void spari_fluid_add_bins(const spar_fluid *fluid, spari_bins *load);
 /* What of them is on node i of the member; answers 0 where there are none yet. */
 int spari_fluid_node_load(const spar_fluid *fluid, int64_t i, double load[6]);
 /* Whether the host has ever pushed loads. */

@@ -97,6 +97,7 @@ void spari_fluid_free(spar_fluid *fluid) {
         free(all[i]);
     }
     spari_parts_free(fluid->parts);
+    spari_fluid_drop_bins(fluid);
     free(fluid->why);
     free(fluid->name);
     free(fluid);
@@ -125,6 +126,7 @@ static void fall_silent(spar_fluid *fluid) {
     for (int k = 0; k < 3 && fluid->load; k++) {
         memset(load[k], 0, (size_t)(6 * fluid->member->nodes) * sizeof **load);
     }
+    spari_fluid_drop_bins(fluid);
     spari_fluid_forget_refusal(fluid);
     fluid->gone = 1;
 }

@@ -1,5 +1,6 @@
 /* Loads of the fluid's nodes, in to the members. */
 #include "../base/quiet.h"
+#include "../comm/comm.h"
 #include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "state.h"
@@ -106,15 +107,36 @@ static int check_source(const spar_fluid *fluid, const char *caller, const char 
     return x.d ? spari_fluid_check_values(fluid, caller, what, x.d, n, 3) : SPAR_OK;
 }
 
+/* The load of the nodes in load_new from sums that depend on no order. Returns the least |Q|^2. */
+static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment) {
+    int finite;
+    double least = spari_bin_loads(s, fluid->modal, fluid->consistent, fluid->member->after.q, force, moment,
+                                   fluid->bins[1], &finite);
+    for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
+        fluid->load_new[i] = finite ? spari_bins_value(fluid->bins[1] + i) : NAN;
+    }
+    return least;
+}
+
 /* The load of the nodes in load_new; SPAR_OK if it can be used. */
 static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment,
                         spari_audit *audit, const char *caller) {
     const spar_member *m = fluid->member;
-    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
-                     audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
-                     fluid->field[0]);
-    double least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,
-                                      fluid->work, fluid->load_new, audit);
+    int reproducible = m->session->reproducible;
+    double least = HUGE_VAL;
+    if (reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for reproducible sums of its loads");
+    }
+    if (audit || !reproducible) {
+        spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
+                         audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
+                         fluid->field[0]);
+        least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,
+                                   fluid->work, fluid->load_new, audit);
+    }
+    if (reproducible) {
+        least = bin_loads(fluid, s, force, moment);
+    }
     if (spari_first_nonfinite(fluid->load_new, 6 * m->nodes) >= 0) { /* only now look where it came from */
         SPARI_TRY(check_source(fluid, caller, "force of node", force, s->n));
         SPARI_TRY(check_source(fluid, caller, "moment of node", moment, s->n));
@@ -139,6 +161,12 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     SPARI_TRY(gather_loads(fluid, s, force, moment, audited ? &audit : NULL, caller));
     double *old = fluid->load;
     fluid->load = fluid->load_new, fluid->load_new = old;
+    if (fluid->member->session->reproducible) {
+        spari_bins *was = fluid->bins[0];
+        fluid->bins[0] = fluid->bins[1], fluid->bins[1] = was;
+    } else if (fluid->bins[0]) {
+        spari_fluid_drop_bins(fluid);
+    }
     if (audited) {
         write_audit(fluid, &audit, s->n);
     } else {
@@ -196,7 +224,7 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
     spari_fluid_forget_refusal(fluid);
     fluid->pushes++;
     if (session->phase == SPARI_IDLE) {
-        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
+        spari_fluid_keep_loads(fluid);
     }
     keep_forces(fluid, force);
     return SPAR_OK;
@@ -245,6 +273,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     for (int64_t i = 0; i < n; i++) {                          /* (T15) */
         fluid->load[i] = p->mean[i] + slope * (p->end[1][i] - begin[i]);
     }
+    spari_fluid_refill_bins(fluid); /* one rank: the values do not depend on the order of the nodes either */
     spari_parts_keep(p, theta);
     return SPAR_OK;
 }
@@ -263,6 +292,11 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     }
     SPARI_FLUID_REQUIRE(fluid, s->n == 0 || force, SPAR_ERR_ARGUMENT,
                         "the force array is NULL though there are force nodes");
+    SPARI_FLUID_REQUIRE(fluid,
+                        !fluid->member->session->reproducible || spari_comm_size(fluid->member->session->comm) == 1,
+                        SPAR_ERR_UNSUPPORTED,
+                        "loads over parts of a step have no sums over several ranks that are reproducible; push once a "
+                        "step (spar_fluid_push_forces), or switch spar_session_set_reproducible off");
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
     int room = spari_parts_add(fluid, s->n, theta, force, moments ? moment : NULL);
     SPARI_FLUID_REQUIRE(fluid, room == SPAR_OK, room, "no memory for loads over parts of a step");
@@ -287,12 +321,6 @@ int spari_fluid_has_loads(const spar_fluid *fluid) {
         has = fluid->load[i] != 0;
     }
     return has;
-}
-
-void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
-    for (int64_t i = 0; fluid->load && i < 6 * fluid->member->nodes; i++) {
-        load[i] += fluid->load[i];
-    }
 }
 
 int spari_fluid_node_load(const spar_fluid *fluid, int64_t i, double load[6]) {
@@ -333,9 +361,7 @@ void spari_fluid_settle(spar_fluid *fluid) {
     if (fluid->parts) {
         fluid->parts->ended = 0;
     }
-    if (fluid->load) {
-        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
-    }
+    spari_fluid_keep_loads(fluid);
     if (h && h->n > 0) {
         memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
     }
@@ -345,9 +371,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
     spari_parts_accept(fluid);
-    if (fluid->load) {
-        memcpy(fluid->load_accepted, fluid->load, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
-    }
+    spari_fluid_keep_loads(fluid);
     if (!h || h->n == 0) {
         return;
     }
@@ -363,9 +387,7 @@ void spari_fluid_reject(spar_fluid *fluid) {
     spari_fluid_forget_refusal(fluid);
     spari_parts_begin(fluid);
     fluid->asked &= fluid->asked & SPARI_HAD_LOADS ? ~0 : ~SPARI_ASKED_LOADS;
-    if (fluid->load) {
-        memcpy(fluid->load, fluid->load_accepted, sizeof *fluid->load * 6 * (size_t)fluid->member->nodes);
-    }
+    spari_fluid_revert_loads(fluid);
     if (h) {
         h->pushed = 0;
     }

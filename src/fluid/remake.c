@@ -92,6 +92,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
 static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
+    f->bins[0] = f->bins[1] = f->bins[2] = NULL; /* the values serve */
     f->history = f->history_next = NULL;
     if (same_nodes) {
         int64_t n = 6 * f->member->nodes;
@@ -180,6 +181,9 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
     drop_copy(f->load, old->load);
     drop_copy(f->load_new, old->load_new);
     drop_copy(f->load_accepted, old->load_accepted);
+    if (f->bins[0] != old->bins[0]) {
+        spari_fluid_drop_bins(f);
+    }
     if (f->parts != old->parts) {
         spari_parts_free(f->parts);
     }

@@ -3,20 +3,30 @@
 
 #include "../base/status.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A state: these, then load and load_accepted [nodes][6] if mapped; then, if loads came over parts of steps, their ends
-   at t^n and t^{n+1} [nodes][6]; then, if node forces are kept, the nodes' places,
-   their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not look so far back. */
+/* A state: these, then load and load_accepted [nodes][6] if mapped; then their reproducible sums, bit by bit, if it has
+   them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6]; then, if node forces are
+   kept, the nodes' places, their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not
+   look so far back. */
 enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = S_AUDIT + 8 };
 
 enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of parts */
 
-/* Nodal loads of a state. */
+enum { IS_MAPPED = 1, HAS_BINS = 2, /* of S_MAPPED */ BIN_WORDS = sizeof(spari_bins) / sizeof(double) };
+
+/* Words of load and load_accepted, with their sums. */
+static int64_t state_pair(const spar_fluid *fluid, const double *head) {
+    int64_t pair = head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0;
+    return head[S_MAPPED] == HAS_BINS ? pair * (1 + BIN_WORDS) : pair;
+}
+
+/* Words of all nodal loads of a state. */
 static int64_t state_loads(const spar_fluid *fluid, const double *head) {
-    return (head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0) + (head[S_PARTS] != 0 ? 12 * fluid->member->nodes : 0);
+    return state_pair(fluid, head) + (head[S_PARTS] != 0 ? 12 * fluid->member->nodes : 0);
 }
 
 static int64_t state_size(const spar_fluid *fluid, const double *head) {
@@ -30,7 +40,7 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
     head[S_KEPT] = h && s;
     head[S_PUSHED] = h && h->pushed;
     head[S_PUSHES] = (double)fluid->pushes;
-    head[S_MAPPED] = fluid->load != NULL;
+    head[S_MAPPED] = !fluid->load ? 0 : fluid->bins[0] ? HAS_BINS : IS_MAPPED;
     const spari_parts *p = fluid->parts;
     head[S_PARTS] = p ? (p->ended ? PARTS_BEFORE : 0) + (p->theta > 0 ? PARTS_NOW : 0) : 0;
     memcpy(head + S_AUDIT, fluid->audit, sizeof fluid->audit);
@@ -58,6 +68,10 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
         memcpy(at += loads, fluid->load_accepted, loads * sizeof *at);
         at += loads;
     }
+    for (int k = 0; k < 3 && state[S_MAPPED] == HAS_BINS; k += 2) {
+        memcpy(at, fluid->bins[k], loads * sizeof *fluid->bins[k]);
+        at += loads * BIN_WORDS;
+    }
     for (int k = 0; k < 2 && state[S_PARTS] != 0; k++, at += loads) {
         memcpy(at, p->end[k], loads * sizeof *at);
     }
@@ -78,10 +92,28 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     return SPAR_OK;
 }
 
+/* The sums of a state for load (0) or load_accepted (1), copied: a state need not lie where a whole number may. */
+static void state_bins(const spar_fluid *fluid, const double *state, int which, int64_t i, spari_bins *sum) {
+    int64_t loads = 6 * fluid->member->nodes;
+    memcpy(sum, state + S_HEAD + 2 * loads + (which * loads + i) * BIN_WORDS, sizeof *sum);
+}
+
+/* Whether the sums have bins that numbers can have. */
+static int are_bins(const spar_fluid *fluid, const double *state) {
+    spari_bins sum;
+    for (int64_t i = 0; state[S_MAPPED] == HAS_BINS && i < 12 * fluid->member->nodes; i++) {
+        state_bins(fluid, state, 0, i, &sum);
+        if (sum.top < 0 || sum.top > spari_bins_top(DBL_MAX)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
     return count >= S_HEAD && spari_is_count(state[S_NODES]) && spari_is_count(state[S_PUSHES]) &&
            spari_is_count(state[S_PARTS]) && state[S_PARTS] <= PARTS_BEFORE + PARTS_NOW &&
-           count == state_size(fluid, state);
+           count == state_size(fluid, state) && are_bins(fluid, state);
 }
 
 /* Of a state; 0 where their forces are not in it. */
@@ -201,6 +233,9 @@ int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const doub
             return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
         }
     }
+    if (fluid->load && fluid->member->session->reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
+    }
     if (on && s && s->n > 0 && !kept) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_ARGUMENT, call,
@@ -238,11 +273,31 @@ static void load_parts(spar_fluid *fluid, int count, const double *const *states
         for (int k = 0; k < count && takes_loads; k++) {
             const double *load = states[k] + S_HEAD + (which == 0 ? n : 0);
             const double *end = (int)states[k][S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW)
-                                    ? states[k] + S_HEAD + 2 * n + which * n
+                                    ? states[k] + S_HEAD + state_pair(fluid, states[k]) + which * n
                                     : load;
             for (int64_t i = 0; i < n && states[k][S_MAPPED] != 0; i++) {
                 p->end[which][i] = k > 0 ? p->end[which][i] + end[i] : end[i];
             }
+        }
+    }
+}
+
+/* The sum of the states' loads, as they were summed then. */
+static void load_bins(spar_fluid *fluid, int count, const double *const *states) {
+    double *value[2] = {fluid->load, fluid->load_accepted};
+    for (int which = 0; which < 2; which++) {
+        for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
+            spari_bins sum = {0}, add;
+            for (int k = 0; k < count; k++) {
+                if (states[k][S_MAPPED] == HAS_BINS) {
+                    state_bins(fluid, states[k], which, i, &add);
+                    spari_bins_merge(&sum, &add);
+                } else if (states[k][S_MAPPED] != 0) {
+                    spari_bins_add(&sum, states[k][S_HEAD + which * 6 * fluid->member->nodes + i]);
+                }
+            }
+            value[which][i] = spari_bins_value(&sum);
+            fluid->bins[2 * which][i] = sum;
         }
     }
 }
@@ -274,12 +329,15 @@ void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states,
         }
         kept |= states[k][S_KEPT] != 0;
         memcpy(fluid->audit, states[k] + S_AUDIT, sizeof fluid->audit);
-        int gives = takes_loads && fluid->load && states[k][S_MAPPED] != 0;
+        int gives = takes_loads && fluid->load && !fluid->bins[0] && states[k][S_MAPPED] != 0;
         for (size_t i = 0; gives && i < loads; i++) { /* the first as it is: 0 + -0 is not -0 */
             fluid->load[i] = taken ? fluid->load[i] + load[i] : load[i];
             fluid->load_accepted[i] = taken ? fluid->load_accepted[i] + load[loads + i] : load[loads + i];
         }
         taken |= gives;
+    }
+    if (fluid->bins[0]) {
+        load_bins(fluid, takes_loads ? count : 0, states);
     }
     if (kept && s) {
         (void)take_forces(fluid, __func__, count, states, h); /* what can be missing was looked for before */

@@ -61,6 +61,7 @@ struct spar_fluid {
     double *reference; /* of the reference configuration */
     double *work;      /* [nodes][14] */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
+    spari_bins *bins[3];                     /* reproducible sums: what these three are the values of; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];
     spari_parts *parts;                    /* of loads that come several times in a step; NULL: none ever did */
     spari_history *history, *history_next; /* NULL: not kept; next: of a file being loaded */
@@ -103,6 +104,14 @@ void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, doub
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
+/* Reproducible sums for the loads there are; nothing if they are there. SPAR_ERR_MEMORY: none, no message. */
+int spari_fluid_make_bins(spar_fluid *fluid);
+void spari_fluid_drop_bins(spar_fluid *fluid);
+/* The loads have changed: their sums, if they are kept, are of these values alone. */
+void spari_fluid_refill_bins(spar_fluid *fluid);
+/* The loads of the last push hold at t^n; they are again those that held at t^n. */
+void spari_fluid_keep_loads(spar_fluid *fluid);
+void spari_fluid_revert_loads(spar_fluid *fluid);
 /* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);

@@ -42,6 +42,23 @@ static int fits_blocks(const spar_session *s) {
     return fits;
 }
 
+static void free_bins(spar_session *s) {
+    free(s->own->bins);
+    s->own->bins = NULL;
+    s->own->bins_room = 0;
+}
+
+/* Never less room than there was: a trial goes back to members with more nodes. */
+static int make_bins(spar_session *s, int64_t count) {
+    if (s->own->bins_room < count) {
+        free_bins(s);
+        s->own->bins = spari_zalloc(count, sizeof *s->own->bins);
+        SPARI_REQUIRE(s, s->own->bins, SPAR_ERR_MEMORY, "no memory for reproducible sums over the ranks");
+        s->own->bins_room = count;
+    }
+    return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
+}
+
 int spari_session_seal(spar_session *s, int status) {
     int ranks = spari_comm_size(s->comm);
     int64_t count = 0;
@@ -71,7 +88,18 @@ int spari_session_seal(spar_session *s, int status) {
             status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the ranks exchange");
         }
     }
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    if (status == SPAR_OK && s->reproducible) {
+        status = make_bins(s, count + 2);
+    }
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    if (status != SPAR_OK) { /* on all ranks or on none: spari_session_is_sealed answers alike */
+        free_bins(s);
+    }
+    return status;
+}
+
+int spari_session_is_sealed(const spar_session *s) {
+    return !s->reproducible || s->own->bins_room >= s->own->pack_count + 2;
 }
 
 int spari_session_pushes(spar_session *s, const char *call) {
@@ -79,6 +107,23 @@ int spari_session_pushes(spar_session *s, const char *call) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         int status = spari_fluid_refused(f, &why);
         SPARI_REQUIRE(s, status == SPAR_OK, status, "%s: a push was refused, push again (%.800s)", call, why);
+    }
+    return SPAR_OK;
+}
+
+/* The sum of what the fluids have, whatever they and their nodes lie on. */
+static int sum_bins(spar_session *s, int64_t count, double pushes) {
+    spari_bins *bins = s->own->bins;
+    memset(bins, 0, (size_t)(count + 2) * sizeof *bins);
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        if (spari_fluid_member(f)->committed) {
+            spari_fluid_add_bins(f, bins + spari_fluid_member(f)->pack_at);
+        }
+    }
+    spari_bins_add(bins + count, pushes);
+    SPARI_TRY(spari_comm_sum_bins(s->comm, bins, count + 1, SPAR_OK, s->message, sizeof s->message));
+    for (int64_t i = 0; i <= count; i++) {
+        s->own->pack[i] = spari_bins_value(bins + i);
     }
     return SPAR_OK;
 }
@@ -93,11 +138,15 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
-            spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
+            if (!s->reproducible) {
+                spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
+            }
             *pushes += spari_fluid_has_loads(f);
         }
     }
-    SPARI_TRY(spari_comm_sum(s->comm, s->own->pack, s->own->pack_count + 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(s->reproducible ? sum_bins(s, s->own->pack_count, *pushes)
+                              : spari_comm_sum(s->comm, s->own->pack, s->own->pack_count + 1, SPAR_OK, s->message,
+                                               sizeof s->message));
     if (pushed) {
         *pushed = *pushes > 0;
     }

@@ -16,5 +16,7 @@ void spari_session_take_loads(const spar_session *session, const spar_member *me
 int spari_session_share_motion(spar_session *session, int status);
 /* Memory for the two calls above, for the members committed by now; agrees on a status. Collective. */
 int spari_session_seal(spar_session *session, int status);
+/* Whether that memory will do for the settings of now. Local, the same answer on all ranks. */
+int spari_session_is_sealed(const spar_session *session);
 
 #endif

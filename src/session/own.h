@@ -3,6 +3,7 @@
 #define SPARI_OWN_H
 
 #include "../base/scene.h"
+#include "../math/bins.h"
 
 typedef struct spari_record spari_record;     /* trial/trial.h */
 typedef struct spari_coupling spari_coupling; /* coupling.h */
@@ -12,6 +13,8 @@ struct spari_own {
     double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members], the fluids that
                     push, the status */
     int64_t pack_count;
+    spari_bins *bins; /* reproducible sums: of the same numbers, in their order; room for bins_room of them */
+    int64_t bins_room;
     int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
     double *motion;           /* several ranks: motion of all solved members, by owner */
     spari_coupling *coupling; /* from the first step on */

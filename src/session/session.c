@@ -85,6 +85,7 @@ void spar_session_destroy(spar_session **session) {
     }
     free(s->own->advised);
     free(s->own->pack);
+    free(s->own->bins);
     free(s->own->first);
     free(s->own->motion);
     free(s);

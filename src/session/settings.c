@@ -299,9 +299,6 @@ int spar_session_get_relaxation(const spar_session *session, double *omega) {
 }
 
 int spar_session_set_reproducible(spar_session *session, int on) {
-    SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, !on || spari_comm_size(session->comm) == 1, SPAR_ERR_UNSUPPORTED,
-                  "%s: sums over several ranks are not yet independent of how nodes are spread over them", __func__);
     return set(session, __func__, REPRODUCIBLE, (const double[]){on != 0});
 }
 

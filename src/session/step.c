@@ -79,6 +79,9 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
+    if (s->started && !spari_session_is_sealed(s)) {
+        SPARI_TRY(spari_named(s, __func__, spari_session_seal(s, SPAR_OK)));
+    }
     if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
         SPARI_TRY(spari_session_seal(s, SPAR_OK));
         int pushed = 0;

@@ -39,6 +39,14 @@ int MPI_Reduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, 
     return PMPI_Reduce(from, to, n, type, op, root, comm);
 }
 
+/* Reproducible sums are the only ones that go to all ranks at once in a type of their own. */
+int MPI_Allreduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
+    int size;
+    PMPI_Type_size(type, &size);
+    up += type == MPI_INT64_T ? 0 : n * (long long)size / (long long)sizeof(double);
+    return PMPI_Allreduce(from, to, n, type, op, comm);
+}
+
 int MPI_Allgatherv(const void *from, int n, MPI_Datatype send, void *to, const int counts[], const int offsets[],
                    MPI_Datatype type, MPI_Comm comm) {
     int ranks;
@@ -110,6 +118,7 @@ typedef struct setting {
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
     int unaudited, account;
+    int reproducible;      /* if GIVEN */
     int aero;              /* blades with sections */
     int aero_effects;      /* if GIVEN */
     int rotor, no_hub, cm; /* described */
@@ -278,6 +287,9 @@ static void make(scene *s, const setting *is) {
     if (is->unaudited) {
         MUST(spar_session_set_option(s->session, "fluid.audit", "off"));
     }
+    if (is->reproducible & GIVEN) {
+        MUST(spar_session_set_reproducible(s->session, is->reproducible & ~GIVEN));
+    }
     if (is->group) {
         MUST(spar_session_set_option(s->session, "fluid.theta", "group"));
     }
@@ -405,6 +417,12 @@ static const effect effects[] = {
      {.fluid = FLUID, .group = 1},
      {0}},
     {"audit", "write_audit", 0, {.fluid = FLUID}, {.fluid = FLUID, .unaudited = 1}, {0}},
+    {"reproducible sums",
+     "spari_bin_loads bins_plain bins_avx2 spari_bins_merge spari_bins_add",
+     NEVER,
+     {.fluid = FLUID, .reproducible = GIVEN | 1},
+     {.fluid = FLUID, .reproducible = GIVEN | 0},
+     {.fluid = FLUID}},
     {"predictor, order 1", "", 0, {.fluid = 10, .predictor = GIVEN | 1}, {.fluid = 10, .predictor = GIVEN | 0}, {0}},
     {"predictor, order 2", "", 0, {.fluid = 10, .predictor = GIVEN | 2}, {.fluid = 10, .predictor = GIVEN | 1}, {0}},
     {"iteration",
