@@ -3,7 +3,6 @@
 #include "base/scene.h"
 
 #include <cmocka.h>
-#include <gsl/gsl_errno.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -169,39 +168,10 @@ static void test_memory(void **state) {
     assert_null(spari_zalloc(INT64_MAX, 64)); /* the product overflows */
 }
 
-/* GSL's default handler would abort this process; after a create it does not. Run first: the guard acts once. */
-static void test_default_handler(void **state) {
-    (void)state;
-    spar_session *session = NULL;
-    assert_int_equal(spar_session_create(&session), SPAR_OK);
-    gsl_error("not heard", __FILE__, __LINE__, GSL_EDOM); /* comes back */
-    spar_session_destroy(&session);
-}
-
-static int heard_by_host;
-
-static void host_handler(const char *reason, const char *file, int line, int code) {
-    (void)reason, (void)file, (void)line, (void)code;
-    heard_by_host++;
-}
-
-/* A handler of the host's, set later, is not touched. */
-static void test_host_handler(void **state) {
-    (void)state;
-    spar_session *session = NULL;
-    gsl_set_error_handler(host_handler);
-    assert_int_equal(spar_session_create(&session), SPAR_OK);
-    gsl_error("for the host", __FILE__, __LINE__, GSL_EDOM);
-    assert_int_equal(heard_by_host, 1);
-    spar_session_destroy(&session);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_default_handler), cmocka_unit_test(test_host_handler),
-        cmocka_unit_test(test_texts),           cmocka_unit_test(test_features),
-        cmocka_unit_test(test_messages),        cmocka_unit_test(test_thread_message),
-        cmocka_unit_test(test_nonfinite),       cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_texts),          cmocka_unit_test(test_features),  cmocka_unit_test(test_messages),
+        cmocka_unit_test(test_thread_message), cmocka_unit_test(test_nonfinite), cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

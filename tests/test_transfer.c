@@ -595,7 +595,7 @@ static void reproducible_loads(void **unused) {
                                    work, plain[0], NULL);
                 double most = 1;
                 for (int64_t j = 0; j < 3 * n; j++) {
-                    most = fmax(most, fabs(s.force[0][j]));
+                    most = fmax(most, fabs(s.force[j / 3][j % 3]));
                 }
                 for (int i = 0; i < size; i++) {
                     CLOSE(spari_bins_value(got[0] + i), plain[0][i], 1e-12 * (1 + n) * most);

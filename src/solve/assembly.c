@@ -136,7 +136,7 @@ static int kept_serves(const spari_assembly *a) {
 /* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
    contracts by about as much. */
 static const double SLOW_TIED = 0.5, longest_tied = 0.5, near_tied = 0.01;
-enum { TIED_PATIENCE = 5 };
+enum { TIED_PATIENCE = 8 }; /* more than of one member: the factored system above takes iterations of its own */
 
 /* One attempt from the predicted states, as alpha.c's for one member. NULL, or what went wrong. */
 static const char *attempt_all(spari_assembly *a, effort how, double s, double dt, int *iterations) {
