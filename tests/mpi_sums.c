@@ -171,7 +171,7 @@ static void same_as_alone(void **state) {
 }
 
 /* Saved by all ranks but the last, resumed by all, with the nodes elsewhere (so 2 and 3 ranks on 3); one fluid pushes
-   no more then, and its loads are those of the file (not with IQN-ILS, whose columns are of both). Expected: the run of
+   no more then, and its loads are those of the file. Expected: the run of
    one process that was not interrupted. */
 static void resume(int scheme) {
     const MPI_Comm world = MPI_COMM_WORLD;
@@ -182,7 +182,7 @@ static void resume(int scheme) {
     snprintf(file, sizeof file, "mpi_sums_%d.spar", size);
     MPI_Comm_split(world, in, rank, &few);
     create(&alone, NULL, IN_TURN, scheme);
-    alone.pushed_until = scheme == SPAR_COUPLING_IQN_ILS ? 1e9 : 0.02 * (STEPS / 2) - 0.01;
+    alone.pushed_until = 0.02 * (STEPS / 2) - 0.01;
     advance(&alone, STEPS, turns);
     if (in) {
         scene first;

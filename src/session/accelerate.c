@@ -589,6 +589,10 @@ static void set_norm(spari_accelerator *a, int imaged) {
     }
 }
 
+int spari_accelerator_imaged(const spari_accelerator *a) {
+    return a->imaged;
+}
+
 static void measure(spari_accelerator *a, const double *x, const double *g, const double *image) {
     double square = 0;
     for (int64_t i = 0; i < a->n && a->imaged; i++) {

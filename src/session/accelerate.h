@@ -73,6 +73,8 @@ int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered o
 /* The largest -dx.dg / dx.dx of the step: what takes the place of (added mass)/(mass) in the piston model, whose map
    has the derivative minus that ratio. 0 before the second iteration. */
 double spari_accelerator_ratio(const spari_accelerator *a);
+/* Whether its columns are in the norm of the images. */
+int spari_accelerator_imaged(const spari_accelerator *accelerator);
 /* The same ratio over all differences of this step and, fading, of those before, weighed by the roots of their
    lengths, and the standard deviation of a single one. Answers 0, and zeros, where there are too few. */
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread);

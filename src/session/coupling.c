@@ -273,7 +273,8 @@ static int weigh_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
     double motion, whole;
     c->weighed = 0;
-    if (c->weighs) {
+    /* a step that has gone over to the loads' own norm stays with it */
+    if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
         const spari_weighed w = {c->n, c->unit, c->x, c->g, c->image, c->room};
         SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));

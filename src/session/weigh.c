@@ -42,6 +42,18 @@ static double sum_products(const double *a, const double *b, const double *minus
     return s;
 }
 
+/* Whether x . S y is y . S x, here of g - x and g, but for rounding: without that it is no inner product, and columns
+   that are square to each other in it can be nearly the same. A step's matrix is unsymmetric where beams turn far under
+   large loads, and by gyroscopic terms. Symmetric ones have been seen to 1e-11. */
+static int is_symmetric(const spari_weighed *c, const double *answer, const double *whole, double work, double all) {
+    static const double LOPSIDED = 1e-5, ROUNDING = 1e-13;
+    double one = sum_products(c->g, answer, NULL, c->n), other = 0;
+    for (int64_t i = 0; i < c->n; i++) {
+        other += (c->g[i] - c->x[i]) * whole[i];
+    }
+    return fabs(one - other) <= LOPSIDED * sqrt(fmax(work * all, 0)) + ROUNDING * all;
+}
+
 int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
     double *answer = c->image, *whole = c->image + c->n;
     int64_t at = 0;
@@ -58,7 +70,8 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     }
     SPARI_TRY(spari_comm_sum(s->comm, c->image, 2 * c->n, SPAR_OK, s->message, sizeof s->message));
     double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, whole, NULL, c->n);
-    *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0);
+    *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0) &&
+          is_symmetric(c, answer, whole, work, all);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;

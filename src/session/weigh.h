@@ -18,7 +18,7 @@ typedef struct spari_weighed {
 /* Whether the flexibility of all members that fluids act on is known to the library, and wanted (coupling.norm). */
 int spari_weighs_motion(const spar_session *session);
 /* Fills w->image, and the sizes of g - x and g in that norm. All ranks: what an owner finds goes to the others. *ok:
-   whether the norm is one: both are numbers, of squares that are not negative. */
+   whether the norm is one: both are numbers, of squares that are not negative, and the flexibility is symmetric. */
 int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
 
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:

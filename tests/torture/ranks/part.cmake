@@ -1,4 +1,5 @@
-# The short form: on 2 ranks what comes first in some seconds, on 3 what chance takes (the seed is printed).
+# The short form: on 2 ranks what comes first in some seconds, on 3 what chance takes, by a seed that is new with every
+# change of the sources.
 if(SPAR_MPI)
   add_executable(torture_ranks "${spar_torture_dir}/ranks.c")
   set_target_properties(torture_ranks PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
@@ -9,7 +10,7 @@ if(SPAR_MPI)
   foreach(ranks IN ITEMS 2 3)
     add_test(NAME torture_ranks_np${ranks}
       COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
-              $<TARGET_FILE:torture_ranks> ${seconds_${ranks}}
+              $<TARGET_FILE:torture_ranks> ${seconds_${ranks}} ${spar_torture_seed}
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     spar_set_test(torture_ranks_np${ranks} torture 120 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
     set_tests_properties(torture_ranks_np${ranks} PROPERTIES PROCESSORS 2)
