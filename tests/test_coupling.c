@@ -353,8 +353,8 @@ static void unconverged(void **state) {
     double about = 0, spread = 1;
     assert_non_null(told);
     assert_int_equal(sscanf(told, "added mass about %lf (+- %lf", &about, &spread), 2);
-    NEAR(about, 3, 1e-6);
-    NEAR(spread, 0, 1e-6);
+    NEAR(about, 3, 0.011); /* told with three digits, which rounding upwards makes 3.01 */
+    NEAR(spread, 0, 0.011);
     OK(p.session, spar_session_get_time(p.session, &t, &step, NULL));
     assert_true(t == 0 && step == 0);
     OK(p.session, spar_session_set_option(p.session, "coupling.unconverged", "accept"));

@@ -49,6 +49,15 @@ static void pass_int(passage *t, int *x) {
     }
 }
 
+/* Of steps, which go on being counted. */
+static void pass_count(passage *t, int *x) {
+    enum { MOST = 1 << 30 };
+    pass_int(t, x);
+    if (t->mode == READ) {
+        *x = *x < 0 ? 0 : *x > MOST ? MOST : *x;
+    }
+}
+
 static void pass_clock(passage *t, spar_session *s) {
     int phase = (int)s->phase;
     pass(t, &s->time, 1);
@@ -163,12 +172,12 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass(t, &c->travelled, 1);
     pass(t, c->report, SPAR_REPORT_COUNT);
     pass(t, &c->defect, 1);
-    pass_int(t, &c->grown);
+    pass_count(t, &c->grown);
     pass_int(t, &c->warned);
-    pass_int(t, &c->turns);
-    pass_int(t, &c->calm);
+    pass_count(t, &c->turns);
+    pass_count(t, &c->calm);
     pass_int(t, &c->unconverged);
-    pass_int(t, &c->in_row);
+    pass_count(t, &c->in_row);
     pass(t, &c->log_growth, 1);
     pass(t, &c->log_growth2, 1);
     pass(t, c->missed, c->missed ? c->n : 0);

@@ -39,7 +39,7 @@ typedef struct squeezer {
 
 /* its angle grows with that of a; b: -1 is the ground */
 static void squeezer_hinge(squeezer *k, int a, int b, const double at[3]) {
-    char name[16];
+    char name[24];
     spar_joint **j = &k->hinge[k->hinges];
     snprintf(name, sizeof name, "hinge %d", k->hinges++);
     OK(k->s, spar_joint_create(k->s, name, k->body[a], 0, b < 0 ? NULL : k->body[b], 0, SPAR_FREE_RZ, j));
@@ -50,7 +50,7 @@ static void squeezer_bodies(squeezer *k, const double centre[BODIES][3]) {
     static const double m[BODIES] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
     static const double I[BODIES] = {2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5};
     for (int i = 0; i < BODIES; i++) {
-        char name[8];
+        char name[24];
         double mass[36];
         scene_mass(mass, m[i], nothing, (double[]){I[i], I[i], I[i]});
         snprintf(name, sizeof name, "K%d", i + 1);
@@ -182,7 +182,7 @@ static double bricard(double dt, double *gap, double *way) {
     OK(s, spar_session_set_gravity(s, (double[]){0, -g, 0}));
     OK(s, spar_session_set_integrator(s, 1, 1));
     for (int k = 0; k < 5; k++) {
-        char name[8];
+        char name[24];
         double mass[36], middle[3];
         for (int i = 0; i < 3; i++) {
             middle[i] = 0.5 * (corner[k][i] + corner[k + 1][i]);
@@ -195,7 +195,7 @@ static double bricard(double dt, double *gap, double *way) {
         start += g * middle[1];
     }
     for (int k = 0; k < 6; k++) {
-        char name[16];
+        char name[24];
         snprintf(name, sizeof name, "hinge %d", k);
         spar_member *a = k < 5 ? rod[k] : rod[4], *b = k > 0 && k < 5 ? rod[k - 1] : NULL;
         OK(s, spar_joint_create(s, name, a, 0, b, 0, about[k], &hinge[k]));

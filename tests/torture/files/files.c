@@ -813,7 +813,7 @@ int main(int argc, char **argv) {
     const char *base = getenv("TMPDIR");
     char command[96];
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 0;
-    dice = argc > 2 ? strtoull(argv[2], NULL, 10) : (uint64_t)time(NULL);
+    dice = argc > 2 ? strtoull(argv[2], NULL, 0) : (uint64_t)time(NULL);
     printf("files: seed %llu\n", (unsigned long long)dice);
     dice = dice * UINT64_C(0x9E3779B97F4A7C15) | 1;
     (void)signal(SIGALRM, too_long);

@@ -1,5 +1,5 @@
 add_executable(torture_files "${spar_torture_dir}/files.c")
 set_target_properties(torture_files PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
 target_link_libraries(torture_files PRIVATE ${spar_test_libraries})
-add_test(NAME torture_files COMMAND $<TARGET_FILE:torture_files> 4 WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+add_test(NAME torture_files COMMAND $<TARGET_FILE:torture_files> 4 ${spar_torture_seed} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
 spar_set_test(torture_files torture 120)
