@@ -47,10 +47,7 @@ static double sum_products(const double *a, const double *b, const double *minus
    large loads, and by gyroscopic terms. Symmetric ones have been seen to 1e-11. */
 static int is_symmetric(const spari_weighed *c, const double *answer, const double *whole, double work, double all) {
     static const double LOPSIDED = 1e-5, ROUNDING = 1e-13;
-    double one = sum_products(c->g, answer, NULL, c->n), other = 0;
-    for (int64_t i = 0; i < c->n; i++) {
-        other += (c->g[i] - c->x[i]) * whole[i];
-    }
+    double one = sum_products(c->g, answer, NULL, c->n), other = sum_products(c->g, whole, c->x, c->n);
     return fabs(one - other) <= LOPSIDED * sqrt(fmax(work * all, 0)) + ROUNDING * all;
 }
 
