@@ -286,7 +286,6 @@ static int check_blades(const spar_aero *aero, const char *call) {
                       "%s: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
                       "force nodes now; make a new one",
                       call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
-        SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_MOTION, NULL, NULL, NULL));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
     SPARI_REQUIRE(aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,

@@ -285,7 +285,8 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *d
     SPARI_TRY(check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
-    for (int64_t p = 0; s && p < s->n; p++) {
+    int64_t n = s && (xi || distance || flags) ? s->n : 0; /* without an array the question is whether there is a map */
+    for (int64_t p = 0; p < n; p++) {
         int64_t j = spari_nodes_node(s, p);
         double con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
         if (xi) {
