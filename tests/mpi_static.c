@@ -134,7 +134,7 @@ static void one_rank_fails(void **state) {
     int last = rank == size - 1, carriers = size > 1 ? size - 1 : 1;
     c.user_call = last ? 2 : 0;
     assert_int_equal(spar_session_solve_static(s, 1, solve, &c, NULL), last ? SPAR_ERR_USER : SPAR_ERR_PEER);
-    assert_non_null(strstr(spar_session_message(s), "spar_session_solve_static: the fluid solver answered 77"));
+    assert_non_null(strstr(spar_session_message(s), "spar_session_solve_static: the fluid solver returned 77"));
     c.calls = c.user_call = 0;
     c.bad_call = rank == carriers - 1 ? 2 : 0;
     assert_int_equal(spar_session_solve_static(s, 1, solve, &c, NULL), c.bad_call ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);

@@ -417,7 +417,7 @@ static void test_refused(void **state) {
     OK(spar_fluid_set_sections(fluid, 2, (double[]){0.0, 0.0}, NULL));
     REFUSED(SPAR_ERR_STATE, spar_aero_create(1, &fluid, &aero), "spar_fluid_map");
     OK(spar_fluid_map(fluid));
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_create(1, &fluid, &aero), "one place");
+    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_create(1, &fluid, &aero), "the same place");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_create(2, (spar_fluid *[]){s.fluid[0], fluid}, &aero), "blade 0 has 19");
     assert_null(aero);
     OK(spar_aero_create(1, &s.fluid[0], &aero));

@@ -194,7 +194,7 @@ static void test_use_before_commit_and_loads(void **state) {
     OK(s, spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no node 4", spar_member_set_load(b, 4, SPAR_LOAD_DEAD, load));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no node -1", spar_member_set_load(b, -1, SPAR_LOAD_DEAD, load));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no kind of load 2", spar_member_set_load(b, 3, 2, load));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "load kind 2", spar_member_set_load(b, 3, 2, load));
     REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, load));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, NULL));
     REFUSED(s, SPAR_ERR_STATE, "external", spar_member_set_motion(b, q, NULL, NULL));

@@ -101,7 +101,7 @@ static void test_describe(void **state) {
             "stiffness is not symmetric: entries (0,1) and (1,0) are 3 and 0");
     REFUSED(y, spar_joint_set_load(y.hinge, load), SPAR_ERR_ARGUMENT, "x");
     REFUSED(y, spar_joint_set_spring(line, NULL, NULL, NULL), SPAR_ERR_STATE, "call spar_line_set_spring");
-    REFUSED(y, spar_line_set_spring(y.hinge, 1, 0, 1, 0), SPAR_ERR_STATE, "is no line");
+    REFUSED(y, spar_line_set_spring(y.hinge, 1, 0, 1, 0), SPAR_ERR_STATE, "is not a line");
     REFUSED(y, spar_line_set_spring(line, -1, 0, 1, 0), SPAR_ERR_ARGUMENT, "stiffness is -1; give 0 or more");
     REFUSED(y, spar_joint_set_driven(y.hinge, SPAR_FREE_RX), SPAR_ERR_ARGUMENT,
             "mask is 8, free is 16: what is driven must be among what the joint leaves free");

@@ -81,8 +81,8 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
                       call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
         *n = b == 0 ? nodes : *n;
         SPARI_REQUIRE(session, nodes == *n, SPAR_ERR_ARGUMENT,
-                      "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; blades are alike", call,
-                      spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)*n);
+                      "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; give all blades the same number",
+                      call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)*n);
     }
     return SPAR_OK;
 }
@@ -99,7 +99,7 @@ static int find_centres(spar_aero *aero, const char *call) {
             const double *a = x + 3 * i, *c = a + 3;
             double d[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]}, length = spari_norm(d);
             SPARI_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
-                          "%s: fluid '%s': sections %lld and %lld lie in one place", call,
+                          "%s: fluid '%s': sections %lld and %lld are at the same place", call,
                           spar_fluid_get_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
             aero->length[b * aero->n + i] = length;
         }
@@ -247,7 +247,8 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
 int spar_aero_set_turn(spar_aero *aero, int turn) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
-                  "%s: %d; 1 for right-handed about the downwind axis, -1 for left-handed", __func__, turn);
+                  "%s: the sense of turning is %d; give 1 for right-handed about the downwind axis, -1 for left-handed",
+                  __func__, turn);
     aero->rotor.turn = turn;
     return SPAR_OK;
 }
@@ -264,7 +265,7 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
-                  "%s: %d has bits that are no SPAR_AERO_ effect", __func__, effects);
+                  "%s: effects are %d, with bits that are not SPAR_AERO_ effects", __func__, effects);
     SPARI_TRY(adopt(aero, effects, __func__));
     aero->effects_given = 1;
     return SPAR_OK;

@@ -137,7 +137,8 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                       spar_polar **polar) {
     SPARI_QUIET;
     const double *const value[] = {cl, cd, cm};
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: no place for the polar; pass the address of a NULL", __func__);
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the place for the polar is NULL; give the address of a handle",
+                  __func__);
     SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "%s: %lld rows; a polar needs at least 2", __func__, (long long)n);
     SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);
     SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT, "%s: alpha, cl or cd is NULL; only cm may be",
@@ -167,7 +168,7 @@ int spar_polar_set_interpolation(spar_polar *polar, int kind) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
     SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
-                  "%s: no kind %d; there are SPAR_POLAR_LINEAR, _AKIMA and _CUBIC", __func__, kind);
+                  "%s: kind %d is not known; SPAR_POLAR_LINEAR, _AKIMA or _CUBIC", __func__, kind);
     const spari_table *old = polar->table;
     int64_t least = (int64_t)gsl_interp_type_min_size(fit_type(kind, old->full));
     SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT, "%s: kind %d needs at least %lld rows, the polar has %lld",

@@ -181,7 +181,7 @@ int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
     }
     if (fluid->member->session->trial) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "a trial run is under way; its fluids are not to be changed");
+                                  "a trial run is under way; its fluids cannot be changed");
     }
     return SPAR_OK;
 }

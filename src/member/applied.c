@@ -449,7 +449,7 @@ static int need_applied(spar_member *member, const char *call) {
 
 static int need_kind(const spar_member *m, const char *call, int kind) {
     SPARI_REQUIRE(m->session, kind == SPAR_LOAD_DEAD || kind == SPAR_LOAD_FOLLOWER, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no kind of load %d; see SPAR_LOAD_*", call, m->name, kind);
+                  "%s: '%s': load kind %d is not known; see SPAR_LOAD_*", call, m->name, kind);
     return SPAR_OK;
 }
 

@@ -358,7 +358,7 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         double along[3] = {1, 0, 0};
         line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
         SPARI_REQUIRE(member->session, p.jacobian > 1e-9 * length / member->elements, SPAR_ERR_ARGUMENT,
-                      "member '%s': its line stands still at node %lld (points coincide); give distinct places",
+                      "member '%s': its line has no direction at node %lld (points coincide); give distinct places",
                       member->name, (long long)i);
         spari_rotate(q + 4 * i, along, along);
         SPARI_REQUIRE(member->session, spari_dot(along, p.t) > 0.7, SPAR_ERR_ARGUMENT,

@@ -170,10 +170,11 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     }
     for (int64_t i = beam->per_element; i < n; i += beam->per_element) {
         for (int c = 0; c < 3; c++) {
-            SPARI_REQUIRE(session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
-                          "%s: '%s': the joint of elements %lld and %lld stands at two places (nodes %lld and %lld)",
-                          __func__, beam->name, (long long)(i / beam->per_element - 1),
-                          (long long)(i / beam->per_element), (long long)i - 1, (long long)i);
+            SPARI_REQUIRE(
+                session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
+                "%s: '%s': elements %lld and %lld share a node, and it is given at two places (nodes %lld and %lld)",
+                __func__, beam->name, (long long)(i / beam->per_element - 1), (long long)(i / beam->per_element),
+                (long long)i - 1, (long long)i);
         }
     }
     double *copies[2] = {spari_copy(x, 3 * n), q ? spari_copy(q, 4 * n) : NULL};
@@ -254,7 +255,7 @@ int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no quadrature rule %d; see SPAR_QUADRATURE_*", __func__, beam->name, rule);
+                  "%s: '%s': quadrature rule %d is not known; see SPAR_QUADRATURE_*", __func__, beam->name, rule);
     SPARI_REQUIRE(beam->session, points >= (rule == SPAR_QUADRATURE_LOBATTO ? 2 : 1) && points <= 512,
                   SPAR_ERR_ARGUMENT, "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512", __func__, beam->name,
                   points);
@@ -289,7 +290,7 @@ int spar_member_set_placement(spar_member *member, const double x[3], const doub
 int spar_member_set_root(spar_member *member, int kind) {
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, kind >= SPAR_ROOT_FREE && kind <= SPAR_ROOT_DRIVEN, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no root condition %d; see SPAR_ROOT_*", __func__, member->name, kind);
+                  "%s: '%s': root condition %d is not known; see SPAR_ROOT_*", __func__, member->name, kind);
     member->root = kind;
     return SPAR_OK;
 }

@@ -227,7 +227,7 @@ int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, do
     SPARI_QUIET;
     SPARI_TRY(need_before_start(joint, __func__));
     spar_session *s = joint->session;
-    SPARI_REQUIRE(s, joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is no line; call spar_joint_set_spring", __func__,
+    SPARI_REQUIRE(s, joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is not a line; call spar_joint_set_spring", __func__,
                   joint->name);
     const double in[3] = {stiffness, damping, length};
     static const char *const name[3] = {"stiffness", "damping", "length"};

@@ -77,7 +77,7 @@ static int open_file(reader *r, const char *path) {
 static int next_line(reader *r, const char *what) {
     if (!fgets(r->line, sizeof r->line, r->file)) {
         if (ferror(r->file)) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': reading %s failed behind line %d: %s", r->beam, r->path, r->number,
+            return FAIL(r, SPAR_ERR_IO, "'%s': reading %s failed after line %d: %s", r->beam, r->path, r->number,
                         strerror(errno));
         }
         return FAIL(r, SPAR_ERR_IO, "'%s': %s ends at line %d; %s is missing", r->beam, r->path, r->number, what);

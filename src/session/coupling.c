@@ -406,7 +406,8 @@ static void tell_alternation(const spar_session *s) {
             text, sizeof text,
             "the coupling is becoming unstable at t = %g: in the last %d steps the fluid's loads have missed the "
             "predicted ones in turn on either side, each time by %.3g (+- %.2g) times as much: added mass of "
-            "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d bears %.2g; iterate "
+            "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
+            "iterate "
             "(spar_session_set_coupling) or lower the order of the predictor",
             s->time + s->dt, c->turns + 1, z, z * spread, ratio, ratio_of_growth(s->order, z * exp(spread)) - ratio,
             s->order, bears[s->order]);

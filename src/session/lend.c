@@ -4,11 +4,10 @@
 #include "../base/quiet.h"
 
 int spari_lend_refuse(spar_session *s, const char *call) {
-    SPARI_REQUIRE(
-        s, !s->lent, SPAR_ERR_STATE,
-        "%s: what is under way is %s's, which has called this fluid solver; pull, push and return from it, or "
-        "make the step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
-        call, s->lent);
+    SPARI_REQUIRE(s, !s->lent, SPAR_ERR_STATE,
+                  "%s: %s is under way and has called this fluid solver; pull, push and return from it, or make the "
+                  "step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
+                  call, s->lent);
     return SPAR_OK;
 }
 
@@ -31,6 +30,6 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
         return SPAR_OK;
     }
     int told = s->failures != failures; /* what went wrong there */
-    return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver answered %d in iteration %d%s%.800s", lender, answer,
+    return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, answer,
                       s->iteration, told ? ": " : "", told ? s->message : "");
 }

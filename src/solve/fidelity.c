@@ -32,7 +32,7 @@ int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes) {
     SPARI_TRY(spari_need_open(member, __func__));
     spar_session *s = member->session;
     SPARI_REQUIRE(s, kind >= 0 && kind < ROWS && table[kind], SPAR_ERR_ARGUMENT,
-                  "%s: '%s': there is no fidelity %d; see SPAR_FIDELITY_*", __func__, member->name, kind);
+                  "%s: '%s': fidelity %d is not known; see SPAR_FIDELITY_*", __func__, member->name, kind);
     SPARI_REQUIRE(s, kind == SPAR_FIDELITY_EXACT || member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
                   "%s: '%s' is not a beam; a point and a rigid body have one fidelity", __func__, member->name);
     SPARI_REQUIRE(s, !table[kind]->takes_modes || (modes >= 1 && modes <= INT32_MAX), SPAR_ERR_ARGUMENT,

@@ -146,8 +146,9 @@ static int modal_check(const spar_member *m) {
     int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - held, least = 6 - held;
     SPARI_REQUIRE(m->session, m->beam->mass, SPAR_ERR_STATE,
                   "member '%s' has no mass, which a modal member needs; give its sections mass", m->name);
-    SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT, "member '%s': %lld modes; its nodes have %lld",
-                  m->name, (long long)m->modes, (long long)most);
+    SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT,
+                  "member '%s': %lld modes are asked for; its nodes have %lld", m->name, (long long)m->modes,
+                  (long long)most);
     SPARI_REQUIRE(m->session, m->modes >= least, SPAR_ERR_ARGUMENT,
                   "member '%s': %lld modes; its first %lld move it as a rigid body, give as many at least", m->name,
                   (long long)m->modes, (long long)least);

@@ -82,8 +82,8 @@ static void tell(const spari_link *l, int k) {
     const spar_session *s = l->joint->session;
     if (s->log) {
         (void)snprintf(text, sizeof text,
-                       "joint '%.200s': that it holds %s follows from the other joints already; this hold is left out, "
-                       "and its load is 0",
+                       "joint '%.200s': it holds %s, which follows from the other joints already; this hold is left "
+                       "out, and its load is 0",
                        l->joint->name, l->joint->tie.line ? "its length" : motion[k]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }

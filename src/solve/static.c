@@ -224,11 +224,10 @@ static void warn_of_bend(const spari_solver *s, const spar_member *m) {
     if (bend <= most_bend) {
         return;
     }
-    (void)snprintf(
-        text, sizeof text,
-        "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more than they can "
-        "follow: it may be none of the beam; give it more nodes or elements",
-        m->name, bend);
+    (void)snprintf(text, sizeof text,
+                   "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more "
+                   "than they can follow: what was found may not be the beam's; give it more nodes or elements",
+                   m->name, bend);
     spari_log(m->session, SPAR_LOG_WARNING, text);
 }
 

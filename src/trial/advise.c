@@ -333,11 +333,10 @@ static int find_stable(spari_advisor *d, spari_outcome *best) {
         }
         *best = next;
     }
-    return spari_fail(
-        d->session, SPAR_ERR_NUMERIC,
-        "%s: settings that keep the tolerance over the trials drift away after them; ask with more steps, "
-        "or for less",
-        SPARI_ADVISE);
+    return spari_fail(d->session, SPAR_ERR_NUMERIC,
+                      "%s: settings that keep the tolerance over the trials drift away after them; ask with more steps "
+                      "or a larger tolerance",
+                      SPARI_ADVISE);
 }
 
 /* The finest settings known not to fail, where the shares left nothing: they are tried as they are. */
@@ -362,8 +361,8 @@ static int search_plans(spari_advisor *d, const spari_plan *present, spari_outco
         least = fmin(least, d->known[k].error);
     }
     return spari_fail(d->session, SPAR_ERR_NUMERIC,
-                      "%s: of %d trials none keeps the tolerance %g; the least error is %.3g; ask for less, or begin "
-                      "with a smaller dt",
+                      "%s: of %d trials none keeps the tolerance %g; the least error is %.3g; give a larger tolerance, "
+                      "or begin with a smaller dt",
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 

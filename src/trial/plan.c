@@ -239,7 +239,7 @@ static void weigh_fluid(spari_advisor *d, double seconds, int64_t solutions) {
     d->fluid = spari_cost_solution(s, d->reference.fluid, seconds, solutions);
     if (s->log) {
         (void)snprintf(text, sizeof text,
-                       "%s: a solution of the fluid counts for %.4g, by its nodes %.4g, a second for %.4g",
+                       "%s: one solution of the fluid is counted as %.4g (%.4g by its nodes), one second as %.4g",
                        SPARI_ADVISE, d->fluid, d->reference.fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
@@ -284,7 +284,7 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
                   SPARI_ADVISE, s->message);
     SPARI_REQUIRE(s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
                   "%s: no reference: with dt/%lld and finer nodes the run still changes by %.3g, the tolerance is %g; "
-                  "ask for less, begin with a smaller dt, or look whether the fluid solver is repeatable",
+                  "give a larger one, begin with a smaller dt, or look whether the fluid solver is repeatable",
                   SPARI_ADVISE, (long long)(finest->steps / d->run.steps), change, d->tolerance);
     return SPAR_OK;
 }

@@ -340,7 +340,7 @@ static int prepare_step(spar_session *s, const spari_run *run) {
         return SPAR_ERR_COMM;
     }
     if (answer != 0 && s->failures == failures) {
-        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step answered %d", answer);
+        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", answer);
     } else if (answer != 0) {
         status = SPAR_ERR_USER;
     }

@@ -363,7 +363,7 @@ contains
       context%fluid => its
       call other%step(0.01_c_double, solve_springs, context)
       call session%step(0.02_c_double, refuse_to_solve, stat=stat, errmsg=errmsg)
-      call check(stat == SPAR_ERR_USER .and. index(errmsg, 'answered 9') > 0, 'a fluid that fails: ' // trim(errmsg))
+      call check(stat == SPAR_ERR_USER .and. index(errmsg, 'returned 9') > 0, 'a fluid that fails: ' // trim(errmsg))
     end do
     call session%get_time(t)
     call body%get_motion(q(:,1:1))
