@@ -1,5 +1,5 @@
 # The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count,
-# torture, house.
+# torture, house, hosts.
 find_package(PkgConfig QUIET)
 if(NOT SPAR_CMOCKA_INCLUDE OR NOT SPAR_CMOCKA_LIBRARY)
   message(FATAL_ERROR "SPAR_BUILD_TESTS needs CMocka (Debian: libcmocka-dev); or set SPAR_BUILD_TESTS=OFF")
@@ -129,3 +129,4 @@ include("${PROJECT_SOURCE_DIR}/tests/verification/verification.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/torture/torture.cmake")
 include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
+include("${PROJECT_SOURCE_DIR}/tests/hosts.cmake")

@@ -1,0 +1,182 @@
+/* spar behind code_saturne's coupling with an external structure: the functions by which it would talk to code_aster
+   are defined here in place of the library's. Their order in a run, and in spar:
+
+       astgeo                       once: the wetted faces                session, members, fluid, map
+       astpdt                       every step                            spar_step_begin
+       astcin                       every sub-iteration: displacements    spar_step_solve, spar_fluid_pull_motion
+       astfor                       every sub-iteration: forces           spar_fluid_push_forces, spar_step_check
+       cs_ast_coupling_get_ext_cvg  after it: has the structure converged
+       cs_ast_coupling_send_cvg     after it: go on?                      spar_step_accept
+ */
+#include "spar_saturne.h"
+#include "cs_ast_coupling.h"
+#include "cs_base.h"
+#include "cs_headers.h"
+#include "cs_prototypes.h"
+#include <spar/spar_mpi.h>
+#include <string.h>
+
+static struct {
+    spar_session *session;
+    spar_member *wet;
+    spar_fluid *surface;
+    cs_lnum_t n_faces, n_vertices, *faces, *vertices; /* of this rank, from 0 */
+    double *x0, *x;                                   /* [n_vertices][3], at the start and now */
+    double *force;                                    /* [n_faces][3] */
+    int stepping, done;
+} host;
+
+static void tell(const spar_session *session, int level, const char *text, void *context) {
+    (void)session, (void)context;
+    if (cs_glob_rank_id < 1) {
+        bft_printf("spar%s: %s\n",
+                   level == SPAR_LOG_ERROR     ? ", error"
+                   : level == SPAR_LOG_WARNING ? ", warning"
+                                               : "",
+                   text);
+        bft_printf_flush();
+    }
+}
+
+/* ---- once ---- */
+
+/* The faces' vertices. One on the border of two ranks is on both, which is right for motion; faces are on one. */
+static void collect_vertices(void) {
+    const cs_mesh_t *mesh = cs_glob_mesh;
+    char *wetted;
+    BFT_MALLOC(wetted, mesh->n_vertices, char);
+    memset(wetted, 0, (size_t)mesh->n_vertices);
+    for (cs_lnum_t i = 0; i < host.n_faces; i++) {
+        cs_lnum_t face = host.faces[i];
+        for (cs_lnum_t j = mesh->b_face_vtx_idx[face]; j < mesh->b_face_vtx_idx[face + 1]; j++) {
+            wetted[mesh->b_face_vtx_lst[j]] = 1;
+        }
+    }
+    BFT_MALLOC(host.vertices, mesh->n_vertices, cs_lnum_t);
+    for (cs_lnum_t v = 0; v < mesh->n_vertices; v++) {
+        if (wetted[v]) {
+            host.vertices[host.n_vertices++] = v;
+        }
+    }
+    BFT_FREE(wetted);
+}
+
+static void couple_surface(void) {
+    const cs_mesh_t *mesh = cs_glob_mesh;
+    double *centres;
+    BFT_MALLOC(host.x0, 3 * host.n_vertices, double);
+    BFT_MALLOC(host.x, 3 * host.n_vertices, double);
+    BFT_MALLOC(host.force, 3 * host.n_faces, double);
+    BFT_MALLOC(centres, 3 * host.n_faces, double);
+    for (cs_lnum_t i = 0; i < host.n_vertices; i++) {
+        memcpy(host.x0 + 3 * i, mesh->vtx_coord + 3 * host.vertices[i], 3 * sizeof(double));
+    }
+    for (cs_lnum_t i = 0; i < host.n_faces; i++) {
+        memcpy(centres + 3 * i, cs_glob_mesh_quantities->b_face_cog + 3 * host.faces[i], 3 * sizeof(double));
+    }
+    saturne_check(spar_fluid_create(host.wet, "code_saturne", &host.surface), host.session);
+    saturne_check(spar_fluid_set_motion_nodes(host.surface, host.n_vertices, host.x0), host.session);
+    saturne_check(spar_fluid_set_force_nodes(host.surface, host.n_faces, centres), host.session);
+    saturne_check(spar_fluid_map(host.surface), host.session);
+    BFT_FREE(centres);
+}
+
+/* code_saturne's own limits of the sub-iteration; spar's rule, so its limit must be the smaller one. */
+void cs_ast_coupling_initialize(int nalimx, cs_real_t epalim) {
+    (void)nalimx, (void)epalim;
+}
+
+/* The wetted faces of this rank, numbered from 1; there may be none. */
+void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfast, cs_int_t *idnast,
+                              cs_real_t *almax) {
+    (void)idfast, (void)idnast, (void)almax;
+    host.n_faces = *nbfast;
+    BFT_MALLOC(host.faces, host.n_faces, cs_lnum_t);
+    for (cs_lnum_t i = 0; i < host.n_faces; i++) {
+        host.faces[i] = lstfac[i] - 1;
+    }
+    collect_vertices();
+    saturne_clock_begin();
+    /* a serial run has not initialised MPI */
+    saturne_check(cs_glob_n_ranks > 1 ? spar_session_create_mpi(cs_glob_mpi_comm, &host.session)
+                                      : spar_session_create(&host.session),
+                  NULL);
+    saturne_check(spar_session_set_log(host.session, tell, NULL), host.session);
+    saturne_settings(host.session);
+    saturne_check(saturne_this_case.describe(host.session, &host.wet), host.session);
+    couple_surface();
+    saturne_clock_end();
+}
+
+/* ---- every step ---- */
+
+void CS_PROCF(astpdt, ASTPDT)(cs_real_t *dttab, cs_int_t *nbpdt) {
+    (void)nbpdt;
+    double dt = cs_glob_mesh->n_cells > 0 ? dttab[0] : cs_glob_time_step->dt_ref;
+    saturne_clock_begin();
+    saturne_check(spar_step_begin(host.session, dt), host.session);
+    saturne_clock_end();
+    host.stepping = 1, host.done = 0;
+}
+
+/* Displacements since the start of the run. They are asked for once before the first step too. */
+void CS_PROCF(astcin, ASTCIN)(cs_int_t *ntcast, cs_real_3_t *disale) {
+    (void)ntcast;
+    if (!host.stepping) {
+        return;
+    }
+    saturne_clock_begin();
+    saturne_check(spar_step_solve(host.session), host.session);
+    saturne_check(spar_fluid_pull_motion(host.surface, 1.0, host.x, NULL), host.session);
+    saturne_clock_end();
+    for (cs_lnum_t i = 0; i < host.n_vertices; i++) {
+        for (int c = 0; c < 3; c++) {
+            disale[host.vertices[i]][c] = host.x[3 * i + c] - host.x0[3 * i + c];
+        }
+    }
+}
+
+void CS_PROCF(astfor, ASTFOR)(cs_int_t *ntcast, cs_int_t *nbfast, cs_real_t *forast) {
+    (void)ntcast, (void)nbfast, (void)forast;
+    if (!host.stepping) {
+        return;
+    }
+    saturne_wall_forces(host.n_faces, host.faces, host.force);
+    saturne_clock_begin();
+    saturne_check(spar_fluid_push_forces(host.surface, host.force, NULL), host.session);
+    saturne_check(spar_step_check(host.session, &host.done), host.session);
+    saturne_clock_end();
+}
+
+int cs_ast_coupling_get_ext_cvg(void) {
+    return host.done;
+}
+
+/* icved: 1, code_saturne goes on to the next step */
+void cs_ast_coupling_send_cvg(int icved) {
+    if (!host.stepping || !(icved || host.done)) {
+        return;
+    }
+    saturne_clock_begin();
+    saturne_check(spar_step_accept(host.session), host.session);
+    saturne_clock_end();
+    host.stepping = 0;
+    saturne_report_step(host.session, host.wet, host.surface);
+}
+
+/* ---- at the end ---- */
+
+/* cs_ast_coupling_finalize is not called by 6.0; this is the last call on all ranks before MPI_Finalize */
+void cs_user_extra_operations_finalize(cs_domain_t *domain) {
+    (void)domain;
+    saturne_report_run();
+    spar_session_destroy(&host.session);
+    BFT_FREE(host.faces);
+    BFT_FREE(host.vertices);
+    BFT_FREE(host.x0);
+    BFT_FREE(host.x);
+    BFT_FREE(host.force);
+}
+
+void cs_ast_coupling_finalize(void) {
+}
