@@ -255,127 +255,6 @@ static void test_modes_of_a_weld(void **state) {
     }
 }
 
-/* Roots of a function between `from` and `to`, by steps and bisection; how many. */
-static int roots_of(double (*f)(double), double from, double to, int most, double *root) {
-    int n = 0;
-    const double step = 1e-3;
-    for (double x = from; x < to && n < most; x += step) {
-        double a = x, b = x + step;
-        if (!(f(a) * f(b) < 0) || fabs(f(a) - f(b)) > 1e4) { /* or a pole */
-            continue;
-        }
-        for (int i = 0; i < 60; i++) {
-            double c = 0.5 * (a + b);
-            (f(a) * f(c) <= 0 ? &b : &a)[0] = c;
-        }
-        root[n++] = 0.5 * (a + b);
-    }
-    return n;
-}
-
-/* End stiffnesses of a slender beam that vibrates, by EI / L, EI / L^2, EI / L^3; x = L (m omega^2 / EI)^(1/4). */
-static double below(double x) {
-    return 1 - cos(x) * cosh(x);
-}
-static double near_turn(double x) { /* moment at the turned end */
-    return x * (cosh(x) * sin(x) - sinh(x) * cos(x)) / below(x);
-}
-static double far_turn(double x) { /* at the other */
-    return x * (sinh(x) - sin(x)) / below(x);
-}
-static double shear_turn(double x) {
-    return x * x * sin(x) * sinh(x) / below(x);
-}
-static double shear_way(double x) {
-    return x * x * x * (sin(x) * cosh(x) + cos(x) * sinh(x)) / below(x);
-}
-/* A portal of three equal members with clamped feet, its corners turned against each other; or alike, and swaying with
-   half of the beam's mass on each column. */
-static double portal_symmetric(double x) {
-    return 2 * near_turn(x) - far_turn(x);
-}
-static double portal_sway(double x) {
-    return (2 * near_turn(x) + far_turn(x)) * (shear_way(x) - 0.5 * x * x * x * x) - shear_turn(x) * shear_turn(x);
-}
-
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Stiff but for bending in the plane of x and z: shear and stretch by 1e8 EI / L^2, rotary inertia 1e-9 m L^2. */
-static void slender(double EI, double m, double L, double *K, double *M) {
-    double stiff = 1e8 * EI / (L * L), j = 1e-9 * m * L * L;
-    scene_diagonal(K, stiff, stiff, stiff, 1e5 * EI, EI, 1e5 * EI);
-    scene_diagonal(M, m, m, m, 2 * j, j, j);
-}
-
-/* Portal frame of slender members against its frequency equations (Bernoulli-Euler, dynamic stiffness; e.g. Clough &
-   Penzien, Dynamics of Structures, ch. 18): the first five to 2e-6. One of them leaves the corners where they are, each
-   member vibrating as if clamped, cos x cosh x = 1, with its moments in balance: there the equations have a pole. */
-static void test_portal(void **state) {
-    (void)state;
-    enum { P = 10 };
-    const double L = 1.5, EI = 20, m = 3, eta[2] = {0, 1},
-                 line[3][6] = {{0, 0, 0, 0, 0, L}, {0, 0, L, L, 0, L}, {L, 0, 0, L, 0, L}};
-    double K[36], M[36], f[5], root[20];
-    slender(EI, m, L, K, M);
-    spar_session *s = scene_session();
-    spar_member *b[3];
-    static const char *const name[3] = {"left", "beam", "right"};
-    for (int k = 0; k < 3; k++) {
-        OK(s, spar_beam_create(s, name[k], 1, P, &b[k]));
-        OK(s, spar_beam_set_axis(b[k], 2, eta, line[k], NULL));
-        OK(s, spar_beam_set_sections(b[k], 1, eta, K, M));
-        OK(s, spar_member_set_root(b[k], k == 1 ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED));
-        OK(s, spar_member_commit(b[k]));
-    }
-    (void)tie(s, "left corner", b[1], 0, b[0], P - 1, 0);
-    (void)tie(s, "right corner", b[1], P - 1, b[2], P - 1, 0);
-    OK(s, spar_member_solve_modes(b[1], 5, f, NULL));
-    int n = roots_of(portal_symmetric, 0.5, 9, 10, root);
-    n += roots_of(portal_sway, 0.5, 9, 10, root + n);
-    n += roots_of(below, 1, 6, 1, root + n);
-    assert_true(n >= 5);
-    qsort(root, (size_t)n, sizeof *root, ascending);
-    for (int k = 0; k < 5; k++) {
-        double expected = root[k] * root[k] * sqrt(EI / m) / (L * L) / two_pi;
-        NEAR(f[k], expected, 2e-6 * expected);
-    }
-    spar_session_destroy(&s);
-}
-
-/* A beam over two equal spans, its ends and its middle node on joints to the ground: each span simply supported, x = n
-   pi, or clamped at the middle, tan x = tanh x. Slender; 2e-6. */
-static double clamped_pinned(double x) {
-    return sin(x) - cos(x) * tanh(x);
-}
-
-static void test_two_spans(void **state) {
-    (void)state;
-    enum { P = 10 };
-    const double L = 2, EI = 8, m = 0.5, half = acos(-1);
-    double K[36], M[36], f[4], root[2];
-    slender(EI, m, L, K, M);
-    spar_session *s = scene_session();
-    spar_member *b = scene_beam(s, "beam", 2, P, 2 * L, K, M);
-    OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
-    OK(s, spar_member_commit(b));
-    for (int k = 0; k < 3; k++) {
-        spar_joint *j = tie(s, (const char *[]){"left", "middle", "right"}[k], b, (int64_t[]){0, P, 2 * P - 1}[k], NULL,
-                            0, SPAR_FREE_RY | (k ? SPAR_FREE_X : 0));
-        OK(s, spar_joint_set_frame(j, (double[]){k * L, 0, 0}, NULL));
-    }
-    OK(s, spar_member_solve_modes(b, 4, f, NULL));
-    assert_int_equal(roots_of(clamped_pinned, 1, 8, 2, root), 2);
-    const double x[4] = {half, root[0], 2 * half, root[1]};
-    for (int k = 0; k < 4; k++) {
-        double expected = x[k] * x[k] * sqrt(EI / m) / (L * L) / two_pi;
-        NEAR(f[k], expected, 2e-6 * expected);
-    }
-    spar_session_destroy(&s);
-}
-
 /* Two inertias on one shaft, k between them, in bearings: they turn freely as one, and against each other with omega^2
    = k (1 / J1 + 1 / J2), moments in balance, J1 a1^2 + J2 a2^2 = 1; that is all they can do. */
 static void test_drivetrain(void **state) {
@@ -400,55 +279,6 @@ static void test_drivetrain(void **state) {
     assert_int_equal(spar_member_solve_modes(b[0], 3, f, NULL), SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(spar_session_message(s), "they have 2"));
     OK(s, spar_member_solve_modes(b[0], 0, NULL, NULL));
-    spar_session_destroy(&s);
-}
-
-/* A parallelogram of rods of 1 kg a metre (cranks of 1 m, a coupler of 2 m) hangs on four parallel hinges, three of
-   whose holds follow from others: (2 m L^2 / 3 + 2 L^2) omega^2 = (2 L / 2 + 2 L) g; the weight is in the joints'
-   loads, which turn with them. */
-static void test_hanging_parallelogram(void **state) {
-    (void)state;
-    const double g = 9.81, x[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 0, -1}, {2, 0, -1}}, omega = sqrt(9 * g / 8);
-    const double down[3] = {0, 0, -0.5}, bar[3] = {1, 0, 0}, thin[3] = {1. / 12, 1. / 12, 1. / 12};
-    double mass[36], f[1];
-    spar_session *s = scene_session();
-    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
-    spar_member *b[3];
-    for (int k = 0; k < 3; k++) {
-        scene_mass(mass, k < 2 ? 1 : 2, k < 2 ? down : bar, thin);
-        OK(s, spar_rigid_create(s, (const char *[]){"crank", "rocker", "coupler"}[k], x[k], upright, mass, &b[k]));
-        OK(s, spar_member_commit(b[k]));
-    }
-    for (int k = 0; k < 4; k++) {
-        spar_joint *j = tie(s, (const char *[]){"foot", "foot2", "top", "top2"}[k], b[k < 2 ? k : 2], 0,
-                            k < 2 ? NULL : b[k - 2], 0, SPAR_FREE_RY);
-        OK(s, spar_joint_set_frame(j, x[k], upright));
-    }
-    OK(s, spar_member_solve_static(b[2], 1));
-    OK(s, spar_member_solve_modes(b[2], 1, f, NULL));
-    NEAR(two_pi * f[0], omega, 1e-7 * omega);
-    assert_int_equal(spar_member_solve_modes(b[0], 2, f, NULL), SPAR_ERR_ARGUMENT);
-    spar_session_destroy(&s);
-}
-
-/* A body of 2 kg between two taut lines along x, of 1 m, 400 N/m and 0.8 m unstretched: across them omega^2 = 2 T / (m
-   l), along them 2 k / m; its three turns are free. */
-static void test_taut_lines(void **state) {
-    (void)state;
-    const double m = 2, k = 400, T = k * 0.2, J[3] = {1, 2, 3}, end[2][3] = {{1, 0, 0}, {-1, 0, 0}};
-    double f[6];
-    spar_session *s = scene_session();
-    spar_member *b = make_body(s, "bead", zero, m, J);
-    for (int i = 0; i < 2; i++) {
-        spar_joint *j = NULL;
-        OK(s, spar_line_create(s, i ? "left" : "right", b, 0, zero, NULL, 0, end[i], &j));
-        OK(s, spar_line_set_spring(j, k, 0, 0.8, 1));
-    }
-    OK(s, spar_member_solve_modes(b, 6, f, NULL));
-    const double expected[6] = {0, 0, 0, sqrt(2 * T / m), sqrt(2 * T / m), sqrt(2 * k / m)};
-    for (int i = 0; i < 6; i++) {
-        NEAR(two_pi * f[i], expected[i], i < 3 ? 1e-2 : 1e-7 * expected[i]);
-    }
     spar_session_destroy(&s);
 }
 
@@ -650,11 +480,7 @@ int main(void) {
         cmocka_unit_test(test_adrift),
         cmocka_unit_test(test_joint_that_comes_later),
         cmocka_unit_test(test_modes_of_a_weld),
-        cmocka_unit_test(test_portal),
-        cmocka_unit_test(test_two_spans),
         cmocka_unit_test(test_drivetrain),
-        cmocka_unit_test(test_hanging_parallelogram),
-        cmocka_unit_test(test_taut_lines),
         cmocka_unit_test(test_any_step),
         cmocka_unit_test(test_many_steps),
         cmocka_unit_test(test_ledger),
