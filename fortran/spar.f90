@@ -229,6 +229,9 @@ module spar
     procedure :: exists => fluid_exists
     procedure :: c_handle => fluid_handle
     procedure :: set_motion_nodes => fluid_set_motion_nodes
+    procedure :: set_motion_weights => fluid_set_motion_weights
+    procedure :: get_motion_weights => fluid_get_motion_weights
+    procedure :: fade_motion => fluid_fade_motion
     procedure :: set_force_nodes => fluid_set_force_nodes
     procedure :: set_sections => fluid_set_sections
     procedure :: set_projection => fluid_set_projection
@@ -1991,6 +1994,67 @@ contains
     end if
     call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_motion_nodes
+
+  ! w(n), n motion nodes; without w: no weights.
+  subroutine fluid_set_motion_weights(self, w, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in), optional :: w(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+
+    n = 0
+    if (present(w)) n = size(w, kind=c_int64_t)
+    call finish(spar_fluid_set_motion_weights(self%handle, n, w), self%session, stat, errmsg)
+  end subroutine fluid_set_motion_weights
+
+  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: w(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'w', shape(w, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_motion_weights', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
+  end subroutine fluid_get_motion_weights
+
+  ! distance(n): without it from the reference line; held(n): not 0 where the mesh stands still.
+  subroutine fluid_fade_motion(self, within, beyond, distance, held, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), intent(in) :: within, beyond
+    real(c_double), contiguous, intent(in), optional :: distance(:)
+    integer(c_int), contiguous, intent(in), optional :: held(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(distance)) call need(fault, 'distance', shape(distance, kind=c_int64_t), [n])
+    if (present(held)) call need(fault, 'held', shape(held, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse('fluid%fade_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, held), self%session, stat, errmsg)
+  end subroutine fluid_fade_motion
 
   subroutine fluid_set_force_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self

@@ -742,6 +742,31 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_set_motion_nodes
 
+    function spar_fluid_set_motion_weights(fluid, n, w) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: w(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_motion_weights
+
+    function spar_fluid_get_motion_weights(fluid, w) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: w(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_motion_weights
+
+    function spar_fluid_fade_motion(fluid, within, beyond, n, distance, held) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: within, beyond
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: distance(*)
+      integer(c_int), intent(in), optional :: held(*)
+      integer(c_int) :: status
+    end function spar_fluid_fade_motion
+
     function spar_fluid_set_force_nodes(fluid, n, x) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid

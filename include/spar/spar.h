@@ -728,6 +728,31 @@ SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
      n: in
      x[n][3]: in, m */
 SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x);
+/* How much of the section's motion each motion node takes, so that a fluid's whole mesh can move with the structure,
+   a function of its motion alone, without memory or solution: 1 on the wetted surface, less with the distance, 0 where
+   the mesh is held. A node with reference place X that the section takes to x, at v and acceleration a, is pulled at
+   X + w (x - X), w v, w a, in every pull and in spar_fluid_get_travel; 1 gives the same bits as without weights, 0
+   stays at X. Two fluids whose weights add to 1 at each node blend two members' motions (a blade's into its hub's rigid
+   one): X + (x_1 - X) + (x_2 - X). Part of a rotation has no section frame: pulls of q, omega, alpha and matrices are
+   refused (SPAR_ERR_UNSUPPORTED) as long as there are weights. Loads are not weighed; force nodes belong on what has
+   weight 1. Given between spar_fluid_set_motion_nodes, which takes them away, and spar_fluid_map they hold the host's
+   places to the bit; after the map, to rounding. Not saved with a session, as nodes are not; a trial keeps them. Not
+   for sections (SPAR_ERR_STATE). n: in, as many as motion nodes w[n]: in, in [0,1]. n = 0 and NULL: no weights
+   (default) */
+SPAR_API int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w);
+/* w[n]: out, 1 where none were given. */
+SPAR_API int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w);
+/* Sets weights that fade with a distance d: with s = (d - within) / (beyond - within) 1 for s <= 0, 0 for s >= 1 and
+   1 - 10 s^3 + 15 s^4 - 6 s^5 between, twice differentiable everywhere. Nothing is searched over ranks: distances are
+   the host's, from the wetted surface (a solver's wall distance) or along whatever it wants to fade, or from the
+   reference line, which every rank knows. From the line `within` must cover the body's own section, and the curve's
+   least radius be larger than `beyond`: farther off two feet can be equally near, and the mesh tears between them.
+     within, beyond: in, m, within < beyond
+     n: in, as many as motion nodes
+     distance[n]: in, m, NULL: from the reference line (the member must be committed)
+     held[n]: in, not 0: weight 0 whatever the distance, NULL: none */
+SPAR_API int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int64_t n, const double *distance,
+                                    const int *held);
 /* Nodes that loads come from. As above. */
 SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x);
 /* Sections of a blade element model, instead: motion nodes and force nodes at given places of the line. Keeps the node

@@ -58,9 +58,10 @@ int spari_fluid_is_pending(const spar_fluid *fluid);
 /* After the way back: the fluids that the host has destroyed within the trial. */
 void spari_fluid_release_gone(spar_session *session);
 
-/* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] and orientations [n][4] of the nodes of one
-   set; any NULL. */
-int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q);
+/* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] of the nodes of one set, orientations [n][4]
+   of their sections, and these feet [n][3]; any NULL. */
+int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q,
+                     double *foot);
 /* Whether the nodes are sections: one set, in the order along the member that the host gave. */
 int spari_fluid_has_sections(const spar_fluid *fluid);
 /* The node forces pushed last, [n][3]; NULL where they are not kept. */

@@ -53,8 +53,7 @@ static int prepare_member(spar_fluid *fluid) {
     return SPAR_OK;
 }
 
-/* sum_k T_k(xi) c[k][offset .. offset + n) */
-static void series_at(const double *c, int modes, int offset, int n, double xi, double *out) {
+void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out) {
     double t0 = 1, t1 = xi;
     memset(out, 0, sizeof *out * (size_t)n);
     for (int k = 0; k < modes; k++) {
@@ -70,8 +69,8 @@ static void series_at(const double *c, int modes, int offset, int n, double xi, 
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
     int modes = fluid->member->per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
-    series_at(c, modes, SPARI_F_PLACE, 3, xi, x);
-    series_at(c, modes, SPARI_F_QUAT, 4, xi, q);
+    spari_fluid_series(c, modes, SPARI_F_PLACE, 3, xi, x);
+    spari_fluid_series(c, modes, SPARI_F_QUAT, 4, xi, q);
     spari_quat_normalise(q);
 }
 
@@ -199,9 +198,11 @@ static int keeps_forces(const spar_fluid *fluid) {
 }
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
-    int sections = set->sections;
-    spari_node_set_clear(set);
-    *set = (spari_node_set){.sections = sections, .n = nodes->n, .nodes = nodes};
+    spari_node_set was = *set;
+    *set = (spari_node_set){
+        .sections = was.sections, .n = nodes->n, .nodes = nodes, .weight = was.weight, .home = was.home};
+    was.weight = was.home = NULL; /* they are by node, whatever the line */
+    spari_node_set_clear(&was);
 }
 
 int spar_fluid_map(spar_fluid *fluid) {

@@ -54,6 +54,8 @@ void spari_node_set_clear(spari_node_set *set) {
     free(set->x);
     free(set->xi);
     free(set->frame);
+    free(set->weight);
+    free(set->home);
     spari_nodes_free(set->nodes);
     *set = (spari_node_set){0};
 }

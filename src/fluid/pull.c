@@ -284,10 +284,22 @@ static double (*second_tile(const spar_fluid *fluid))[SPARI_ROW] {
     return field ? (double(*)[SPARI_ROW])(field + fluid->member->nodes * SPARI_FIELDS) : NULL;
 }
 
+/* Of part of a turn there is no one rotation, so that weighted nodes have none. */
+static int check_turns(const spar_fluid *fluid, const wanted *w, const char *caller) {
+    int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
+    if (turns && spari_fluid_set(fluid, SPAR_NODES_MOTION)->weight) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_UNSUPPORTED, caller,
+                                  "motion nodes with weights have places, velocities and accelerations, but take no "
+                                  "section's rotation; pull it from a fluid without weights");
+    }
+    return SPAR_OK;
+}
+
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
     states t = {.buf = {a, second_tile(fluid)}, .reference = c};
+    const spari_node_set *set = spari_fluid_set(fluid, which);
     const spari_nodes *s;
     int what = what_of(w);
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
@@ -296,19 +308,22 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         return SPAR_OK;
     }
     t.n = fill_states(fluid, theta, what & SPARI_UPTO, t.share);
-    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f) {
+    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f && !set->weight) {
         return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
     }
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
         for (int i = 0; i < t.n; i++) {
             least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, what, t.buf[i]));
         }
+        for (int i = 0; i < t.n && set->weight; i++) {
+            spari_fluid_weigh(set, first, what & SPARI_UPTO, t.buf[i]);
+        }
         emit(s, first, &t, SPARI_R_PLACE, w->x);
         emit(s, first, &t, SPARI_R_RATE, w->v);
         emit(s, first, &t, SPARI_R_OMEGA, w->omega);
         emit(s, first, &t, SPARI_R_ACCEL, w->accel);
         emit(s, first, &t, SPARI_R_ALPHA, w->alpha);
-        emit_orientations(fluid, spari_fluid_set(fluid, which), first, &t, w);
+        emit_orientations(fluid, set, first, &t, w);
     }
     return spari_fluid_check_rotation(fluid, least, caller);
 }
@@ -317,6 +332,7 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
 static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
     const spari_nodes *s;
     wanted left = *w;
+    SPARI_TRY(check_turns(fluid, w, caller));
     fluid->asked |= parts_of(w, theta);
     theta = spari_fluid_time(fluid, theta);
     if (fluid->mute & SPARI_MUTE_HALF_STEP && theta > 0) {
@@ -380,6 +396,9 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
         for (int i = 0; i < t.n; i++) {
             double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_PLACE, t.buf[i]);
             least = fmin(least, met);
+        }
+        for (int i = 0; i < t.n && fluid->set[SPAR_NODES_MOTION].weight; i++) {
+            spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_PLACE, t.buf[i]);
         }
         longest_way(s, first, &t, &square, &farthest);
     }
@@ -487,7 +506,8 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     double *right = spari_zalloc(9 * n, sizeof *right);
     SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
     wanted w = {.matrix.d = right, .convention = convention};
-    int status = pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
+    int status = check_turns(fluid, &w, __func__);
+    status = status != SPAR_OK ? status : pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
     for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
         const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
         if (why) {
@@ -499,9 +519,17 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q) {
+int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q,
+                     double *foot) {
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    return pull_set(fluid, which, 1, &w, call);
+    SPARI_TRY(pull_set(fluid, which, 1, &w, call)); /* and fills the coefficients of the motion */
+    const spari_nodes *s = spari_fluid_set(fluid, which)->nodes;
+    for (int64_t p = 0; s && foot && p < s->n; p++) {
+        const double *c = fluid->field[0] + (ptrdiff_t)spari_nodes_element(s, p) * s->per_element * SPARI_FIELDS;
+        spari_fluid_series(c, s->per_element, SPARI_F_PLACE, 3, spari_nodes_xi(s, p),
+                           foot + 3 * spari_nodes_node(s, p));
+    }
+    return SPAR_OK;
 }
 
 int spari_fluid_has_sections(const spar_fluid *fluid) {

@@ -68,6 +68,18 @@ static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
     return SPAR_OK;
 }
 
+/* Weights and reference places are by node: they hold for the line through other nodes too. */
+static int keep_weights(spar_fluid *f, const spar_fluid *old) {
+    const spari_node_set *from = &old->set[SPAR_NODES_MOTION];
+    spari_node_set *to = &f->set[SPAR_NODES_MOTION];
+    if (!from->weight) {
+        return SPAR_OK;
+    }
+    to->weight = spari_copy(from->weight, from->n);
+    to->home = spari_copy(from->home, 3 * from->n);
+    return to->weight && to->home ? SPAR_OK : no_memory_for_trial(f);
+}
+
 static int copy_history(const spari_history *from, int order, spari_history **to) {
     *to = NULL;
     if (!from) {
@@ -112,6 +124,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         for (int which = 0; which < 2; which++) {
             SPARI_TRY(keep_frames(f, old, which));
         }
+        SPARI_TRY(keep_weights(f, old));
         spari_history_free(f->history); /* the map has begun it with zeros */
     }
     if (old->parts && spari_parts_prepare(f) != SPAR_OK) {
@@ -169,6 +182,8 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
             free(f->set[which].x);
             free(f->set[which].xi);
             free(f->set[which].frame);
+            free(f->set[which].weight);
+            free(f->set[which].home);
             spari_nodes_free(f->set[which].nodes);
         }
     }

@@ -16,6 +16,8 @@ typedef struct spari_node_set {
     double *xi;         /* [n]: sections only; while pending */
     spari_nodes *nodes; /* once mapped */
     double *frame; /* [n][4]: sections that have kept their frames when the line got other nodes; NULL: the line's */
+    double *weight,
+        *home; /* [n], [n][3]: what part of the motion each takes, and where it is at rest; NULL: all of it */
 } spari_node_set;
 
 /* Node forces over time, for hosts that want them back between the steps (SPAR_EFFECT_FLUID_HISTORY). */
@@ -90,6 +92,9 @@ void spari_node_set_clear(spari_node_set *set);
 int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller);
 /* The mapped set, or a refusal; *nodes NULL: there is none and nothing to do. */
 int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes);
+/* Of one state's tile: places and what of velocities and accelerations is there become the part the nodes take. The set
+   has weights. */
+void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
 /* Finite numbers x [n][width]. */
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
                              int width);
@@ -100,6 +105,8 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
 /* Reference foot and its orientation (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
+/* sum_k T_k(xi) c[k][offset .. offset + n): n fields of an element at a place. */
+void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out);
 /* The same with the frame of the section there: p in the order of storage. */
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */

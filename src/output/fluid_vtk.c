@@ -21,7 +21,7 @@ enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 typedef struct sketch {
     int64_t count[2], n; /* nodes of the sets, and of both */
     double *table;       /* 2 n points */
-    double *q, *q_map, *con;
+    double *q;
     int *flags;
     int64_t *line_end, *line_point;
 } sketch;
@@ -30,22 +30,11 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
     return s->table + column * 2 * s->n + components * point;
 }
 
-/* The foot now: back from the node along its arm as the section has turned it. */
-static void put_foot(const sketch *s, int64_t i) {
-    double back[4], turn[4], arm[3];
-    spari_quat_conj(s->q_map + 4 * i, back);
-    spari_quat_mul(s->q + 4 * i, back, turn);
-    spari_rotate(turn, s->con + 3 * i, arm);
-    for (int k = 0; k < 3; k++) {
-        at(s, X, 3, s->n + i)[k] = at(s, X, 3, i)[k] - arm[k];
-    }
-}
-
 /* Fills the nodes of one set, which stand at `first` of all. */
 static int fill_set(const spar_fluid *fluid, const char *call, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    SPARI_TRY(spari_fluid_look(fluid, call, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first));
-    SPARI_TRY(spar_fluid_get_feet(fluid, which, NULL, s->q_map + 4 * first, s->con + 3 * first));
+    SPARI_TRY(spari_fluid_look(fluid, call, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
+                               at(s, X, 3, s->n + first)));
     SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     const double *force = spari_fluid_forces(fluid);
     if (force && (which == SPAR_NODES_FORCE || spari_fluid_has_sections(fluid))) {
@@ -57,7 +46,6 @@ static int fill_set(const spar_fluid *fluid, const char *call, int which, int64_
         }
         *at(s, SET, 1, i) = which;
         *at(s, FLAGS, 1, i) = s->flags[i];
-        put_foot(s, i);
     }
     return SPAR_OK;
 }
@@ -132,16 +120,14 @@ int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     s.n = s.count[0] + s.count[1];
     s.table = spari_zalloc(2 * COLUMNS * s.n, sizeof *s.table);
     s.q = spari_zalloc(4 * s.n, sizeof *s.q);
-    s.q_map = spari_zalloc(4 * s.n, sizeof *s.q_map);
-    s.con = spari_zalloc(3 * s.n, sizeof *s.con);
     s.flags = spari_zalloc(s.n, sizeof *s.flags);
     s.line_end = spari_zalloc(s.n + 1, sizeof *s.line_end);
     s.line_point = spari_zalloc(3 * s.n, sizeof *s.line_point);
-    int whole = s.table && s.q && s.q_map && s.con && s.flags && s.line_end && s.line_point;
+    int whole = s.table && s.q && s.flags && s.line_end && s.line_point;
     int status = whole ? draw(fluid, &s, session, path, __func__)
                        : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for the %lld nodes of '%s'", __func__,
                                     (long long)s.n, spar_fluid_get_name(fluid));
-    void *all[] = {s.table, s.q, s.q_map, s.con, s.flags, s.line_end, s.line_point};
+    void *all[] = {s.table, s.q, s.flags, s.line_end, s.line_point};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }

@@ -109,6 +109,9 @@ program test_bindings
   made = c_null_ptr
   call spar_fluid_destroy(made)
   call refused(spar_fluid_set_motion_nodes(none, 0_c_int64_t), 'spar_fluid_set_motion_nodes')
+  call refused(spar_fluid_set_motion_weights(none, 0_c_int64_t), 'spar_fluid_set_motion_weights')
+  call refused(spar_fluid_get_motion_weights(none), 'spar_fluid_get_motion_weights')
+  call refused(spar_fluid_fade_motion(none, 0.0_c_double, 1.0_c_double, 0_c_int64_t), 'spar_fluid_fade_motion')
   call refused(spar_fluid_set_force_nodes(none, 0_c_int64_t), 'spar_fluid_set_force_nodes')
   call refused(spar_fluid_set_sections(none, 0_c_int64_t), 'spar_fluid_set_sections')
   call refused(spar_fluid_set_projection(none, 0_c_int, 0.0_c_double), 'spar_fluid_set_projection')

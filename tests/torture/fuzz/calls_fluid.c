@@ -73,6 +73,32 @@ void do_spar_fluid_set_sections(call *c) {
     RUN(c, spar_fluid_set_sections(f->f, n, xi, offset));
 }
 
+void do_spar_fluid_set_motion_weights(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int off = chance(c, 30);
+    int64_t n = off ? 0 : odd(c) ? arg_count(c, 0, 5) : fluid_count(f, SPAR_NODES_MOTION);
+    double *w = off ? NULL : arg_reals(c, length(n), 0, 1);
+    RUN(c, spar_fluid_set_motion_weights(f->f, n, w));
+}
+
+void do_spar_fluid_get_motion_weights(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *w = OUT(c, fluid_count(f, SPAR_NODES_MOTION));
+    RUN(c, spar_fluid_get_motion_weights(f->f, w));
+}
+
+void do_spar_fluid_fade_motion(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double within = arg_real(c, 0, 0.3), beyond = arg_real(c, 0.3, 1);
+    int64_t n = odd(c) ? arg_count(c, 0, 5) : fluid_count(f, SPAR_NODES_MOTION);
+    double *distance = arg_reals_or_null(c, length(n), 0, 1);
+    int held[64] = {0}, hold = chance(c, 50);
+    for (int64_t i = 0; hold && i < 64; i++) {
+        held[i] = chance(c, 20);
+    }
+    RUN(c, spar_fluid_fade_motion(f->f, within, beyond, n, distance, hold && length(n) <= 64 ? held : NULL));
+}
+
 void do_spar_fluid_set_projection(call *c) {
     live_fluid *f = arg_fluid(c);
     int method = arg_int(c, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY);

@@ -128,6 +128,9 @@ enum {
     CALL(spar_fluid_set_motion_nodes, 60, FUZZ_CHANGES)                                                                \
     CALL(spar_fluid_set_force_nodes, 60, FUZZ_CHANGES)                                                                 \
     CALL(spar_fluid_set_sections, 60, FUZZ_CHANGES)                                                                    \
+    CALL(spar_fluid_set_motion_weights, 60, FUZZ_CHANGES)                                                              \
+    CALL(spar_fluid_get_motion_weights, 20, FUZZ_PURE)                                                                 \
+    CALL(spar_fluid_fade_motion, 40, FUZZ_CHANGES)                                                                     \
     CALL(spar_fluid_set_projection, 50, FUZZ_CHANGES)                                                                  \
     CALL(spar_fluid_set_interpolation, 50, FUZZ_CHANGES)                                                               \
     CALL(spar_fluid_map, 140, FUZZ_CHANGES)                                                                            \

@@ -484,6 +484,9 @@ static void act_fluids(void) {
     CALL(spar_member_commit, b);
     spar_fluid *f = h.fluid[0] = begin_fluid(b, "loose", 10, &h.n[0], h.x[0]);
     int64_t n = h.n[0];
+    CALL(spar_fluid_fade_motion, f, 0.1, 2, n, NULL, NULL);
+    CALL(spar_fluid_get_motion_weights, f, out);
+    CALL(spar_fluid_set_motion_weights, f, n, n > 0 ? out : NULL);
     CALL(spar_fluid_set_projection, f, SPAR_PROJECT_RPOLY, 1.0);
     CALL(spar_fluid_set_interpolation, f, SPAR_INTERPOLATE_CONSISTENT);
     CALL(spar_fluid_map, f);

@@ -32,6 +32,7 @@
     " spar_member_get_owner spar_beam_get_elements spar_beam_get_quadrature "
     " spar_beam_get_damping spar_fluid_get_projection spar_fluid_get_interpolation "
     " spar_session_get_option spar_session_get_phase spar_member_get_session spar_member_get_name "
+    " spar_fluid_set_motion_weights spar_fluid_get_motion_weights spar_fluid_fade_motion "
     " spar_fluid_get_member spar_fluid_get_name spar_fluid_fail "
     " spar_joint_create spar_joint_set_frame spar_joint_set_spring spar_joint_set_driven spar_joint_drive "
     " spar_joint_set_load spar_joint_get_motion spar_joint_get_load spar_joint_get_energy spar_member_set_spring "
