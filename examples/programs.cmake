@@ -22,6 +22,18 @@ if(TARGET examples_aerodyn_style)
   target_compile_definitions(examples_aerodyn_style_single PRIVATE SPAR_EXAMPLE_SINGLE=1)
 endif()
 
+# Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
+if(SPAR_MPI)
+  set(spar_example_environment ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
+endif()
+
+# Adapters to hosts: each folder's programs and their tests.
+file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/hosts/*/host.cmake")
+foreach(file IN LISTS files)
+  get_filename_component(SPAR_HOST_DIR "${file}" DIRECTORY)
+  include("${file}")
+endforeach()
+
 # The examples as tests: what they print must be what it should.
 if(NOT SPAR_BUILD_TESTS)
   return()
@@ -38,10 +50,6 @@ if(TARGET test_rotor AND TARGET examples_rotor)
   endif()
 endif()
 
-# Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
-if(SPAR_MPI)
-  set(spar_example_environment ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
-endif()
 if(TARGET test_rotor)
   spar_set_test(test_rotor unit 300 ${spar_example_environment})
 endif()
