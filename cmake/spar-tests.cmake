@@ -31,7 +31,8 @@ if(spar_support)
   set(spar_test_libraries spar_test_support)
 endif()
 # The static library: tests may call what the shared one hides. The examples' parts call it too, so stand before it.
-list(APPEND spar_test_libraries $<TARGET_NAME_IF_EXISTS:spar_example_parts> spar_static spar_test_base)
+list(APPEND spar_test_libraries $<TARGET_NAME_IF_EXISTS:spar_example_parts> $<TARGET_NAME_IF_EXISTS:spar_host_parts>
+  spar_static spar_test_base)
 
 set(SPAR_TEST_LAUNCHER "" CACHE STRING "Program (a list) that runs the serial tests, such as valgrind")
 mark_as_advanced(SPAR_TEST_LAUNCHER)

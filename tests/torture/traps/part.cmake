@@ -10,9 +10,12 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
     list(REMOVE_ITEM modes stack) # their frames are larger
   endif()
   foreach(mode IN LISTS modes)
-    add_test(NAME torture_${mode} COMMAND "${here}/under" ${mode} "${PROJECT_BINARY_DIR}"
-      test_environment test_input test_static test_modes test_fluid test_coupling test_output test_beamdyn test_aero
-      test_fidelity)
+    set(programs test_environment test_input test_static test_modes test_fluid test_coupling test_output test_beamdyn
+      test_aero test_fidelity)
+    if(mode STREQUAL "comma" AND TARGET spar_host_parts)
+      list(APPEND programs test_case)
+    endif()
+    add_test(NAME torture_${mode} COMMAND "${here}/under" ${mode} "${PROJECT_BINARY_DIR}" ${programs})
     # the library is no sanitizer's, and stands before it
     spar_set_test(torture_${mode} torture 300 ASAN_OPTIONS=allocator_may_return_null=1:verify_asan_link_order=0 VERBOSE=1)
     set_tests_properties(torture_${mode} PROPERTIES SKIP_RETURN_CODE 77)

@@ -1,0 +1,115 @@
+/* case.h: the structure of a coupled run from a text file, so that a user with another wing writes no C. Made on the
+   installed headers alone; an adapter compiles case.c and case_text.c (C11, POSIX) beside itself and calls, in C or
+   C++,
+
+       spar_session_create_mpi(comm, &session);
+       spar_case_read("flag.case", "openfoam", session, &scene);   settings, members committed, joints
+       spar_case_member(scene, "flag", &wet);                      then fluids on them, as in any host
+       spar_case_get_numbers(scene, "near", 1, NULL, &near);       the adapter's own keys
+       spar_case_check(scene);                                     no key that nobody has asked for
+       ...
+       spar_step_accept(session);
+       spar_case_output(scene, rank, 1, &fluid);                   pictures and a history, as the file asks
+
+   The file
+   Lines of a key and its values, under headings in brackets; what follows a # is a comment; values are split by blanks
+   and may stand in double quotes. Numbers have a point, whatever the locale. SI units, angles in radians, as in spar.h,
+   which says what each value means; what is left out stays as the library has it. Files that it names are looked for
+   beside it, those of [output] in the working folder. A key stands once but for those marked *, each line of which adds
+   a row. 6x6 matrices have 6 numbers (the diagonal), 21 (the upper triangle, row by row) or 36.
+
+   [session], [session HOST]: settings; the second is for one adapter and comes on top
+     gravity x y z              rho_inf r               substeps n              newton atol rtol max_iterations
+     scheme explicit|fixed-point|aitken|iqn-ils         atol a (N)              rtol r
+     max_iterations n           relaxation omega        predictor 0|1|2         reproducible on|off
+     option* KEY VALUE          as of spar_session_set_option
+   [beam NAME]
+     elements n                 default 1
+     nodes n                    of an element, default 8
+     axis* eta x y z [twist]    or axis_file FILE, of the same rows
+     twist_scale s              makes rad, right-handed about the tangent, of that column: default 1
+     node* x y z [qw qx qy qz]  instead of an axis
+     section* eta stiffness [mass]       or sections_file FILE, of the same rows; the mass in the stiffness's form
+     beamdyn PRIMARY [BLADE]    instead of axis, sections and damping
+     quadrature gauss|lobatto|sections n
+     damping mu1 .. mu6         modal_damping mode ratio mode ratio
+     fidelity exact|linear|rigid|prescribed, or modal n
+     line_load* dead|follower eta fx fy fz mx my mz
+   [rigid NAME]
+     mass                       a 6x6 matrix
+   [point NAME]
+   these three
+     place x y z                orientation qw qx qy qz
+     root free|fixed|pinned|driven               external on|off          owner rank
+     effects default|none|inertia|gyroscopic|gravity|damping|large_rotation|fluid_moment|fluid_history|work ...
+     velocity x y z             spin x y z      about x y z          the initial rigid motion
+     load* NODE dead|follower fx fy fz mx my mz                      NODE: a number from 0, first or last
+   [joint NAME]
+     a MEMBER NODE              b MEMBER NODE, or b ground
+     free none|all|x|y|z|rx|ry|rz ...                                default none
+     place x y z                axes qw qx qy qz
+     stiffness, damping         6x6 matrices    preload fx .. mz
+     driven none|all|x|..       load fx .. mz
+   [line NAME]
+     a MEMBER NODE x y z        b MEMBER NODE x y z, or b ground x y z
+     stiffness k                damping c       length l             tension_only on|off
+     driven on|off
+   [output], [output HOST]: what spar_case_output writes; the second is for one adapter and replaces the first
+     folder DIR                 of the pictures, made if it is not there; default: the working folder
+     every n                    steps from picture to picture (VTK, by spar_output.h); default 0: none
+     fluids on|off              pictures of fluids too
+     history FILE               a line a step: t, step, iterations, residual (N), loads (N), added mass / mass
+     watch* MEMBER NODE         nine more columns: displacement, velocity, and the sum of the member's loads
+   [host], [host HOST]: what the adapter asks for; any keys */
+#ifndef SPAR_CASE_H
+#define SPAR_CASE_H
+
+#include <spar/spar.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct spar_case spar_case;
+
+/* Reads the file on every rank and does what it says: settings, members, which are committed, joints. Collective.
+     path: in
+     host: in, name of the adapter, whose own sections hold besides; NULL: none
+     session: in, new
+     scene: out, to be freed; it does not own members and joints, which are the session's
+   SPAR_ERR_IO: the file, or one that it names, cannot be read; SPAR_ERR_ARGUMENT: what stands in it is not right; or
+   what a call of spar has answered. spar_case_message has file, line, and the cure. The session then has some of the
+   members and is to be destroyed. */
+int spar_case_read(const char *path, const char *host, spar_session *session, spar_case **scene);
+/* NULL and a second call are legal. Before or after the session goes. */
+void spar_case_free(spar_case **scene);
+/* What went wrong last in a call of this header in this thread; "" if nothing ever did. */
+const char *spar_case_message(void);
+
+/* Members and joints in the order of the file, and by name. i: in, from 0. A name that is not there is
+   SPAR_ERR_ARGUMENT, and the message has the nearest one. */
+int64_t spar_case_member_count(const spar_case *scene);
+spar_member *spar_case_member_at(const spar_case *scene, int64_t i);
+int spar_case_member(const spar_case *scene, const char *name, spar_member **member);
+int spar_case_joint(const spar_case *scene, const char *name, spar_joint **joint);
+
+/* What [host HOST] and, where it is not there, [host] say of a key.
+     otherwise: in, what holds where neither has it; NULL: it has to be there
+     text: out, the values of the line, joined by blanks; belongs to the scene or is `otherwise`
+     n: in; x[n]: out */
+int spar_case_get_text(spar_case *scene, const char *key, const char *otherwise, const char **text);
+int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double *otherwise, double *x);
+/* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt. To be called when all were. */
+int spar_case_check(const spar_case *scene);
+
+/* After spar_step_accept: pictures and the history line that are due at this step. Local; members and history are
+   written by rank 0, fluids by their ranks.
+     rank: in, of this process
+     fluids: in, how many; fluid[fluids]: in, this rank's */
+int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *fluid);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,659 @@
+/* The structure from a text file (examples/hosts/common): the same bits as the calls by hand, and every mistake with
+   its file, line and cure. */
+#include "scene.h"
+
+#include "case.h"
+#include "nrel5mw.h"
+#include <locale.h>
+#include <spar/spar_output.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#define CASES SPAR_SOURCE_DIR "/examples/hosts/cases/"
+
+static char path[64];
+
+static const char *written(const char *text) {
+    (void)snprintf(path, sizeof path, "test_case_%ld.case", (long)getpid());
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_int_equal(fputs(text, file) >= 0, 1);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* The call must succeed; else the case's message says why. */
+#define GOOD(call)                                                                                                     \
+    do {                                                                                                               \
+        if ((call) != SPAR_OK) {                                                                                       \
+            fail_msg("%s: %s", #call, spar_case_message());                                                            \
+        }                                                                                                              \
+    } while (0)
+
+static spar_case *read_text(spar_session *s, const char *host, const char *text) {
+    spar_case *c = NULL;
+    GOOD(spar_case_read(written(text), host, s, &c));
+    (void)remove(path);
+    return c;
+}
+
+/* n steps of both sessions; their members' motion and loads then are equal to the bit. */
+static void same_run(spar_session *a, spar_session *b, spar_member *const *x, spar_member *const *y, int members,
+                     int steps) {
+    enum { MOST = 64 };
+    for (int i = 0; i < steps; i++) {
+        OK(a, spar_step(a, 0.01, NULL, NULL, NULL));
+        OK(b, spar_step(b, 0.01, NULL, NULL, NULL));
+    }
+    for (int m = 0; m < members; m++) {
+        double q[2][7 * MOST] = {{0}}, v[2][6 * MOST] = {{0}}, acc[2][6 * MOST] = {{0}}, load[2][6 * MOST] = {{0}};
+        int64_t n;
+        OK(a, spar_member_get_count(x[m], &n));
+        assert_true(n <= MOST);
+        assert_string_equal(spar_member_get_name(x[m]), spar_member_get_name(y[m]));
+        for (int k = 0; k < 2; k++) {
+            const spar_member *one = k ? y[m] : x[m];
+            OK(k ? b : a, spar_member_get_motion(one, q[k], v[k], acc[k]));
+            OK(k ? b : a, spar_member_get_loads(one, load[k]));
+        }
+        if (memcmp(q[0], q[1], sizeof q[0]) != 0) {
+            fail_msg("motion of %s", spar_member_get_name(x[m]));
+        }
+        assert_memory_equal(v[0], v[1], sizeof v[0]);
+        assert_memory_equal(acc[0], acc[1], sizeof acc[0]);
+        assert_memory_equal(load[0], load[1], sizeof load[0]);
+    }
+}
+
+/* ---- every key, against the calls ---- */
+
+static const char everything[] =
+    "\xef\xbb\xbf# all there is\r\n"
+    "[session]  # of all hosts\r\n"
+    "gravity 0 0.5 -9.81\nrho_inf 0.7\nsubsteps 2\nnewton 1e-14 1e-11 40\nscheme aitken\natol 1e-8\nrtol 1e-5\n"
+    "max_iterations 33\nrelaxation 0.6\npredictor 2\nreproducible on\noption coupling.reuse 7\n"
+    "option coupling.target 0.02\n"
+    "[session mine]\nrho_inf 0.8\nmax_iterations 44\n[session other]\nrho_inf 0\n"
+    "[beam wing]\nelements 2\nnodes 5\nquadrature lobatto 6\n"
+    "axis 0 0 0 0 0\naxis 0.5 1 0 0.1 5\naxis 1 2 0.25 0.125 10\ntwist_scale -0.017453292519943295\n"
+    "section 0 4e4 0 0 0 0 0  4e4 0 0 0 0  4e4 0 0 0  800 12 0  600 0  500   1 0 0 0 0 0  1 0 0 0 0  1 0 0 0  .02 0 0 "
+    " .01 0  .01\n"
+    "section 1 3e4 0 0 0 0 0  3e4 0 0 0 0  3e4 0 0 0  600 10 0  400 0  300   2 0 0 0 0 0  2 0 0 0 0  2 0 0 0  .04 0 0 "
+    " .02 0  .02\n"
+    "damping 1e-3 1e-3 1e-3 2e-3 2e-3 2e-3\nplace 1 2 3\norientation 0.8 0 0 0.6\neffects default work\nowner 0\n"
+    "load last dead 0 1 2 0.1 0.2 0.3\nload 3 follower 0 0.5 0 0 0 0\n"
+    "line_load dead 0 1 0 0 0 0 0\nline_load follower 0.5 0 1 0 0 0 0\nline_load dead 1 0 0 3 0 0 0\n"
+    "[beam mast]\nnode 0 0 0 1 0 0 0\nnode 0.5 0 0 1 0 0 0\nnode 1 0 0 1 0 0 0\nnodes 3\n"
+    "section 0.5 1e4 1e4 1e4 100 100 100\nquadrature gauss 3\nfidelity prescribed\nroot driven\n"
+    "[beam boom]\nnodes 4\naxis 0 0 6 0\naxis 1 2 6 0\n"
+    "section 0 4e4 4e4 4e4 800 600 600 1 1 1 .02 .01 .01\nfidelity rigid\nroot free\n"
+    "[beam modes]\nnodes 6\naxis 0 0 9 0\naxis 1 2 9 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 .02 .01 .01\n"
+    "fidelity modal 4\n[beam damped]\nnodes 6\naxis 0 0 9 0\naxis 1 2 9 0\n"
+    "section 0 4e4 4e4 4e4 800 600 600 1 1 1 .02 .01 .01\nmodal_damping 0 0.02 1 0.03\n"
+    "[rigid weight]\nplace 5 0 -1\nmass 2 2 2 .3 .4 .5\nabout 5 0 0\nvelocity 0 .1 0\nspin 0 0 .2\n"
+    "[rigid host's own]\nmass 1 1 1 1 1 1\nexternal on\nroot free\n"
+    "[point buoy]\nplace 0 0 3\n"
+    "[joint shaft]\na boom first\nb ground\nfree rz\nplace 0 6 0\naxes 1 0 0 0\ndriven rz\n";
+
+static const char joints[] =
+    "[joint tether]\na buoy 0\nb ground\nfree all\nstiffness 10 10 10 10 10 10\n"
+    "[line rope]\na weight first 5 0 -1\nb wing last 3 2 3\nstiffness 50\ndamping 0.5\nlength 4\n"
+    "[line stay]\na weight 0 5 0 -1\nb ground 0 0 3\nstiffness 5\ntension_only on\nlength 4\n"
+    "[joint moss]\na weight first\nb ground\nfree x y z rx ry rz\nstiffness 10 10 10 10 10 10\n"
+    "damping .1 .1 .1 .1 .1 .1\npreload 0 0 1 0 0 0\nload 0 0 .5 0 0 0\n"
+    "[joint tip]\na weight first\nb wing last\nfree all\nplace 5 0 -1\nstiffness 1 1 1 1 1 1\n";
+
+enum { MEMBERS = 8 };
+
+static void matrix(const double *upper, double m[36]) {
+    for (int i = 0, k = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            m[6 * i + j] = m[6 * j + i] = upper[k++];
+        }
+    }
+}
+
+static void wing_by_hand(spar_session *s, spar_member **wing) {
+    const double degree = -0.017453292519943295, eta[3] = {0, 0.5, 1}, xyz[9] = {0, 0, 0, 1, 0, 0.1, 2, 0.25, 0.125},
+                 twist[3] = {0 * degree, 5 * degree, 10 * degree}, mu[6] = {1e-3, 1e-3, 1e-3, 2e-3, 2e-3, 2e-3},
+                 ends[2] = {0, 1}, x[3] = {1, 2, 3}, q[4] = {0.8, 0, 0, 0.6};
+    const double k[2][21] = {{4e4, 0, 0, 0, 0, 0, 4e4, 0, 0, 0, 0, 4e4, 0, 0, 0, 800, 12, 0, 600, 0, 500},
+                             {3e4, 0, 0, 0, 0, 0, 3e4, 0, 0, 0, 0, 3e4, 0, 0, 0, 600, 10, 0, 400, 0, 300}};
+    double K[2][36], M[2][36];
+    for (int i = 0; i < 2; i++) {
+        matrix(k[i], K[i]);
+        scene_diagonal(M[i], 1 + i, 1 + i, 1 + i, i ? .04 : .02, i ? .02 : .01, i ? .02 : .01);
+    }
+    OK(s, spar_beam_create(s, "wing", 2, 5, wing));
+    OK(s, spar_beam_set_axis(*wing, 3, eta, xyz, twist));
+    OK(s, spar_beam_set_sections(*wing, 2, ends, K[0], M[0]));
+    OK(s, spar_beam_set_quadrature(*wing, SPAR_QUADRATURE_LOBATTO, 6));
+    OK(s, spar_beam_set_damping(*wing, mu));
+    OK(s, spar_member_set_placement(*wing, x, q));
+    OK(s, spar_member_set_effects(*wing, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_owner(*wing, 0));
+}
+
+static void others_by_hand(spar_session *s, spar_member **m) {
+    const double nodes[9] = {0, 0, 0, 0.5, 0, 0, 1, 0, 0}, q[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0},
+                 middle[1] = {0.5}, ends[2] = {0, 1}, zero[1] = {0}, boom[6] = {0, 6, 0, 2, 6, 0},
+                 modes[6] = {0, 9, 0, 2, 9, 0}, at[3] = {5, 0, -1}, about[3] = {5, 0, 0}, v[3] = {0, .1, 0},
+                 spin[3] = {0, 0, .2}, up[3] = {0, 0, 3};
+    double K[36], M[36];
+    scene_diagonal(K, 1e4, 1e4, 1e4, 100, 100, 100);
+    OK(s, spar_beam_create(s, "mast", 1, 3, &m[1]));
+    OK(s, spar_beam_set_nodes(m[1], 3, nodes, q));
+    OK(s, spar_beam_set_sections(m[1], 1, middle, K, NULL));
+    OK(s, spar_beam_set_quadrature(m[1], SPAR_QUADRATURE_GAUSS, 3));
+    OK(s, spar_member_set_fidelity(m[1], SPAR_FIDELITY_PRESCRIBED, 0));
+    OK(s, spar_member_set_root(m[1], SPAR_ROOT_DRIVEN));
+    scene_diagonal(K, 4e4, 4e4, 4e4, 800, 600, 600);
+    scene_diagonal(M, 1, 1, 1, .02, .01, .01);
+    for (int i = 2; i < 5; i++) {
+        static const char *const name[] = {"boom", "modes", "damped"};
+        OK(s, spar_beam_create(s, name[i - 2], 1, i == 2 ? 4 : 6, &m[i]));
+        OK(s, spar_beam_set_axis(m[i], 2, ends, i == 2 ? boom : modes, NULL));
+        OK(s, spar_beam_set_sections(m[i], 1, zero, K, M));
+    }
+    OK(s, spar_member_set_fidelity(m[2], SPAR_FIDELITY_RIGID, 0));
+    OK(s, spar_member_set_fidelity(m[3], SPAR_FIDELITY_MODAL, 4));
+    OK(s, spar_member_set_root(m[2], SPAR_ROOT_FREE));
+    scene_diagonal(M, 2, 2, 2, .3, .4, .5);
+    OK(s, spar_rigid_create(s, "weight", at, NULL, M, &m[5]));
+    OK(s, spar_member_set_initial_velocity(m[5], about, v, spin));
+    scene_diagonal(M, 1, 1, 1, 1, 1, 1);
+    OK(s, spar_rigid_create(s, "host's own", NULL, NULL, M, &m[6]));
+    OK(s, spar_member_set_external(m[6], 1));
+    OK(s, spar_point_create(s, "buoy", up, NULL, &m[7]));
+}
+
+static void commit_by_hand(spar_session *s, spar_member **m) {
+    const double tip[6] = {0, 1, 2, 0.1, 0.2, 0.3}, three[6] = {0, 0.5, 0, 0, 0, 0}, ends[2] = {0, 1},
+                 dead[12] = {1, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0}, half[1] = {0.5}, follower[6] = {0, 1, 0, 0, 0, 0},
+                 ratio[2] = {0.02, 0.03};
+    const int64_t mode[2] = {0, 1};
+    for (int i = 0; i < MEMBERS; i++) {
+        OK(s, spar_member_commit(m[i]));
+    }
+    OK(s, spar_beam_set_modal_damping(m[4], mode, ratio, NULL));
+    OK(s, spar_member_set_load(m[0], 9, SPAR_LOAD_DEAD, tip));
+    OK(s, spar_member_set_load(m[0], 3, SPAR_LOAD_FOLLOWER, three));
+    OK(s, spar_beam_set_line_load(m[0], SPAR_LOAD_DEAD, 2, ends, dead));
+    OK(s, spar_beam_set_line_load(m[0], SPAR_LOAD_FOLLOWER, 1, half, follower));
+}
+
+static void joints_by_hand(spar_session *s, spar_member **m) {
+    const double far[3] = {0, 6, 0}, rest[4] = {1, 0, 0, 0}, hang[3] = {5, 0, -1}, tip[3] = {3, 2, 3},
+                 above[3] = {0, 0, 3}, preload[6] = {0, 0, 1, 0, 0, 0}, load[6] = {0, 0, .5, 0, 0, 0};
+    double k[36], d[36];
+    spar_joint *j = NULL;
+    OK(s, spar_joint_create(s, "shaft", m[2], 0, NULL, 0, SPAR_FREE_RZ, &j));
+    OK(s, spar_joint_set_frame(j, far, rest));
+    OK(s, spar_joint_set_driven(j, SPAR_FREE_RZ));
+    scene_diagonal(k, 10, 10, 10, 10, 10, 10);
+    OK(s, spar_joint_create(s, "tether", m[7], 0, NULL, 0, 63, &j));
+    OK(s, spar_joint_set_spring(j, k, NULL, NULL));
+    OK(s, spar_line_create(s, "rope", m[5], 0, hang, m[0], 9, tip, &j));
+    OK(s, spar_line_set_spring(j, 50, 0.5, 4, 0));
+    OK(s, spar_line_create(s, "stay", m[5], 0, hang, NULL, 0, above, &j));
+    OK(s, spar_line_set_spring(j, 5, 0, 4, 1));
+    scene_diagonal(d, .1, .1, .1, .1, .1, .1);
+    OK(s, spar_joint_create(s, "moss", m[5], 0, NULL, 0, 63, &j));
+    OK(s, spar_joint_set_spring(j, k, d, preload));
+    OK(s, spar_joint_set_load(j, load));
+    scene_diagonal(k, 1, 1, 1, 1, 1, 1);
+    OK(s, spar_joint_create(s, "tip", m[5], 0, m[0], 9, 63, &j));
+    OK(s, spar_joint_set_frame(j, hang, NULL));
+    OK(s, spar_joint_set_spring(j, k, NULL, NULL));
+}
+
+static void settings_by_hand(spar_session *s) {
+    const double g[3] = {0, 0.5, -9.81};
+    OK(s, spar_session_set_gravity(s, g));
+    OK(s, spar_session_set_integrator(s, 0.8, 2));
+    OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));
+    OK(s, spar_session_set_coupling(s, SPAR_COUPLING_AITKEN, 1e-8, 1e-5, 44));
+    OK(s, spar_session_set_relaxation(s, 0.6));
+    OK(s, spar_session_set_predictor(s, 2));
+    OK(s, spar_session_set_reproducible(s, 1));
+    OK(s, spar_session_set_option(s, "coupling.reuse", "7"));
+    OK(s, spar_session_set_option(s, "coupling.target", "0.02"));
+}
+
+/* What a session is set to, as a text: two that are alike give one text. */
+static void settings_text(const spar_session *s, char *to, size_t size) {
+    static const char *const option[] = {"coupling.reuse", "coupling.target", "coupling.filter"};
+    double g[3], rho, newton[2], tolerance[2], omega;
+    int sub, most, scheme, limit, order, bins;
+    char text[3][32];
+    OK(s, spar_session_get_gravity(s, g));
+    OK(s, spar_session_get_integrator(s, &rho, &sub));
+    OK(s, spar_session_get_newton(s, newton, newton + 1, &most));
+    OK(s, spar_session_get_coupling(s, &scheme, tolerance, tolerance + 1, &limit));
+    OK(s, spar_session_get_relaxation(s, &omega));
+    OK(s, spar_session_get_predictor(s, &order));
+    OK(s, spar_session_get_reproducible(s, &bins));
+    for (int i = 0; i < 3; i++) {
+        OK(s, spar_session_get_option(s, option[i], 32, text[i]));
+    }
+    (void)snprintf(to, size, "%a %a %a %a %d %a %a %d %d %a %a %d %a %d %d %s %s %s", g[0], g[1], g[2], rho, sub,
+                   newton[0], newton[1], most, scheme, tolerance[0], tolerance[1], limit, omega, order, bins, text[0],
+                   text[1], text[2]);
+}
+
+/* Everything that a file can say, and the same by hand: settings alike, members in the file's order, and 20 steps with
+   the same bits (memcmp). Sections of other hosts hold nothing. */
+static void test_everything(void **state) {
+    (void)state;
+    char text[8192], set[2][512];
+    spar_session *s[2] = {scene_session(), scene_session()};
+    spar_member *m[2][MEMBERS] = {{NULL}};
+    spar_joint *moss = NULL;
+    (void)snprintf(text, sizeof text, "%s%s", everything, joints);
+    spar_case *c = read_text(s[0], "mine", text);
+    settings_by_hand(s[1]);
+    wing_by_hand(s[1], &m[1][0]);
+    others_by_hand(s[1], m[1]);
+    commit_by_hand(s[1], m[1]);
+    joints_by_hand(s[1], m[1]);
+    assert_int_equal(spar_case_member_count(c), MEMBERS);
+    for (int i = 0; i < MEMBERS; i++) {
+        m[0][i] = spar_case_member_at(c, i);
+    }
+    assert_null(spar_case_member_at(c, MEMBERS));
+    settings_text(s[0], set[0], sizeof set[0]);
+    settings_text(s[1], set[1], sizeof set[1]);
+    assert_string_equal(set[0], set[1]);
+    GOOD(spar_case_joint(c, "moss", &moss));
+    same_run(s[0], s[1], m[0], m[1], MEMBERS, 20);
+    spar_case_free(&c);
+    assert_null(c);
+    spar_case_free(&c);
+    spar_session_destroy(&s[0]);
+    spar_session_destroy(&s[1]);
+}
+
+/* A file that says nothing, or only what a host asks for, has no members. */
+static void test_nothing(void **state) {
+    (void)state;
+    const char *const texts[] = {"", "# nothing\n\n", "[session]\n", "[host]\ndt 0.1"};
+    for (int i = 0; i < 4; i++) {
+        spar_session *s = scene_session();
+        spar_case *c = read_text(s, NULL, texts[i]);
+        spar_member *member = NULL;
+        assert_int_equal(spar_case_member_count(c), 0);
+        assert_int_equal(spar_case_member(c, "wing", &member), SPAR_ERR_ARGUMENT);
+        assert_non_null(strstr(spar_case_message(), "nor any other"));
+        GOOD(spar_case_output(c, 0, 0, NULL));
+        OK(s, spar_step(s, 0.1, NULL, NULL, NULL));
+        spar_case_free(&c);
+        spar_session_destroy(&s);
+    }
+}
+
+/* ---- the examples ---- */
+
+static void read_example(spar_session *s, const char *file, const char *name, spar_case **c, spar_member **m) {
+    char whole[512];
+    (void)snprintf(whole, sizeof whole, CASES "%s", file);
+    GOOD(spar_case_read(whole, NULL, s, c));
+    GOOD(spar_case_member(*c, name, m));
+}
+
+/* The cylinder, alone, swings at its reduced velocity: period 4, so that after a quarter of it the push of 0.05 has
+   become 0.05 * 4 / (2 pi) of way and no speed; 1e-4 of it for dt = 0.005. It does not leave its line. */
+static void test_cylinder(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_case *c = NULL;
+    spar_member *m = NULL;
+    double q[7], v[6];
+    read_example(s, "cylinder.case", "cylinder", &c, &m);
+    for (int i = 0; i < 200; i++) {
+        OK(s, spar_step(s, 0.005, NULL, NULL, NULL));
+    }
+    OK(s, spar_member_get_motion(m, q, v, NULL));
+    NEAR(q[1], 0.05 * 4 / (2 * 3.14159265358979323846), 1e-4 * 0.05);
+    NEAR(v[1], 0, 1e-4);
+    assert_true(q[0] == 0 && q[2] == 0);
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+/* The flag is the beam of CSM2 in tests/verification/turek_hron_flag.c, a slab of 0.01: its deflection under gravity 2
+   is that one's, (-0.46604, -16.9240) mm to its digits. */
+static void test_flag(void **state) {
+    (void)state;
+    const double g[3] = {0, -2, 0};
+    spar_session *s = scene_session();
+    spar_case *c = NULL;
+    spar_member *m = NULL;
+    double q[7];
+    read_example(s, "flag.case", "flag", &c, &m);
+    OK(s, spar_session_set_gravity(s, g));
+    OK(s, spar_member_solve_static(m, 1));
+    scene_tip(m, q);
+    NEAR(1e3 * q[0], -0.46604, 6e-6);
+    NEAR(1e3 * q[1], -16.9240, 6e-5);
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+/* The blade by tables against the same tables by examples/nrel5mw.c: the same bits. */
+static void test_blade(void **state) {
+    (void)state;
+    const double g[3] = {0, 0, -9.81}, x[3] = {0, 0, 91.5}, q[4] = {0.7071067811865476, 0, -0.7071067811865476, 0};
+    spar_session *s[2] = {scene_session(), scene_session()};
+    spar_case *c = NULL;
+    spar_member *m[2] = {NULL, NULL};
+    nrel5mw data;
+    nrel5mw_rotor rotor;
+    double density;
+    read_example(s[0], "blade.case", "blade", &c, &m[0]);
+    GOOD(spar_case_get_numbers(c, "density", 1, NULL, &density));
+    assert_true(density == 1.225);
+    OK(NULL, nrel5mw_load(&data, SPAR_DATA_DIR "/nrel5mw"));
+    nrel5mw_rotor_default(&data, &rotor);
+    OK(s[1], spar_session_set_gravity(s[1], g));
+    OK(s[1], nrel5mw_create_blade(&data, &rotor, s[1], 0, 1, 10, &m[1]));
+    OK(s[1], spar_member_set_placement(m[1], x, q));
+    OK(s[1], spar_member_commit(m[1]));
+    for (int k = 0; k < 2; k++) {
+        double motion[7] = {0, 0, 0, cos(0.01), 0, 0, sin(0.01)};
+        OK(s[k], spar_member_drive_root(m[k], motion, NULL, NULL));
+        OK(s[k], spar_step(s[k], 0.01, NULL, NULL, NULL));
+    }
+    double motion[2][7 * 10];
+    OK(s[0], spar_member_get_motion(m[0], motion[0], NULL, NULL));
+    OK(s[1], spar_member_get_motion(m[1], motion[1], NULL, NULL));
+    assert_memory_equal(motion[0], motion[1], sizeof motion[0]);
+    assert_true(motion[0][7 * 9] != 0);
+    nrel5mw_free(&data);
+    spar_case_free(&c);
+    spar_session_destroy(&s[0]);
+    spar_session_destroy(&s[1]);
+}
+
+/* BeamDyn's files by name: the blade file that the primary one names, or another. */
+static void test_beamdyn(void **state) {
+    (void)state;
+    static const char primary[] = SPAR_SOURCE_DIR "/tests/data/bend_primary.inp",
+                      blade[] = SPAR_SOURCE_DIR "/tests/data/bend_blade.inp";
+    for (int named = 0; named < 2; named++) {
+        char text[2048];
+        spar_session *s[2] = {scene_session(), scene_session()};
+        spar_member *m[2] = {NULL, NULL};
+        (void)snprintf(text, sizeof text, "[session]\ngravity 0 0 -9\n[beam b]\nnodes 9\nbeamdyn \"%s\" %s\n", primary,
+                       named ? blade : "");
+        spar_case *c = read_text(s[0], NULL, text);
+        GOOD(spar_case_member(c, "b", &m[0]));
+        OK(s[1], spar_session_set_gravity(s[1], (double[]){0, 0, -9}));
+        OK(s[1], spar_beam_create(s[1], "b", 1, 9, &m[1]));
+        OK(s[1], spar_beam_read_beamdyn(m[1], primary, named ? blade : NULL));
+        OK(s[1], spar_member_commit(m[1]));
+        same_run(s[0], s[1], &m[0], &m[1], 1, 3);
+        spar_case_free(&c);
+        spar_session_destroy(&s[0]);
+        spar_session_destroy(&s[1]);
+    }
+}
+
+/* ---- the host's keys ---- */
+
+static void test_host(void **state) {
+    (void)state;
+    const double otherwise[2] = {7, 8};
+    double x[2] = {0, 0};
+    const char *text = NULL;
+    spar_session *s = scene_session();
+    spar_case *c = read_text(s, "mine",
+                             "[host]\npatch \"left wall\" right # two\nnear 0.04\nsize 1 2\n[host mine]\nnear 0.05\n"
+                             "[host other]\nfar 3\n");
+    GOOD(spar_case_get_text(c, "patch", NULL, &text));
+    assert_string_equal(text, "left wall right");
+    GOOD(spar_case_get_numbers(c, "near", 1, otherwise, x));
+    assert_true(x[0] == 0.05);
+    assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "line 4: the host has not asked for 'size'"));
+    assert_int_equal(spar_case_get_numbers(c, "size", 1, NULL, x), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "size has 2 values; give 1"));
+    GOOD(spar_case_get_numbers(c, "size", 2, NULL, x));
+    assert_true(x[0] == 1 && x[1] == 2);
+    GOOD(spar_case_check(c));
+    GOOD(spar_case_get_numbers(c, "far", 2, otherwise, x));
+    assert_true(x[0] == 7 && x[1] == 8);
+    assert_int_equal(spar_case_get_numbers(c, "far", 1, NULL, x), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "[host mine]"));
+    assert_int_equal(spar_case_get_numbers(c, "patch", 2, NULL, x), SPAR_ERR_ARGUMENT);
+    assert_true(x[0] == 7 && x[1] == 8);
+    GOOD(spar_case_get_text(c, "solver", "none", &text));
+    assert_string_equal(text, "none");
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+/* ---- mistakes ---- */
+
+/* Each text is refused, and the message has both parts: line and what, and the cure. */
+static void test_mistakes(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *what, *cure;
+    } wrong[] = {
+        {"gravity 0 0 1\n", "line 1: stands before any heading", "[beam wing]"},
+        {"[session\n", "line 1: a heading is [kind]", "alone on its line"},
+        {"[session] gravity 0 0 1\n", "line 1: a heading is [kind]", "alone on its line"},
+        {"[]\n", "line 1: no heading []", "did you mean"},
+        {"\n[baem wing]\n", "line 2: no heading [baem]", "did you mean [beam]?"},
+        {"[beam]\n", "line 1: [beam] needs a name", "[beam wing]"},
+        {"[session]\n\n[session]\n", "line 3: [session ] bears the name of line 1", "put the two together"},
+        {"[point a]\n[rigid a]\nmass 1 1 1 1 1 1\n", "line 2: [rigid a] bears the name of line 1", "another"},
+        {"[session]\ngarvity 0 0 1\n", "line 2: [session] has no key 'garvity'", "did you mean 'gravity'?"},
+        {"[point a]\nelements 3\n", "line 2: [point] has no key 'elements'", "did you mean"},
+        {"[session]\ngravity 0 0\n", "line 2: gravity has 2 values", "give 3"},
+        {"[session]\ngravity 0 0 0 0\n", "line 2: gravity has 4 values", "give 3"},
+        {"[session]\ngravity 0 0 1\ngravity 0 0 1\n", "line 3: gravity is given twice", "first in line 2"},
+        {"[session]\ngravity 0 0 \"1\n", "line 2: a quote is not closed", "its line"},
+        {"[session]\ngravity 0 0 1,5\n", "line 2: gravity: '1,5' is not a number", "write it as 1, -0.5 or 2e-3"},
+        {"[session]\ngravity 0 0 nan\n", "line 2: gravity: 'nan' is not a number", "write it"},
+        {"[session]\ngravity 0 0 1e999\n", "line 2: gravity: '1e999' is not a number", "write it"},
+        {"[session]\npredictor 1.5\n", "line 2: predictor: 1.5", "a whole number from 0 to 2"},
+        {"[session]\nscheme iqnils\n", "line 2: scheme: 'iqnils' is not known", "did you mean iqn-ils?"},
+        {"[session]\nreproducible yes\n", "line 2: reproducible: 'yes' is not known", "(off, on)"},
+        {"[session]\nrho_inf 2\n", "line 2: spar_session_set_integrator", "rho_inf"},
+        {"[session]\noption coupling.reus 3\n", "line 2: spar_session_set_option", "coupling.reus"},
+        {"[rigid a]\n", "line 1: [rigid a] has no mass", "m m m Jx Jy Jz"},
+        {"[rigid a]\nmass 1 1 1 1 1 1 1\n", "line 2: mass: a 6x6 matrix of 7 numbers", "21 (the upper triangle"},
+        {"[rigid a]\nmass 1 2 1 1 1 1\n", "line 2: spar_rigid_create", "a"},
+        {"[beam a]\n", "line 1: spar_member_commit: ", "a"},
+        {"[beam a]\nnodes 1\n", "line 2: spar_beam_create", "nodes"},
+        {"[beam a]\naxis 0 0 0 0\naxis 1 1 0 0 5\n", "line 3: axis has 5 numbers where the first one, in line 2, has 4",
+         "make them alike"},
+        {"[beam a]\naxis 0 0 0 0\naxis 0 1 0 0\n", "line 2: spar_beam_set_axis", "eta"},
+        {"[beam a]\naxis 0 0 0 0\naxis 1 1 0 0\nnode 0 0 0\n", "line 4: nodes and an axis (line 2)", "keep one"},
+        {"[beam a]\nnode 0 0 0 1\n", "line 2: a node has 4 numbers", "qw qx qy qz"},
+        {"[beam a]\nsection 0 1 1 1 1 1 1 1\n", "line 2: a row of the sections has 8 numbers", "6, 21 or 36"},
+        {"[beam a]\nsection 0 1 1 1 1 1 -1\n", "line 2: spar_beam_set_sections", "a"},
+        {"[beam a]\naxis_file nowhere.txt\n", "nowhere.txt: cannot be read", "check path and rights"},
+        {"[beam a]\naxis 0 0 0 0\naxis_file nowhere.txt\n", "line 2: axis and axis_file (line 3) are both", "keep one"},
+        {"[beam a]\nbeamdyn nowhere.inp\n", "line 2: spar_beam_read_beamdyn", "nowhere.inp"},
+        {"[beam a]\nfidelity modal\n", "line 2: fidelity modal", "number of its modes"},
+        {"[beam a]\nfidelity exact 3\n", "line 2: fidelity exact", "number of its modes"},
+        {"[beam a]\nquadrature simpson 3\n", "line 2: quadrature: 'simpson' is not known", "gauss, lobatto, sections"},
+        {"[point a]\nload last dead 0 0 0 0 0\n", "line 2: load has 7 values", "give 8"},
+        {"[point a]\nload 1 dead 0 0 0 0 0 0\n", "line 2: load: 1", "a whole number from 0 to 0"},
+        {"[point a]\neffects inertia wrok\n", "line 2: effects: 'wrok' is not known", "did you mean work?"},
+        {"[point a]\norientation 0 0 0 0\n", "line 2: spar_member_set_placement", "a"},
+        {"[joint j]\n", "line 1: [joint j] has no end a", "a MEMBER NODE"},
+        {"[joint j]\na wing 0\n", "line 2: there is no member 'wing'", "nor any other"},
+        {"[point tip]\n[joint j]\na tap 0\nb ground\n", "line 3: there is no member 'tap'", "did you mean 'tip'?"},
+        {"[point tip]\n[joint j]\na tip 0\nb tip\n", "line 4: b: 'tip' has 1 nodes", "first, last, or a number"},
+        {"[point tip]\n[joint j]\na tip 0\nb ground\nfree q\n", "line 5: free: 'q' is not known", "rx, ry, rz"},
+        {"[point tip]\n[joint j]\na tip 0\nb ground\nfree y\nstiffness 1 1 1 1 1 1\n", "line 6: spar_joint_set_spring",
+         "j"},
+        {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 0\n", "line 2: spar_line_create", "j"},
+        {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 1 1 1\n", "line 4: b has 6 values", "give 4 to 5"},
+        {"[point tip]\n[output]\nwatch tip 0\n", "line 3: watch adds columns", "give history FILE"},
+        {"[point tip]\n[output]\nhistory h\nwatch top 0\n", "line 4: there is no member 'top'", "'tip'"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        spar_session *s = scene_session();
+        spar_case *c = NULL;
+        int status = spar_case_read(written(wrong[i].text), NULL, s, &c);
+        const char *message = spar_case_message();
+        if (status == SPAR_OK || !strstr(message, wrong[i].what) || !strstr(message, wrong[i].cure)) {
+            fail_msg("\"%s\" gave %d: %s\nexpected: %s ... %s", wrong[i].text, status, message, wrong[i].what,
+                     wrong[i].cure);
+        }
+        assert_null(c);
+        (void)remove(path);
+        spar_session_destroy(&s);
+    }
+}
+
+/* Files that are none: not there, a folder, with a byte 0. */
+static void test_files(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_case *c = NULL;
+    FILE *file = fopen(written(""), "w");
+    assert_int_equal(spar_case_read("nowhere.case", NULL, s, &c), SPAR_ERR_IO);
+    assert_non_null(strstr(spar_case_message(), "nowhere.case: cannot be read: No such file"));
+    assert_int_equal(spar_case_read(".", NULL, s, &c), SPAR_ERR_IO);
+    assert_non_null(file);
+    assert_int_equal(fwrite("[session]\n\0gravity", 1, 18, file), 18);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(spar_case_read(path, NULL, s, &c), SPAR_ERR_IO);
+    assert_non_null(strstr(spar_case_message(), "not a text"));
+    assert_int_equal(spar_case_read(NULL, NULL, s, &c), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_case_read(path, NULL, NULL, &c), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_case_read(path, NULL, s, NULL), SPAR_ERR_ARGUMENT);
+    assert_null(c);
+    (void)remove(path);
+    spar_session_destroy(&s);
+}
+
+/* Under a locale with a comma (tests/torture/traps makes one) the same bits, and a history with points. */
+static void test_comma(void **state) {
+    (void)state;
+    const char *const locale[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
+    size_t k = 0;
+    while (k < 4 && !setlocale(LC_ALL, locale[k])) {
+        k++;
+    }
+    if (k == 4) {
+        skip();
+    }
+    char row[512], number[8];
+    double t, x;
+    spar_session *s = scene_session();
+    spar_case *c = read_text(s, NULL,
+                             "[session]\ngravity 0 0 -9.81\n[point p]\nplace .5 0 0\n"
+                             "[output]\nhistory test_case_comma.txt\n[host]\nx 1.5\n");
+    GOOD(spar_case_get_numbers(c, "x", 1, NULL, &x));
+    assert_true(x == 1.5);
+    OK(s, spar_step(s, 0.25, NULL, NULL, NULL));
+    GOOD(spar_case_output(c, 0, 0, NULL));
+    (void)snprintf(number, sizeof number, "%.1f", 0.5);
+    assert_string_equal(number, "0,5"); /* the host's is as it was */
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+    (void)setlocale(LC_ALL, "C");
+    FILE *file = fopen("test_case_comma.txt", "r");
+    assert_non_null(file);
+    assert_non_null(fgets(row, sizeof row, file));
+    assert_int_equal(fscanf(file, "%lf", &t), 1);
+    assert_true(t == 0.25);
+    (void)fclose(file);
+    (void)remove("test_case_comma.txt");
+}
+
+/* ---- what is written ---- */
+
+static int exists(const char *file) {
+    return access(file, R_OK) == 0;
+}
+
+/* A history line a step with the tip of a swinging body, pictures every second step, those of the fluid for its rank;
+   the own [output] replaces the common one. */
+static void test_output(void **state) {
+    (void)state;
+    const double at[3] = {0, 0, 0};
+    char line[2][1024];
+    double t, value[15], q[7], v[6];
+    spar_fluid *fluid = NULL;
+    spar_session *s = scene_session();
+    (void)remove("test_case_history.txt"); /* of a run that was killed */
+    spar_case *c = read_text(s, "mine",
+                             "[rigid body/one]\nmass 2 2 2 1 1 1\nvelocity 0 1 0\n[joint k]\na body/one 0\nb ground\n"
+                             "free y\nstiffness 0 3 0 0 0 0\n[output]\nhistory never.txt\n[output mine]\n"
+                             "folder test_case_vtk\nevery 2\nfluids on\nhistory test_case_history.txt\n"
+                             "watch body/one last\n");
+    spar_member *body = spar_case_member_at(c, 0);
+    OK(s, spar_fluid_create(body, "air", &fluid));
+    OK(s, spar_fluid_set_motion_nodes(fluid, 1, at));
+    OK(s, spar_fluid_map(fluid));
+    for (int i = 0; i < 2; i++) {
+        OK(s, spar_step(s, 0.125, NULL, NULL, NULL));
+        GOOD(spar_case_output(c, 3, 1, &fluid)); /* of another rank: its fluid only */
+        assert_int_equal(exists("test_case_history.txt"), i);
+        GOOD(spar_case_output(c, 0, 1, &fluid));
+    }
+    OK(s, spar_member_get_motion(body, q, v, NULL));
+    FILE *file = fopen("test_case_history.txt", "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line[0], sizeof line[0], file));
+    assert_non_null(strstr(line[0], "body/one.0.uy"));
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(fscanf(file, "%lf", &t), 1);
+        for (int k = 0; k < 14; k++) {
+            assert_int_equal(fscanf(file, "%lf", value + k), 1);
+        }
+    }
+    (void)fclose(file);
+    assert_true(t == 0.25 && value[0] == 2);
+    assert_true(value[6] == q[1] && value[9] == v[1]); /* 17 digits are the number */
+    static const char *const files[] = {
+        "test_case_vtk/body_one.000002.vtp",
+        "test_case_vtk/body_one.pvd",
+        "test_case_vtk/air.0.000002.vtp",
+        "test_case_vtk/air.0.pvd",
+        "test_case_vtk/air.3.000002.vtp",
+        "test_case_vtk/air.3.pvd",
+        "test_case_history.txt",
+    };
+    assert_false(exists("never.txt") || exists("test_case_vtk/body_one.000001.vtp"));
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        assert_true(exists(files[i]));
+        (void)remove(files[i]);
+    }
+    (void)rmdir("test_case_vtk");
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+/* What cannot be written is told, with the cure. */
+static void test_no_output(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_case *c = read_text(s, NULL, "[point p]\n[output]\nfolder /dev/null/pictures\nevery 1\n");
+    OK(s, spar_step(s, 0.1, NULL, NULL, NULL));
+    assert_int_equal(spar_case_output(c, 0, 0, NULL), SPAR_ERR_IO);
+    assert_non_null(strstr(spar_case_message(), "/dev/null/pictures"));
+    assert_non_null(strstr(spar_case_message(), "make it, or name another"));
+    assert_int_equal(spar_case_output(c, 0, 1, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_case_output(NULL, 0, 0, NULL), SPAR_ERR_ARGUMENT);
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+int main(void) {
+    (void)setlocale(LC_ALL, "C"); /* examples/nrel5mw.c and what is read back below keep to it */
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_everything), cmocka_unit_test(test_nothing),  cmocka_unit_test(test_cylinder),
+        cmocka_unit_test(test_flag),       cmocka_unit_test(test_blade),    cmocka_unit_test(test_beamdyn),
+        cmocka_unit_test(test_host),       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_files),
+        cmocka_unit_test(test_comma),      cmocka_unit_test(test_output),   cmocka_unit_test(test_no_output),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
