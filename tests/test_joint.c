@@ -501,6 +501,39 @@ static void test_cart(void **state) {
     }
 }
 
+/* A body on springs and dampers to a point that the host moves steadily along and the body sets out with: seen from it
+   nothing happens, from the first acceleration on. */
+static void test_sprung_to_a_cart(void **state) {
+    (void)state;
+    const double speed[3] = {3, -1, 2}, J[3] = {1, 1, 1}, v[6] = {3, -1, 2};
+    double K[36], D[36], z[6], rate[6], load[6];
+    scene_diagonal(K, 300, 400, 500, 60, 70, 80);
+    scene_diagonal(D, 3, 4, 5, 6, 7, 8);
+    spar_session *s = scene_session();
+    spar_member *cart = NULL, *body = add_body(s, "body", origin, 2, origin, J);
+    OK(s, spar_member_set_initial_velocity(body, origin, speed, origin));
+    OK(s, spar_point_create(s, "cart", origin, rest, &cart));
+    OK(s, spar_member_commit(cart));
+    spar_joint *j = add_joint(s, "springs", body, 0, cart, 0, 63, origin);
+    OK(s, spar_joint_set_spring(j, K, D, NULL));
+    OK(s, spar_member_set_motion(cart, (double[]){0, 0, 0, 1, 0, 0, 0}, v, NULL));
+    for (int i = 1; i <= 50; i++) {
+        double t = 0.02 * i, q[7] = {3 * t, -t, 2 * t, 1, 0, 0, 0};
+        OK(s, spar_step_begin(s, 0.02));
+        OK(s, spar_member_set_motion(cart, q, v, NULL));
+        OK(s, spar_step_solve(s));
+        OK(s, spar_step_accept(s));
+        OK(s, spar_joint_get_motion(j, z, rate, NULL));
+        OK(s, spar_joint_get_load(j, load));
+        for (int k = 0; k < 6; k++) {
+            NEAR(z[k], 0, 1e-12);
+            NEAR(rate[k], 0, 1e-11);
+            NEAR(load[k], 0, 1e-9);
+        }
+    }
+    spar_session_destroy(&s);
+}
+
 /* ---- a beam that one body carries ---- */
 
 /* A rigid beam of 2 m and 3 kg, hinged at its far end: J = m L^2 / 3, so theta'' = -3 g / (2 L) cos theta from the
@@ -726,23 +759,15 @@ static void test_described_after_rest(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pendulum),
-        cmocka_unit_test(test_double_pendulum),
-        cmocka_unit_test(test_weld),
-        cmocka_unit_test(test_springs),
-        cmocka_unit_test(test_top),
-        cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_parallelogram),
-        cmocka_unit_test(test_slider_crank),
-        cmocka_unit_test(test_rope),
-        cmocka_unit_test(test_rod),
-        cmocka_unit_test(test_cart),
-        cmocka_unit_test(test_sprung_at_rest),
-        cmocka_unit_test(test_weld_at_rest),
-        cmocka_unit_test(test_nothing_holds),
-        cmocka_unit_test(test_driven_root),
-        cmocka_unit_test(test_rigid_beam),
-        cmocka_unit_test(test_described_after_rest),
+        cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_double_pendulum),
+        cmocka_unit_test(test_weld),          cmocka_unit_test(test_springs),
+        cmocka_unit_test(test_top),           cmocka_unit_test(test_chain),
+        cmocka_unit_test(test_parallelogram), cmocka_unit_test(test_slider_crank),
+        cmocka_unit_test(test_rope),          cmocka_unit_test(test_rod),
+        cmocka_unit_test(test_cart),          cmocka_unit_test(test_sprung_at_rest),
+        cmocka_unit_test(test_weld_at_rest),  cmocka_unit_test(test_nothing_holds),
+        cmocka_unit_test(test_driven_root),   cmocka_unit_test(test_sprung_to_a_cart),
+        cmocka_unit_test(test_rigid_beam),    cmocka_unit_test(test_described_after_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,8 @@ spari_pose spari_drive_at(const spar_member *member, double s, double dt) {
 
 /* Cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1 omega. */
 spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double s, double dt) {
-    if (s >= 1) {
-        return *b;
+    if (s <= 0 || s >= 1) { /* the start of a run asks without a dt */
+        return s <= 0 ? *a : *b;
     }
     double h00 = 1 - s * s * (3 - 2 * s), h01 = s * s * (3 - 2 * s), h10 = s * (1 - s) * (1 - s),
            h11 = -s * s * (1 - s), d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s), d11 = s * (3 * s - 2);
