@@ -2,7 +2,6 @@
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
-#include "cs_selector.h"
 #include "spar_saturne.h"
 #include <stdio.h>
 #include <string.h>
@@ -15,7 +14,8 @@ static struct {
     long steps, iterations;
     int most;
     cs_lnum_t n_loaded, *loaded; /* faces whose force the history has */
-} report = {.n_loaded = -1};
+    double span;                 /* m, that force is divided by */
+} report;
 
 static double processor_seconds(void) {
     struct timespec now;
@@ -31,26 +31,28 @@ void saturne_clock_end(void) {
     report.spar_seconds += processor_seconds() - report.began;
 }
 
+void saturne_report_begin(void) {
+    const double metre = 1;
+    report.span = saturne_number("span", &metre);
+    report.n_loaded = saturne_faces(saturne_text("loaded", saturne_text("wetted", NULL)), &report.loaded);
+}
+
 /* The whole force on the loaded faces, by the slab's span. */
 static void total_force(double total[3]) {
     double *force;
-    if (report.n_loaded < 0) {
-        BFT_MALLOC(report.loaded, cs_glob_mesh->n_b_faces, cs_lnum_t);
-        cs_selector_get_b_face_list(saturne_this_case.loaded, &report.n_loaded, report.loaded);
-    }
     BFT_MALLOC(force, 3 * report.n_loaded, double);
     saturne_wall_forces(report.n_loaded, report.loaded, force);
     total[0] = total[1] = total[2] = 0;
     for (cs_lnum_t i = 0; i < 3 * report.n_loaded; i++) {
-        total[i % 3] += force[i] / saturne_this_case.span;
+        total[i % 3] += force[i] / report.span;
     }
     BFT_FREE(force);
     cs_parall_sum(3, CS_DOUBLE, total);
 }
 
-static void keep_errors(const spar_session *session, const spar_fluid *surface) {
+static void keep_errors(const spar_fluid *surface) {
     double audit[SPAR_AUDIT_COUNT];
-    saturne_check(spar_fluid_get_audit(surface, SPAR_AUDIT_COUNT, audit), session);
+    saturne_check(spar_fluid_get_audit(surface, SPAR_AUDIT_COUNT, audit));
     cs_parall_max(3, CS_DOUBLE, audit + SPAR_AUDIT_FORCE_ERROR);
     for (int i = 0; i < 3; i++) {
         report.errors[i] = CS_MAX(report.errors[i], audit[SPAR_AUDIT_FORCE_ERROR + i]);
@@ -58,27 +60,27 @@ static void keep_errors(const spar_session *session, const spar_fluid *surface) 
 }
 
 /* Displacement and velocity of the last node. */
-static void watch(const spar_session *session, const spar_member *wet, double u[3], double v[3]) {
+static void watch(const spar_member *wet, double u[3], double v[3]) {
     double *q, *rate;
     int64_t n;
-    saturne_check(spar_member_get_count(wet, &n), session);
+    saturne_check(spar_member_get_count(wet, &n));
     BFT_MALLOC(q, 7 * n, double);
     BFT_MALLOC(rate, 6 * n, double);
-    saturne_check(spar_member_get_motion(wet, q, rate, NULL), session);
+    saturne_check(spar_member_get_motion(wet, q, rate, NULL));
     memcpy(u, q + 7 * (n - 1), 3 * sizeof(double));
     memcpy(v, rate + 6 * (n - 1), 3 * sizeof(double));
     BFT_FREE(q);
     BFT_FREE(rate);
 }
 
-void saturne_report_step(spar_session *session, spar_member *wet, spar_fluid *surface) {
+void saturne_report_step(spar_member *wet, spar_fluid *surface) {
     double t, u[3], v[3], force[3], entry[SPAR_REPORT_COUNT];
     int iterations;
     total_force(force);
-    keep_errors(session, surface);
-    watch(session, wet, u, v);
-    saturne_check(spar_session_get_time(session, &t, NULL, &iterations), session);
-    saturne_check(spar_session_get_report(session, SPAR_REPORT_COUNT, entry), session);
+    keep_errors(surface);
+    watch(wet, u, v);
+    saturne_check(spar_session_get_time(saturne_session(), &t, NULL, &iterations));
+    saturne_check(spar_session_get_report(saturne_session(), SPAR_REPORT_COUNT, entry));
     report.steps++;
     report.iterations += iterations;
     report.most = CS_MAX(report.most, iterations);

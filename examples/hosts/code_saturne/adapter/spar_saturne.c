@@ -1,7 +1,7 @@
 /* spar behind code_saturne's coupling with an external structure: the functions by which it would talk to code_aster
    are defined here in place of the library's. Their order in a run, and in spar:
 
-       astgeo                       once: the wetted faces                session, members, fluid, map
+       astgeo                       once: the wetted faces                fluid, map
        astpdt                       every step                            spar_step_begin
        astcin                       every sub-iteration: displacements    spar_step_solve, spar_fluid_pull_motion
        astfor                       every sub-iteration: forces           spar_fluid_push_forces, spar_step_check
@@ -13,11 +13,9 @@
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
-#include <spar/spar_mpi.h>
 #include <string.h>
 
 static struct {
-    spar_session *session;
     spar_member *wet;
     spar_fluid *surface;
     cs_lnum_t n_faces, n_vertices, *faces, *vertices; /* of this rank, from 0 */
@@ -26,39 +24,46 @@ static struct {
     int stepping, done;
 } host;
 
-static void tell(const spar_session *session, int level, const char *text, void *context) {
-    (void)session, (void)context;
-    if (cs_glob_rank_id < 1) {
-        bft_printf("spar%s: %s\n",
-                   level == SPAR_LOG_ERROR     ? ", error"
-                   : level == SPAR_LOG_WARNING ? ", warning"
-                                               : "",
-                   text);
-        bft_printf_flush();
+/* ---- once ---- */
+
+/* mark[vertex] = 1 for the vertices of these faces. */
+static void mark_vertices(cs_lnum_t n, const cs_lnum_t *faces, int *mark) {
+    const cs_mesh_t *mesh = cs_glob_mesh;
+    for (cs_lnum_t i = 0; i < n; i++) {
+        for (cs_lnum_t j = mesh->b_face_vtx_idx[faces[i]]; j < mesh->b_face_vtx_idx[faces[i] + 1]; j++) {
+            mark[mesh->b_face_vtx_lst[j]] = 1;
+        }
     }
 }
 
-/* ---- once ---- */
-
-/* The faces' vertices. One on the border of two ranks is on both, which is right for motion; faces are on one. */
-static void collect_vertices(void) {
-    const cs_mesh_t *mesh = cs_glob_mesh;
-    char *wetted;
-    BFT_MALLOC(wetted, mesh->n_vertices, char);
-    memset(wetted, 0, (size_t)mesh->n_vertices);
-    for (cs_lnum_t i = 0; i < host.n_faces; i++) {
-        cs_lnum_t face = host.faces[i];
-        for (cs_lnum_t j = mesh->b_face_vtx_idx[face]; j < mesh->b_face_vtx_idx[face + 1]; j++) {
-            wetted[mesh->b_face_vtx_lst[j]] = 1;
-        }
-    }
-    BFT_MALLOC(host.vertices, mesh->n_vertices, cs_lnum_t);
-    for (cs_lnum_t v = 0; v < mesh->n_vertices; v++) {
-        if (wetted[v]) {
+/* All vertices, or the wetted ones. One on the border of two ranks is on both, which is right for motion; faces are on
+   one. */
+static void collect_vertices(int all) {
+    int *mark;
+    BFT_MALLOC(mark, cs_glob_mesh->n_vertices, int);
+    BFT_MALLOC(host.vertices, cs_glob_mesh->n_vertices, cs_lnum_t);
+    memset(mark, 0, (size_t)cs_glob_mesh->n_vertices * sizeof *mark);
+    mark_vertices(host.n_faces, host.faces, mark);
+    for (cs_lnum_t v = 0; v < cs_glob_mesh->n_vertices; v++) {
+        if (all || mark[v]) {
             host.vertices[host.n_vertices++] = v;
         }
     }
-    BFT_FREE(wetted);
+    BFT_FREE(mark);
+}
+
+/* All vertices follow the structure, the less the farther from it; those of fixed faces do not. */
+static void fade_mesh(void) {
+    double fade[2];
+    int *held;
+    cs_lnum_t *faces, n = saturne_faces(saturne_text("fixed", ""), &faces);
+    BFT_MALLOC(held, host.n_vertices, int);
+    memset(held, 0, (size_t)host.n_vertices * sizeof *held);
+    mark_vertices(n, faces, held);
+    saturne_check_case(spar_case_get_numbers(saturne_scene(), "fade", 2, NULL, fade));
+    saturne_check(spar_fluid_fade_motion(host.surface, fade[0], fade[1], host.n_vertices, NULL, held));
+    BFT_FREE(held);
+    BFT_FREE(faces);
 }
 
 static void couple_surface(void) {
@@ -74,10 +79,10 @@ static void couple_surface(void) {
     for (cs_lnum_t i = 0; i < host.n_faces; i++) {
         memcpy(centres + 3 * i, cs_glob_mesh_quantities->b_face_cog + 3 * host.faces[i], 3 * sizeof(double));
     }
-    saturne_check(spar_fluid_create(host.wet, "code_saturne", &host.surface), host.session);
-    saturne_check(spar_fluid_set_motion_nodes(host.surface, host.n_vertices, host.x0), host.session);
-    saturne_check(spar_fluid_set_force_nodes(host.surface, host.n_faces, centres), host.session);
-    saturne_check(spar_fluid_map(host.surface), host.session);
+    saturne_check(spar_fluid_create(host.wet, "code_saturne", &host.surface));
+    saturne_check(spar_fluid_set_motion_nodes(host.surface, host.n_vertices, host.x0));
+    saturne_check(spar_fluid_set_force_nodes(host.surface, host.n_faces, centres));
+    saturne_check(spar_fluid_map(host.surface));
     BFT_FREE(centres);
 }
 
@@ -89,23 +94,23 @@ void cs_ast_coupling_initialize(int nalimx, cs_real_t epalim) {
 /* The wetted faces of this rank, numbered from 1; there may be none. */
 void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfast, cs_int_t *idnast,
                               cs_real_t *almax) {
+    const int all = *saturne_text("fade", "") != '\0';
     (void)idfast, (void)idnast, (void)almax;
     host.n_faces = *nbfast;
     BFT_MALLOC(host.faces, host.n_faces, cs_lnum_t);
     for (cs_lnum_t i = 0; i < host.n_faces; i++) {
         host.faces[i] = lstfac[i] - 1;
     }
-    collect_vertices();
     saturne_clock_begin();
-    /* a serial run has not initialised MPI */
-    saturne_check(cs_glob_n_ranks > 1 ? spar_session_create_mpi(cs_glob_mpi_comm, &host.session)
-                                      : spar_session_create(&host.session),
-                  NULL);
-    saturne_check(spar_session_set_log(host.session, tell, NULL), host.session);
-    saturne_settings(host.session);
-    saturne_check(saturne_this_case.describe(host.session, &host.wet), host.session);
+    saturne_check_case(spar_case_member(saturne_scene(), saturne_text("member", NULL), &host.wet));
+    collect_vertices(all);
     couple_surface();
+    if (all) {
+        fade_mesh();
+    }
     saturne_clock_end();
+    saturne_report_begin();
+    saturne_check_case(spar_case_check(saturne_scene())); /* all keys have been asked for */
 }
 
 /* ---- every step ---- */
@@ -114,7 +119,7 @@ void CS_PROCF(astpdt, ASTPDT)(cs_real_t *dttab, cs_int_t *nbpdt) {
     (void)nbpdt;
     double dt = cs_glob_mesh->n_cells > 0 ? dttab[0] : cs_glob_time_step->dt_ref;
     saturne_clock_begin();
-    saturne_check(spar_step_begin(host.session, dt), host.session);
+    saturne_check(spar_step_begin(saturne_session(), dt));
     saturne_clock_end();
     host.stepping = 1, host.done = 0;
 }
@@ -126,8 +131,8 @@ void CS_PROCF(astcin, ASTCIN)(cs_int_t *ntcast, cs_real_3_t *disale) {
         return;
     }
     saturne_clock_begin();
-    saturne_check(spar_step_solve(host.session), host.session);
-    saturne_check(spar_fluid_pull_motion(host.surface, 1.0, host.x, NULL), host.session);
+    saturne_check(spar_step_solve(saturne_session()));
+    saturne_check(spar_fluid_pull_motion(host.surface, 1.0, host.x, NULL));
     saturne_clock_end();
     for (cs_lnum_t i = 0; i < host.n_vertices; i++) {
         for (int c = 0; c < 3; c++) {
@@ -143,8 +148,8 @@ void CS_PROCF(astfor, ASTFOR)(cs_int_t *ntcast, cs_int_t *nbfast, cs_real_t *for
     }
     saturne_wall_forces(host.n_faces, host.faces, host.force);
     saturne_clock_begin();
-    saturne_check(spar_fluid_push_forces(host.surface, host.force, NULL), host.session);
-    saturne_check(spar_step_check(host.session, &host.done), host.session);
+    saturne_check(spar_fluid_push_forces(host.surface, host.force, NULL));
+    saturne_check(spar_step_check(saturne_session(), &host.done));
     saturne_clock_end();
 }
 
@@ -158,10 +163,11 @@ void cs_ast_coupling_send_cvg(int icved) {
         return;
     }
     saturne_clock_begin();
-    saturne_check(spar_step_accept(host.session), host.session);
+    saturne_check(spar_step_accept(saturne_session()));
+    saturne_check_case(spar_case_output(saturne_scene(), CS_MAX(cs_glob_rank_id, 0), 1, &host.surface));
     saturne_clock_end();
     host.stepping = 0;
-    saturne_report_step(host.session, host.wet, host.surface);
+    saturne_report_step(host.wet, host.surface);
 }
 
 /* ---- at the end ---- */
@@ -170,7 +176,7 @@ void cs_ast_coupling_send_cvg(int icved) {
 void cs_user_extra_operations_finalize(cs_domain_t *domain) {
     (void)domain;
     saturne_report_run();
-    spar_session_destroy(&host.session);
+    saturne_end();
     BFT_FREE(host.faces);
     BFT_FREE(host.vertices);
     BFT_FREE(host.x0);

@@ -1,35 +1,38 @@
-/* spar_saturne.h: code_saturne 6.0 as a host of spar. What a case gives, and what the parts of the adapter share. */
+/* spar_saturne.h: code_saturne 6.0 as a host of spar. What the parts of the adapter share, and what a case's flow may
+   ask the case file for.
+
+   Keys of [host code_saturne]; criteria are code_saturne's, which knows gmsh's numbers of faces and no names:
+     flow NAME            folder of flow.c, mesh and comparison, for the run script
+     dt S, steps N        the run's
+     wetted CRITERION     faces that the structure moves, and member NAME that they hang on; its last node is watched
+     loaded CRITERION     faces whose force the history has, per metre of span S; default: the wetted ones, 1 m
+     fixed CRITERION      faces whose vertices stand still; sliding CRITERION: faces that vertices stay in
+     fade WITHIN BEYOND   spar moves all vertices: as the structure up to WITHIN metres from its line, not at all from
+                          BEYOND metres on. Without it code_saturne's own equation moves what is not wetted. */
 #ifndef SPAR_SATURNE_H
 #define SPAR_SATURNE_H
 
+#include "case.h"
 #include "cs_defs.h"
-#include <spar/spar.h>
 
-/* Given by each case, alike on every rank. */
-typedef struct saturne_case {
-    const char *wetted; /* code_saturne's criterion of the faces that the structure moves */
-    const char *loaded; /* of the faces whose force the history has: those and rigid ones beside them */
-    double span;        /* m, of the slab of fluid; the history's forces are per metre of it */
-    /* Makes and commits the members. wet: out, the one that the wetted faces hang on; its last node is watched. */
-    int (*describe)(spar_session *session, spar_member **wet);
-} saturne_case;
-extern const saturne_case saturne_this_case;
+/* The session, with what the case file structure.case in the folder of the run describes: made at the first call, by
+   all ranks together. */
+spar_session *saturne_session(void);
+spar_case *saturne_scene(void);
+/* A key of the case file; without `otherwise` (NULL) it has to be there. */
+double saturne_number(const char *key, const double *otherwise);
+const char *saturne_text(const char *key, const char *otherwise);
+/* Frees session and scene. Collective. */
+void saturne_end(void);
 
-/* code_saturne's Fortran user routines that cases write in C. */
-void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
-                              int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
-                              cs_real_t *disale);
-void CS_PROCF(usaste, USASTE)(int *idfstr);
-void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void);
+/* A status that is not SPAR_OK ends the run on all ranks, with the session's or the case's message. */
+void saturne_check(int status);
+void saturne_check_case(int status);
 
-/* A number or a text that the run script has set in the environment, or else what is given. */
-double saturne_number(const char *name, double otherwise);
-const char *saturne_text(const char *name, const char *otherwise);
-
-/* A status that is not SPAR_OK ends the run on all ranks, with the session's message. */
-void saturne_check(int status, const spar_session *session);
-/* Coupling scheme, tolerances and integrator, from the environment. */
-void saturne_settings(spar_session *session);
+/* Boundary faces that meet a criterion, numbered from 0; to be freed by BFT_FREE. */
+cs_lnum_t saturne_faces(const char *criterion, cs_lnum_t **faces);
+/* types[face] = type for these. */
+void saturne_mark(const char *criterion, int type, int *types);
 
 /* Forces of the fluid on boundary faces, from the pressure and velocity as they are now: what astfor_ is given has the
    pressure of the iteration before. Collective. n: faces; faces[n]; force[n][3]: out, N. */
@@ -38,9 +41,18 @@ void saturne_wall_forces(cs_lnum_t n, const cs_lnum_t *faces, double *force);
 /* Processor time that goes to spar: between begin and end, of this rank. */
 void saturne_clock_begin(void);
 void saturne_clock_end(void);
+/* What the history is about. */
+void saturne_report_begin(void);
 /* A line of history.csv, after a step was accepted. Collective. */
-void saturne_report_step(spar_session *session, spar_member *wet, spar_fluid *surface);
+void saturne_report_step(spar_member *wet, spar_fluid *surface);
 /* summary.txt, at the end of the run. Collective. */
 void saturne_report_run(void);
+
+/* code_saturne's Fortran user routines that are written in C here. */
+void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
+                              int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
+                              cs_real_t *disale);
+void CS_PROCF(usaste, USASTE)(int *idfstr);
+void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void);
 
 #endif

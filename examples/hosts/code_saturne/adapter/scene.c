@@ -1,0 +1,125 @@
+/* The session and the case file, and code_saturne's user routines that are alike in all cases. */
+#include "cs_ale.h"
+#include "cs_base.h"
+#include "cs_headers.h"
+#include "cs_prototypes.h"
+#include "cs_selector.h"
+#include "spar_saturne.h"
+#include <spar/spar_mpi.h>
+#include <stdlib.h>
+
+static spar_session *session;
+static spar_case *scene;
+
+void saturne_check(int status) {
+    if (status != SPAR_OK) {
+        bft_error(__FILE__, __LINE__, 0, "spar: %s: %s", spar_status_text(status), spar_session_message(session));
+    }
+}
+
+void saturne_check_case(int status) {
+    if (status != SPAR_OK) {
+        bft_error(__FILE__, __LINE__, 0, "spar: %s: %s", spar_status_text(status), spar_case_message());
+    }
+}
+
+static void tell(const spar_session *from, int level, const char *text, void *context) {
+    (void)from, (void)context;
+    if (cs_glob_rank_id < 1) {
+        bft_printf("spar%s: %s\n",
+                   level == SPAR_LOG_ERROR     ? ", error"
+                   : level == SPAR_LOG_WARNING ? ", warning"
+                                               : "",
+                   text);
+        bft_printf_flush();
+    }
+}
+
+static void begin(void) {
+    const char *path = getenv("SPAR_CASE");
+    /* a serial run has not initialised MPI */
+    saturne_check(cs_glob_n_ranks > 1 ? spar_session_create_mpi(cs_glob_mpi_comm, &session)
+                                      : spar_session_create(&session));
+    saturne_check(spar_session_set_log(session, tell, NULL));
+    saturne_check_case(spar_case_read(path != NULL ? path : "structure.case", "code_saturne", session, &scene));
+    (void)saturne_text("flow", ""); /* the run script's */
+}
+
+spar_session *saturne_session(void) {
+    if (scene == NULL) {
+        begin();
+    }
+    return session;
+}
+
+spar_case *saturne_scene(void) {
+    if (scene == NULL) {
+        begin();
+    }
+    return scene;
+}
+
+void saturne_end(void) {
+    spar_case_free(&scene);
+    spar_session_destroy(&session);
+}
+
+double saturne_number(const char *key, const double *otherwise) {
+    double value = 0;
+    saturne_check_case(spar_case_get_numbers(saturne_scene(), key, 1, otherwise, &value));
+    return value;
+}
+
+const char *saturne_text(const char *key, const char *otherwise) {
+    const char *text = NULL;
+    saturne_check_case(spar_case_get_text(saturne_scene(), key, otherwise, &text));
+    return text;
+}
+
+cs_lnum_t saturne_faces(const char *criterion, cs_lnum_t **faces) {
+    cs_lnum_t n = 0;
+    BFT_MALLOC(*faces, cs_glob_mesh->n_b_faces, cs_lnum_t);
+    if (*criterion != '\0') {
+        cs_selector_get_b_face_list(criterion, &n, *faces);
+    }
+    return n;
+}
+
+void saturne_mark(const char *criterion, int type, int *types) {
+    cs_lnum_t *faces, n = saturne_faces(criterion, &faces);
+    for (cs_lnum_t i = 0; i < n; i++) {
+        types[faces[i]] = type;
+    }
+    BFT_FREE(faces);
+}
+
+/* ---- user routines ---- */
+
+void cs_user_model(void) {
+    cs_get_glob_turb_model()->iturb = CS_TURB_NONE;
+    cs_glob_ale = CS_ALE_LEGACY;
+}
+
+/* The mesh's conditions: 1 fixed, 2 sliding; impale: a vertex whose displacement is given. */
+void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
+                              int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
+                              cs_real_t *disale) {
+    (void)itrale, (void)nvar, (void)nscal, (void)icodcl, (void)itypfb, (void)dt, (void)rcodcl, (void)xyzno0;
+    (void)disale;
+    saturne_mark(saturne_text("fixed", ""), 1, ialtyb);
+    saturne_mark(saturne_text("sliding", ""), 2, ialtyb);
+    if (*saturne_text("fade", "") != '\0') {
+        for (cs_lnum_t v = 0; v < cs_glob_mesh->n_vertices; v++) {
+            impale[v] = 1;
+        }
+    }
+}
+
+/* Wetted faces belong to an external structure: -1. */
+void CS_PROCF(usaste, USASTE)(int *idfstr) {
+    saturne_mark(saturne_text("wetted", NULL), -1, idfstr);
+}
+
+/* Without an XML file the library's own version of this one stops the run. */
+void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void) {
+}

@@ -1,0 +1,43 @@
+/* Turek and Hron's channel: water of viscosity 1e-3 m2/s and density 1000 kg/m3, a parabola of mean speed `speed` at
+   the inlet, which comes on smoothly within 2 s. */
+#include "cs_base.h"
+#include "cs_headers.h"
+#include "cs_prototypes.h"
+#include "spar_saturne.h"
+#include <math.h>
+
+void cs_user_parameters(cs_domain_t *domain) {
+    cs_var_cal_opt_t scheme;
+    cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
+    cs_get_glob_time_step_options()->idtvar = 0;
+    domain->time_step->dt_ref = saturne_number("dt", NULL);
+    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    fluid->ro0 = 1000, fluid->viscl0 = 1, fluid->p0 = 0;
+    cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+    scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1; /* centred, no slope test */
+    cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+}
+
+/* m/s at the height y and the time t */
+static double inflow(double y, double t) {
+    const double height = 0.41, mean = saturne_number("speed", NULL),
+                 ramp = t < 2 ? 0.5 * (1 - cos(acos(-1.) * t / 2)) : 1;
+    return ramp * 6 * mean * y * (height - y) / (height * height);
+}
+
+void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_t rcodcl[]) {
+    const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
+    const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
+    (void)nvar, (void)icodcl;
+    saturne_mark("1", CS_INLET, bc_type);
+    saturne_mark("2", CS_OUTLET, bc_type);
+    saturne_mark("5", CS_SYMMETRY, bc_type);
+    saturne_mark("3 or 4 or 6", CS_SMOOTHWALL, bc_type);
+    for (cs_lnum_t face = 0; face < faces; face++) {
+        if (bc_type[face] == CS_INLET) {
+            const double y = cs_glob_mesh_quantities->b_face_cog[3 * face + 1];
+            rcodcl[iu * faces + face] = inflow(y, cs_glob_time_step->t_cur);
+            rcodcl[(iu + 1) * faces + face] = rcodcl[(iu + 2) * faces + face] = 0;
+        }
+    }
+}
