@@ -260,6 +260,7 @@ module spar
     procedure :: push_forces_f32 => fluid_push_forces_f32
     procedure :: get_audit => fluid_get_audit
     procedure :: get_total => fluid_get_total
+    procedure :: check_total => fluid_check_total
     procedure :: get_travel => fluid_get_travel
     procedure :: get_projection => fluid_get_projection
     procedure :: get_interpolation => fluid_get_interpolation
@@ -2545,6 +2546,18 @@ contains
 
     call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
   end subroutine fluid_get_total
+
+  ! Collective. Whether all loads pushed add up to the host's total. Absent point: about the origin; absent moment: not
+  ! compared.
+  subroutine fluid_check_total(self, point, force, moment, rtol, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: force(3), rtol
+    real(c_double), intent(in), optional :: point(3), moment(3)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_check_total(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
+  end subroutine fluid_check_total
 
   ! node counts from 0, -1: there are none.
   subroutine fluid_get_travel(self, largest, node, stat, errmsg)

@@ -978,6 +978,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_get_total
 
+    function spar_fluid_check_total(fluid, point, force, moment, rtol) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(in), optional :: point(*), force(*), moment(*)
+      real(c_double), value :: rtol
+      integer(c_int) :: status
+    end function spar_fluid_check_total
+
     function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid

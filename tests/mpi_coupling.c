@@ -181,6 +181,9 @@ static void totals_over_ranks(void **state) {
         for (int k = 0; k < 6; k++) {
             NEAR(x[k], y[k], 1e-11 * 10 * force);
         }
+        OK(all.session, spar_fluid_check_total(all.around, point, x, x + 3, 1e-14));
+        y[0] += 1e-6 * force; /* as if a node were pushed twice */
+        assert_int_equal(spar_fluid_check_total(all.around, point, y, NULL, 1e-9), SPAR_ERR_ARGUMENT);
     }
     int expected = size > 1 ? SPAR_ERR_COMM : SPAR_OK;
     assert_int_equal(spar_fluid_get_total(rank == 0 ? all.around : all.added, point, x, x + 3), expected);

@@ -766,7 +766,26 @@ static void totals_are_of_one_fluid(void **state) {
         CLOSE(before[i], got[i], 0);
         CLOSE(before[3 + i], got[3 + i] + t[i], 1e-12);
     }
+    /* what the host claims: those very sums, to the rounding of the transfer; then a node pushed twice, of 1e-9 of all
+     */
+    OK(spar_fluid_check_total(f[0], point, before, before + 3, 1e-13));
+    OK(spar_fluid_check_total(f[0], point, before, NULL, 1e-13));
+    OK(spar_fluid_check_total(f[1], NULL, got, NULL, 1e300));
+    memcpy(got, before, sizeof got);
+    got[1] += 1e-9 * spari_norm(force[0][0]);
+    assert_int_equal(spar_fluid_check_total(f[0], point, got, NULL, 1e-13), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "forces pushed on all ranks") && says(&r, "pushed by one of them alone"));
+    got[1] = before[1];
+    got[4] *= 1 + 1e-9;
+    assert_int_equal(spar_fluid_check_total(f[0], point, got, got + 3, 1e-13), SPAR_ERR_ARGUMENT);
+    assert_true(says(&r, "moments pushed"));
     const double bad[3] = {0, NAN, 0};
+    assert_int_equal(spar_fluid_check_total(NULL, point, before, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_total(f[0], point, NULL, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_total(f[0], point, bad, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_total(f[0], point, before, bad, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_total(f[0], point, before, NULL, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_total(f[0], point, before, NULL, NAN), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_get_total(NULL, point, got, got + 3), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_get_total(f[0], bad, got, got + 3), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "the point is (0, nan, 0)"));

@@ -712,8 +712,10 @@ enum {
     SPAR_MAP_FAR = 4        /* farther than max_distance */
 };
 
-/* All calls on fluids but spar_fluid_get_total are local: a fluid is this rank's. A member can have many, from any of
-   its ranks. n is the number of nodes of the set in question. Nodes and maps change between steps only. */
+/* All calls on fluids but spar_fluid_get_total and spar_fluid_check_total are local: a fluid is this rank's. A member
+   can have many, from any of its ranks. n is the number of nodes of the set in question. Nodes and maps change between
+   steps only. Where ranks share a border, motion nodes may repeat on them (each is moved alike); a force node belongs
+   to one rank, for loads of all ranks add up. */
 
 /* name: in, not empty, for the messages. fluid: out. */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
@@ -889,6 +891,16 @@ SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, dou
      moment[3]: out, N m
    Each output NULL: not wanted; the same on all ranks. */
 SPAR_API int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]);
+/* Whether these sums are what the host knows them to be, from its own sum over its faces: finds force nodes of rank
+   borders that two ranks have pushed, or none. Nothing changes. Collective, as above.
+     point[3]: in, as above
+     force[3]: in, N, the host's total over all ranks
+     moment[3]: in, N m, about the point, NULL: not compared
+     rtol: in, > 0, of the difference over the sum of the sizes of the loads' parts on the structure's nodes; what the
+           transfer leaves is some 1e-15 of the sum over the fluid's nodes
+   All alike on every rank. SPAR_ERR_ARGUMENT: they differ, the message says by how much. */
+SPAR_API int spar_fluid_check_total(const spar_fluid *fluid, const double point[3], const double force[3],
+                                    const double moment[3], double rtol);
 
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
 

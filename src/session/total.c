@@ -9,8 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Force and moment about the point, of what this rank has pushed, on the structure where it is now. */
-static int sum_total(const spar_fluid *fluid, const double point[3], const char *call, double total[6]) {
+/* Of the loads that a fluid has pushed, over the ranks: force, moment about a point, and the sums of the sizes of their
+   nodal parts. */
+enum { TOTAL_MOMENT = 3, TOTAL_FORCE_PARTS = 6, TOTAL_MOMENT_PARTS, TOTALS };
+
+/* What this rank has pushed, on the structure where it is now. */
+static int add_loads(const spar_fluid *fluid, const double point[3], const char *call, double total[TOTALS]) {
     const spar_member *m = spari_fluid_member(fluid);
     for (int64_t i = 0; i < (m->committed ? m->nodes : 0); i++) {
         double load[6], arm[3], moment[3];
@@ -23,39 +27,104 @@ static int sum_total(const spar_fluid *fluid, const double point[3], const char 
         spari_cross(arm, load, moment);
         for (int k = 0; k < 3; k++) {
             total[k] += load[k];
-            total[3 + k] += moment[k] + load[3 + k];
+            total[TOTAL_MOMENT + k] += moment[k] + load[3 + k];
         }
+        total[TOTAL_FORCE_PARTS] += spari_norm(load);
+        total[TOTAL_MOMENT_PARTS] += spari_norm(moment) + spari_norm(load + 3);
     }
-    SPARI_REQUIRE(m->session, spari_first_nonfinite(total, 6) < 0, SPAR_ERR_NUMERIC,
+    SPARI_REQUIRE(m->session, spari_first_nonfinite(total, TOTALS) < 0, SPAR_ERR_NUMERIC,
                   "%s: fluid '%s': the sum is too large for a double; check the unit of the loads", call,
                   spar_fluid_get_name(fluid));
     return SPAR_OK;
 }
 
-int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {
-    SPARI_QUIET;
+/* Collective. point: NULL: the origin. claim[count]: what must be alike besides. */
+static int sum_over_ranks(const spar_fluid *fluid, const char *call, const double *point, const spari_alike *claim,
+                          int count, int status, double total[TOTALS + 1]) {
     static const double origin[3] = {0, 0, 0};
-    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
     const spar_member *m = spari_fluid_member(fluid);
     spar_session *s = m->session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
     const double *about = point ? point : origin;
-    const spari_alike alike[] = {spari_real("point (x)", about[0]), spari_real("point (y)", about[1]),
-                                 spari_real("point (z)", about[2])};
-    double total[7] = {0}; /* and the ranks' status */
+    spari_alike alike[16] = {spari_real("point (x)", about[0]), spari_real("point (y)", about[1]),
+                             spari_real("point (z)", about[2])};
+    for (int i = 0; i < count; i++) {
+        alike[3 + i] = claim[i];
+    }
+    memset(total, 0, (TOTALS + 1) * sizeof *total);
     char what[SPARI_MESSAGE_SIZE / 2];
-    (void)snprintf(what, sizeof what, "%s: fluid '%s' of member '%s'", __func__, spar_fluid_get_name(fluid), m->name);
-    int status = isfinite(about[0]) && isfinite(about[1]) && isfinite(about[2])
-                     ? sum_total(fluid, about, __func__, total)
-                     : spari_fail(s, SPAR_ERR_ARGUMENT, "%s: the point is (%g, %g, %g); give finite numbers", what,
-                                  about[0], about[1], about[2]);
-    SPARI_TRY(spari_enter_alike(s, what, alike, 3, status));
-    SPARI_TRY(spari_named(s, __func__, spari_comm_sum(s->comm, total, 6, SPAR_OK, s->message, sizeof s->message)));
+    (void)snprintf(what, sizeof what, "%s: fluid '%s' of member '%s'", call, spar_fluid_get_name(fluid), m->name);
+    if (status == SPAR_OK && spari_first_nonfinite(about, 3) >= 0) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: the point is (%g, %g, %g); give finite numbers", what, about[0],
+                            about[1], about[2]);
+    }
+    status = status == SPAR_OK ? add_loads(fluid, about, call, total) : status;
+    SPARI_TRY(spari_enter_alike(s, what, alike, 3 + count, status));
+    return spari_named(s, call, spari_comm_sum(s->comm, total, TOTALS, SPAR_OK, s->message, sizeof s->message));
+}
+
+int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
+    SPARI_TRY(spari_lend_refuse(spari_fluid_member(fluid)->session, __func__));
+    double total[TOTALS + 1];
+    SPARI_TRY(sum_over_ranks(fluid, __func__, point, NULL, 0, SPAR_OK, total));
     if (force) {
         memcpy(force, total, 3 * sizeof *force);
     }
     if (moment) {
-        memcpy(moment, total + 3, 3 * sizeof *moment);
+        memcpy(moment, total + TOTAL_MOMENT, 3 * sizeof *moment);
     }
     return SPAR_OK;
+}
+
+/* ---- against what the host knows ---- */
+
+static int check_claim(const spar_fluid *fluid, const char *call, const double *force, const double *moment,
+                       double rtol) {
+    spar_session *s = spari_fluid_member(fluid)->session;
+    const char *name = spar_fluid_get_name(fluid);
+    SPARI_REQUIRE(s, force, SPAR_ERR_ARGUMENT, "%s: fluid '%s': the force is NULL", call, name);
+    SPARI_REQUIRE(s, spari_first_nonfinite(force, 3) < 0, SPAR_ERR_ARGUMENT,
+                  "%s: fluid '%s': the force is (%g, %g, %g); give finite numbers", call, name, force[0], force[1],
+                  force[2]);
+    SPARI_REQUIRE(s, !moment || spari_first_nonfinite(moment, 3) < 0, SPAR_ERR_ARGUMENT,
+                  "%s: fluid '%s': the moment has an entry that is not finite", call, name);
+    SPARI_REQUIRE(s, isfinite(rtol) && rtol > 0, SPAR_ERR_ARGUMENT,
+                  "%s: fluid '%s': rtol is %g; give a number above 0, such as 1e-9", call, name, rtol);
+    return SPAR_OK;
+}
+
+static int compare(const spar_fluid *fluid, const char *call, const char *what, const double *pushed, double parts,
+                   const double *claim, double rtol) {
+    const spar_member *m = spari_fluid_member(fluid);
+    double off[3], size = parts > spari_norm(claim) ? parts : spari_norm(claim);
+    for (int k = 0; k < 3; k++) {
+        off[k] = pushed[k] - claim[k];
+    }
+    SPARI_REQUIRE(m->session, spari_norm(off) <= rtol * size, SPAR_ERR_ARGUMENT,
+                  "%s: fluid '%s' of member '%s': the %s pushed on all ranks come to (%.9g, %.9g, %.9g), the host's "
+                  "total is (%.9g, %.9g, %.9g); they differ by %.3g of their parts (rtol %.3g): a force node on a "
+                  "border of ranks is pushed by one of them alone, and none is left out",
+                  call, spar_fluid_get_name(fluid), m->name, what, pushed[0], pushed[1], pushed[2], claim[0], claim[1],
+                  claim[2], spari_norm(off) / size, rtol);
+    return SPAR_OK;
+}
+
+int spar_fluid_check_total(const spar_fluid *fluid, const double point[3], const double force[3],
+                           const double moment[3], double rtol) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
+    SPARI_TRY(spari_lend_refuse(spari_fluid_member(fluid)->session, __func__));
+    static const double none[3] = {0, 0, 0};
+    const double *f = force ? force : none, *t = moment ? moment : none;
+    const spari_alike claim[] = {spari_real("force (x)", f[0]),  spari_real("force (y)", f[1]),
+                                 spari_real("force (z)", f[2]),  spari_real("moment (x)", t[0]),
+                                 spari_real("moment (y)", t[1]), spari_real("moment (z)", t[2]),
+                                 spari_real("rtol", rtol),       spari_given("moment", moment != NULL)};
+    double total[TOTALS + 1];
+    SPARI_TRY(sum_over_ranks(fluid, __func__, point, claim, sizeof claim / sizeof *claim,
+                             check_claim(fluid, __func__, force, moment, rtol), total));
+    SPARI_TRY(compare(fluid, __func__, "forces", total, total[TOTAL_FORCE_PARTS], f, rtol));
+    return moment ? compare(fluid, __func__, "moments", total + TOTAL_MOMENT, total[TOTAL_MOMENT_PARTS], t, rtol)
+                  : SPAR_OK;
 }

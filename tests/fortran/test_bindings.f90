@@ -136,6 +136,7 @@ program test_bindings
   call refused(spar_fluid_push_forces(none), 'spar_fluid_push_forces')
   call refused(spar_fluid_get_audit(none, 0_c_int64_t), 'spar_fluid_get_audit')
   call refused(spar_fluid_get_total(none), 'spar_fluid_get_total')
+  call refused(spar_fluid_check_total(none, rtol=1.0_c_double), 'spar_fluid_check_total')
   call refused(spar_fluid_get_travel(none), 'spar_fluid_get_travel')
   call refused(spar_step_begin(none, 0.0_c_double), 'spar_step_begin')
   call refused(spar_step_solve(none), 'spar_step_solve')

@@ -164,6 +164,7 @@ contains
     type(spar_fluid) :: fluid
     real(c_double) :: q(7,1), v(6,1), a(6,1), f(3,1), audit(8), energy(4), t, force(3), moment(3), way, change, loads
     integer(c_int64_t) :: steps, node
+    integer(c_int) :: stat
     integer :: i
     logical :: done
 
@@ -196,6 +197,10 @@ contains
         'the force of all nodes, through the origin')
     call fluid%get_total(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], moment=moment)
     call check(all(abs(moment - [2.0_c_double, 1.0_c_double, 0.0_c_double]) < 1e-12_c_double), 'its moment, an arm of 1 along z')
+    call fluid%check_total(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], f(:,1), &
+        [2.0_c_double, 1.0_c_double, 0.0_c_double], 1e-12_c_double)
+    call fluid%check_total(force=f(:,1), moment=[0.0_c_double, 0.0_c_double, 1.0_c_double], rtol=1e-12_c_double, stat=stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'a total that is not that of the loads')
     call session%get_residual(change, loads)
     call check(abs(change) < 1e-14_c_double .and. abs(loads - sqrt(14.0_c_double)) < 1e-12_c_double, 'the last residual')
     call check(abs(t - 0.5_c_double) < 1e-14_c_double .and. steps == 10, 'ten steps make half a second')

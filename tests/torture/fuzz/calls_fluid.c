@@ -315,6 +315,13 @@ void do_spar_fluid_get_total(call *c) {
     RUN(c, spar_fluid_get_total(f->f, point, force, moment));
 }
 
+void do_spar_fluid_check_total(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *point = arg_reals_or_null(c, 3, -3, 3), *force = arg_reals_or_null(c, 3, -3, 3);
+    double *moment = arg_reals_or_null(c, 3, -3, 3), rtol = arg_real(c, 1e-12, 2);
+    RUN(c, spar_fluid_check_total(f->f, point, force, moment, rtol));
+}
+
 void do_spar_fluid_get_travel(call *c) {
     live_fluid *f = arg_fluid(c);
     double *largest = OUT_OR_NULL(c, 1);

@@ -152,6 +152,7 @@ enum {
     CALL(spar_fluid_push_forces_at, 120, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_push_forces_f32, 80, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_get_audit, 40, FUZZ_PURE)                                                                          \
+    CALL(spar_fluid_check_total, 20, FUZZ_PURE)                                                                        \
     CALL(spar_fluid_get_total, 40, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_get_travel, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_write_vtk, 10, FUZZ_PURE)                                                                          \

@@ -416,6 +416,7 @@ static void act_step(void) {
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
     CALL(spar_fluid_get_total, h.fluid[0], NULL, total, total + 3);
+    CALL(spar_fluid_check_total, h.fluid[0], NULL, total, total + 3, 1e-9);
     CALL(spar_fluid_get_travel, h.fluid[0], total, &node);
     read_back(s, b, h.fluid[0]);
     CALL(spar_fluid_get_member, h.fluid[0], &owner);

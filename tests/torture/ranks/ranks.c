@@ -224,6 +224,10 @@ static int make_reject(scene *c, const arguments *a) {
 static int make_total(scene *c, const arguments *a) {
     return spar_fluid_get_total(c->fluid, a->point, out, out + 3);
 }
+static int make_check_total(scene *c, const arguments *a) {
+    static const double force[3] = {1, 2, 3};
+    return spar_fluid_check_total(c->fluid, a->point, force, NULL, 1e300);
+}
 static int make_step(scene *c, const arguments *a) {
     return spar_step(c->session, a->dt, a->solve, c, NULL);
 }
@@ -298,6 +302,7 @@ static const struct call {
     {"spar_step_accept", make_accept, CHECKED, 0},
     {"spar_step_reject", make_reject, CHECKED, 0},
     {"spar_fluid_get_total", make_total, IDLE, POINT | SETTINGS},
+    {"spar_fluid_check_total", make_check_total, IDLE, POINT | SETTINGS},
     {"spar_step", make_step, IDLE, DT | SETTINGS},
     {"spar_session_solve_static", make_equilibrium, FIRST, LOAD_STEPS | SETTINGS},
     {"spar_session_save", make_save, IDLE, PATH | SETTINGS},
@@ -314,9 +319,9 @@ enum {
     DESTROY = 1,
     COMMIT = 2,
     BEGIN = 5,
-    STEP = 11,
-    STATIC = 12,
-    TRY = 15,
+    STEP = 12,
+    STATIC = 13,
+    TRY = 16,
     CALLS = sizeof calls / sizeof *calls
 };
 
