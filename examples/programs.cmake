@@ -102,6 +102,13 @@ foreach(name IN LISTS spar_wing_tests)
     " 4[.]00 +0[.]01139[0-9]* +0[.]10(09|10)[^=]*equilibrium[^=]* 4[.]00 +0[.]01139[0-9]* +0[.]10(09|10)")
 endforeach()
 
+# A host cut into pieces prints the same on any number of ranks, with sums that do not depend on who adds them.
+if(SPAR_MPI)
+  add_test(NAME example_mpi_host COMMAND "${PROJECT_SOURCE_DIR}/tests/alike" "${PROJECT_BINARY_DIR}/tests/mpi_host"
+    $<TARGET_FILE:examples_mpi_host> 1 2 4 -- ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG})
+  spar_set_test(example_mpi_host mpi 120 ${spar_example_environment})
+endif()
+
 # The Fortran hosts, with momentum theory of their own, give the numbers of the C program to 1e-10, on any number of ranks; the one
 # in single precision, its coupling iterated to 1e-5 of the loads, to 1e-4: 7 digits in each section's load and in its motion.
 if(TARGET examples_rotor_fortran)
