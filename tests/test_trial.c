@@ -744,6 +744,39 @@ static void test_loads_that_are_not_there(void **state) {
     }
 }
 
+/* Another load in each step, whatever the motion. */
+static int whim(spar_session *s, double t, double dt, int iteration, void *context) {
+    static int steps = 0;
+    (void)s, (void)t, (void)dt;
+    steps += iteration == 0;
+    const double force[3] = {0, 0, sin(7.0 * steps * steps)};
+    return spar_fluid_push_forces(context, force, NULL);
+}
+
+/* A fluid that does not repeat has no reference. The message gives the reference's error and what it would have to be
+   below: a part of the tolerance, so that the first is above the second and the second below the tolerance. */
+static void test_fluid_that_does_not_repeat(void **state) {
+    (void)state;
+    double K[36], M[36], advice[SPAR_ADVICE_COUNT], error, limit, tolerance = 0.03;
+    const double tip[3] = {1, 0, 0};
+    spar_fluid *f = NULL;
+    spar_session *s = scene_session();
+    scene_diagonal(K, 100, 100, 100, 100, 100, 100);
+    scene_diagonal(M, 1, 1, 1, 1, 1, 1);
+    spar_member *beam = scene_beam(s, "beam", 1, 4, 1, K, M);
+    OK(s, spar_member_commit(beam));
+    OK(s, spar_fluid_create(beam, "air", &f));
+    OK(s, spar_fluid_set_force_nodes(f, 1, tip));
+    OK(s, spar_fluid_map(f));
+    assert_int_equal(spar_session_advise(s, tolerance, 0.01, 8, NULL, whim, f, SPAR_ADVICE_COUNT, advice),
+                     SPAR_ERR_NUMERIC);
+    const char *says = strstr(spar_session_message(s), "its own error is about ");
+    assert_non_null(says);
+    assert_int_equal(sscanf(says, "its own error is about %lf, and must be below %lf", &error, &limit), 2);
+    assert_true(error > limit && limit < tolerance && limit > 0.1 * tolerance);
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_goes_back_to_the_bit),
@@ -764,6 +797,7 @@ int main(void) {
         cmocka_unit_test(test_capacities),
         cmocka_unit_test(test_nothing_to_try),
         cmocka_unit_test(test_loads_that_are_not_there),
+        cmocka_unit_test(test_fluid_that_does_not_repeat),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -282,10 +282,13 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
     weigh_fluid(d, seconds, solutions);
     SPARI_REQUIRE(s, d->reference.motion, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
                   SPARI_ADVISE, s->message);
-    SPARI_REQUIRE(s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
-                  "%s: no reference: with dt/%lld and finer nodes the run still changes by %.3g, the tolerance is %g; "
-                  "give a larger one, begin with a smaller dt, or look whether the fluid solver is repeatable",
-                  SPARI_ADVISE, (long long)(finest->steps / d->run.steps), change, d->tolerance);
+    SPARI_REQUIRE(
+        s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
+        "%s: no reference to compare with: with dt/%lld and finer nodes its own error is about %.3g, and must "
+        "be below %.3g to judge a tolerance of %g; give a larger one, begin with a smaller dt, or look "
+        "whether the fluid solver is repeatable",
+        SPARI_ADVISE, (long long)(finest->steps / d->run.steps), d->reference_error,
+        spari_rule.reference_most * d->tolerance, d->tolerance);
     return SPAR_OK;
 }
 
