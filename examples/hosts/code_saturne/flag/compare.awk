@@ -29,7 +29,8 @@ END {
     printf "  %-42s %.2f in the mean, %d at most\n", "iterations a step", summary["iterations_mean"], summary["iterations_most"]
     printf "  %-42s %.2f %% of the processor time, the mesh's motion included\n", "spar's share", 100 * summary["spar_share"]
     printf "  %-42s %s, %s, %s\n", "transfer's errors: force, moment, power", summary["force_error"], summary["moment_error"], summary["power_error"]
-    printf "  %-42s %.0f %% of the least at the start\n", "least cell of the run", 100 * cell / first
+    printf "  %-42s %.4e, %.4e mm at t = %g s\n", "the tip", x[1, lines], x[2, lines], t[lines]
+    if (solver == "code_saturne") printf "  %-42s %.0f %% of the least at the start\n", "least cell of the run", 100 * cell / first
     if (summary["force_error"] > 1e-12 || summary["moment_error"] > 1e-12 || summary["power_error"] > 1e-12 || cell <= 0) bad = 1
     if (name == "flag_fsi1" && t[lines] >= 7.9) {
         split("0.0227 0.8209 14.295 0.7638", should, " ")
@@ -37,7 +38,7 @@ END {
             printf "  %-8s %10.4f   reference %8.4f   %s\n", what[i], x[i, lines], should[i], off(x[i, lines], should[i])
         for (i = 2; i <= 4; i++) if (x[i, lines] / should[i] > 1.02 || x[i, lines] / should[i] < 0.98) bad = 1
     }
-    if (name == "flag") cycles()
+    if (name == "flag" && t[lines] > 3) cycles()
     if (ups > 1) {
         split("-2.88 1.47 460.5 2.50", mean, " "); split("2.72 34.99 27.74 153.91", amplitude, " ")
         for (i = 1; i <= 4; i++) {
