@@ -234,6 +234,7 @@ module spar
     procedure :: fade_motion => fluid_fade_motion
     procedure :: set_force_nodes => fluid_set_force_nodes
     procedure :: set_sections => fluid_set_sections
+    procedure :: read_aerodyn => fluid_read_aerodyn
     procedure :: set_projection => fluid_set_projection
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: map => fluid_map
@@ -296,6 +297,7 @@ module spar
     procedure, private :: aero_set_section_64, aero_set_section_32
     generic :: set_section => aero_set_section_64, aero_set_section_32
     procedure :: set_rotor => aero_set_rotor
+    procedure :: read_aerodyn => aero_read_aerodyn
     procedure :: set_turn => aero_set_turn
     procedure :: set_blades => aero_set_blades
     procedure :: set_effects => aero_set_effects
@@ -2090,6 +2092,27 @@ contains
         stat, errmsg)
   end subroutine fluid_set_sections
 
+  subroutine fluid_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    real(c_double), intent(in), optional :: q(4)
+    real(c_double), contiguous, intent(in), optional :: span(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    integer(c_int) :: status
+
+    n = 0
+    if (present(span)) n = size(span, kind=c_int64_t)
+    if (present(blade_path)) then
+      status = spar_fluid_read_aerodyn(self%handle, c_text(primary_path), c_text(blade_path), q, n, span)
+    else
+      status = spar_fluid_read_aerodyn(self%handle, c_text(primary_path), q=q, n=n, span=span)
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_read_aerodyn
+
   subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer(c_int), intent(in) :: method
@@ -2761,6 +2784,30 @@ contains
 
     call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
   end subroutine aero_set_rotor
+
+  subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    real(c_double), intent(in), optional :: q(4)
+    real(c_double), contiguous, intent(in), optional :: span(:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(span)) call need(fault, 'span', shape(span, kind=c_int64_t), [self%sections])
+    if (allocated(fault)) then
+      call refuse('aero%read_aerodyn', fault, stat, errmsg)
+      return
+    end if
+    if (present(blade_path)) then
+      status = spar_aero_read_aerodyn(self%handle, c_text(primary_path), c_text(blade_path), q, span)
+    else
+      status = spar_aero_read_aerodyn(self%handle, c_text(primary_path), q=q, span=span)
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine aero_read_aerodyn
 
   subroutine aero_set_turn(self, turn, stat, errmsg)
     class(spar_aero), intent(inout) :: self

@@ -1189,6 +1189,26 @@ module spar_c
       integer(c_int) :: status
     end function spar_aero_set_rotor
 
+    function spar_fluid_read_aerodyn(fluid, primary_path, blade_path, q, n, span) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      character(kind=c_char), intent(in), optional :: primary_path(*)
+      character(kind=c_char), intent(in), optional :: blade_path(*)
+      real(c_double), intent(in), optional :: q(4)
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: span(*)
+      integer(c_int) :: status
+    end function spar_fluid_read_aerodyn
+
+    function spar_aero_read_aerodyn(aero, primary_path, blade_path, q, span) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      character(kind=c_char), intent(in), optional :: primary_path(*)
+      character(kind=c_char), intent(in), optional :: blade_path(*)
+      real(c_double), intent(in), optional :: q(4), span(*)
+      integer(c_int) :: status
+    end function spar_aero_read_aerodyn
+
     function spar_aero_set_turn(aero, turn) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: aero

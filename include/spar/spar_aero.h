@@ -58,8 +58,8 @@ SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, doub
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
-/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve; map them anew and the object
-   must be made anew.
+/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve and spar_aero_read_aerodyn; map
+   them anew and the object must be made anew.
      blades: in, on this rank; 0 with NULL: a rank without blades
      sections[blades]: in, one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with
            the same number n >= 2 of sections, in order from root to tip at different places
@@ -73,6 +73,30 @@ SPAR_API void spar_aero_destroy(spar_aero **aero);
            right-handed turn about the section's x
      polar: in */
 SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
+/* Blades of AeroDyn's files (AeroDyn 15 and later): the primary file's airfoils, the blade file's stations, the airfoil
+   files' tables. Lengths, curve, sweep, twist and chord are linear in the span between stations, and so are the polars'
+   coefficients where two stations have different airfoils. Common to both calls:
+     primary_path: in
+     blade_path: in, NULL: the file that the primary one names first, beside it
+     q[4]: in, AeroDyn's blade axes z (along the blade), x (downwind), y (to the trailing edge), in this order, in the
+           member's own frame (spar_member_set_placement); NULL: none, as spar_beam_read_beamdyn makes a blade. The own
+           frame's origin is the blade's root
+     span[n]: in, m, from the root, within BlSpn of the first and last station, NULL: those of the stations
+   Local; every rank reads the files. SPAR_ERR_IO: a file cannot be read, or a field cannot; the message names file,
+   line and field. SPAR_ERR_ARGUMENT: a polar or a span is not allowed. SPAR_ERR_UNSUPPORTED: tables between which
+   AFTabMod 2 or 3 interpolates (with 1 the first counts). After a failure all is as it was. */
+
+/* Sections of a fluid, as spar_fluid_set_sections makes them, at the aerodynamic centres (BlSpn, BlCrvAC, BlSwpAC),
+   each hung on the nearest place of the line. The member must be committed. To be mapped. BlCrvAng is not used:
+   sections stand across the line. n: in, sections; with span NULL 0, which gives as many as the file has stations */
+SPAR_API int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const char *blade_path,
+                                     const double q[4], int64_t n, const double *span);
+/* Chord, twist and polar of all sections, as spar_aero_set_section sets them; the twist is BlTwist (positive: the
+   leading edge goes upwind) less what the sections' frames carry already, on all blades alike. Without UseBlCm moments
+   are 0. InterpOrd 3 gives SPAR_POLAR_CUBIC. Not with spar_aero_set_turn -1 (SPAR_ERR_UNSUPPORTED). n is the number of
+   sections. */
+SPAR_API int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char *blade_path,
+                                    const double q[4], const double *span);
 /* The shaft. The first call also takes the sections' distances from the axis in the reference configuration, which the
    tip and hub losses are computed with (a bent blade's tip is still its tip); later calls move the shaft.
      hub[3]: in, a point of its axis, m

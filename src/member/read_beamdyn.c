@@ -6,29 +6,18 @@
    about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
    joined by cubic splines, natural at their ends, over z. */
 #include "../base/quiet.h"
+#include "../base/reader.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "beam.h"
 #include "edge.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <gsl/gsl_spline.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-enum { LINE_SIZE = 4096, MOST = 1000000 };
-
-typedef struct reader {
-    spar_session *session;
-    const char *call; /* the public one, for messages */
-    const char *beam, *path;
-    FILE *file;
-    int number; /* of the line read last */
-    char line[LINE_SIZE];
-} reader;
 
 /* What has been read, in BeamDyn's order and units. */
 typedef struct blade {
@@ -53,220 +42,91 @@ static void blade_free(blade *b) {
     free(b->file);
 }
 
-/* ---- lines and numbers ---- */
-
-#define FAIL(r, status, format, ...) spari_fail((r)->session, status, "%s: " format, (r)->call, __VA_ARGS__)
-
-static int no_memory_to_read(const reader *r) {
-    return FAIL(r, SPAR_ERR_MEMORY, "'%s': no memory for %s", r->beam, r->path);
-}
-
-static int open_file(reader *r, const char *path) {
-    r->path = path;
-    r->number = 0;
-    r->file = fopen(path, "r");
-    if (!r->file) {
-        int reason = errno;
-        return FAIL(r, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "'%s': cannot open %s: %s", r->beam, path,
-                    reason == ENOMEM ? "no memory" : strerror(reason));
-    }
-    return SPAR_OK;
-}
-
-/* The next line; `what` is missed if there is none. */
-static int next_line(reader *r, const char *what) {
-    if (!fgets(r->line, sizeof r->line, r->file)) {
-        if (ferror(r->file)) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': reading %s failed after line %d: %s", r->beam, r->path, r->number,
-                        strerror(errno));
-        }
-        return FAIL(r, SPAR_ERR_IO, "'%s': %s ends at line %d; %s is missing", r->beam, r->path, r->number, what);
-    }
-    r->number++;
-    if (!strchr(r->line, '\n') && !feof(r->file)) {
-        return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d has more than %d characters", r->beam, r->path, r->number,
-                    LINE_SIZE - 2);
-    }
-    return SPAR_OK;
-}
-
-static int is_gap(char c) {
-    return isspace((unsigned char)c) || c == ',';
-}
-
-/* The next word from *at on (quotes hold it together), into word; 0 at the end of the line. */
-static int next_word(const char **at, char word[LINE_SIZE]) {
-    const char *c = *at;
-    size_t n = 0;
-    while (is_gap(*c)) {
-        c++;
-    }
-    if (*c == '"' || *c == '\'') {
-        char quote = *c++;
-        while (*c && *c != quote && *c != '\n') {
-            word[n++] = *c++;
-        }
-        c += *c == quote;
-    } else {
-        while (*c && !is_gap(*c)) {
-            word[n++] = *c++;
-        }
-    }
-    word[n] = 0;
-    int any = c != *at && (n > 0 || c[-1] == '"' || c[-1] == '\'');
-    *at = c;
-    return any;
-}
-
-/* n numbers of the line; Fortran's d exponents too. `what` names the fields, the column says which. */
-static int numbers(const reader *r, const char *what, int n, double *x) {
-    const char *at = r->line;
-    char word[LINE_SIZE];
-    for (int i = 0; i < n; i++) {
-        if (!next_word(&at, word)) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s: number %d of %d is missing", r->beam, r->path,
-                        r->number, what, i + 1, n);
-        }
-        for (char *c = word; *c; c++) {
-            *c = *c == 'd' || *c == 'D' ? 'e' : *c;
-        }
-        char *end;
-        x[i] = strtod(word, &end);
-        if (end == word || *end || !isfinite(x[i])) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s: '%s' (number %d of %d) is not a number", r->beam,
-                        r->path, r->number, what, word, i + 1, n);
-        }
-    }
-    return SPAR_OK;
-}
-
-static int whole_number(const reader *r, const char *what, int low, int column, int *out) {
-    double x[2] = {0};
-    SPARI_TRY(numbers(r, what, column + 1, x));
-    if (!(x[column] >= low && x[column] <= MOST) || x[column] != floor(x[column])) {
-        return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: %s is %g; give a whole number from %d", r->beam, r->path,
-                    r->number, what, x[column], low);
-    }
-    *out = (int)x[column];
-    return SPAR_OK;
-}
-
-/* On to the line whose second word is the key. */
-static int find_key(reader *r, const char *key) {
-    char word[LINE_SIZE];
-    for (;;) {
-        SPARI_TRY(next_line(r, key));
-        const char *at = r->line;
-        if (next_word(&at, word) && next_word(&at, word) && strcasecmp(word, key) == 0) {
-            return SPAR_OK;
-        }
-    }
-}
-
-static int skip_blank(reader *r, const char *what) {
-    char word[LINE_SIZE];
-    const char *at;
-    do {
-        SPARI_TRY(next_line(r, what));
-        at = r->line;
-    } while (!next_word(&at, word));
-    return SPAR_OK;
-}
-
 /* ---- the files ---- */
 
-static int read_primary(reader *r, blade *b) {
-    char word[LINE_SIZE];
+static int read_primary(spari_reader *r, blade *b) {
+    char word[SPARI_READ_LINE];
     int total = 1;
-    SPARI_TRY(find_key(r, "member_total"));
-    SPARI_TRY(whole_number(r, "member_total", 1, 0, &b->members));
-    SPARI_TRY(find_key(r, "kp_total"));
-    SPARI_TRY(whole_number(r, "kp_total", 2, 0, &b->points));
+    SPARI_TRY(spari_read_key(r, "member_total"));
+    SPARI_TRY(spari_read_whole(r, "member_total", 1, 0, &b->members));
+    SPARI_TRY(spari_read_key(r, "kp_total"));
+    SPARI_TRY(spari_read_whole(r, "kp_total", 2, 0, &b->points));
     b->count = spari_zalloc(b->members, sizeof *b->count);
     b->key = spari_zalloc(4 * (int64_t)b->points, sizeof *b->key);
     if (!b->count || !b->key) {
-        return no_memory_to_read(r);
+        return spari_read_no_memory(r);
     }
     for (int i = 0; i < b->members; i++) {
-        SPARI_TRY(next_line(r, "the number of key points of a member"));
-        SPARI_TRY(whole_number(r, "the number of key points of a member", 2, 1, &b->count[i]));
+        SPARI_TRY(spari_read_line(r, "the number of key points of a member"));
+        SPARI_TRY(spari_read_whole(r, "the number of key points of a member", 2, 1, &b->count[i]));
         total += b->count[i] - 1;
     }
     if (total != b->points) {
-        return FAIL(r, SPAR_ERR_IO,
-                    "'%s': %s, line %d: the members have %d key points (shared ends once), kp_total says %d", r->beam,
-                    r->path, r->number, total, b->points);
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "the members have %d key points (shared ends once), kp_total says %d",
+                               total, b->points);
     }
-    SPARI_TRY(next_line(r, "the header of the key points"));
-    SPARI_TRY(next_line(r, "the units of the key points"));
+    SPARI_TRY(spari_read_line(r, "the header of the key points"));
+    SPARI_TRY(spari_read_line(r, "the units of the key points"));
     for (int i = 0; i < b->points; i++) {
-        SPARI_TRY(next_line(r, "a key point"));
-        SPARI_TRY(numbers(r, "kp_xr, kp_yr, kp_zr, initial_twist", 4, b->key + 4 * (int64_t)i));
+        SPARI_TRY(spari_read_line(r, "a key point"));
+        SPARI_TRY(spari_read_numbers(r, "kp_xr, kp_yr, kp_zr, initial_twist", 4, b->key + 4 * (int64_t)i));
         const double *now = b->key + 4 * (int64_t)i;
         if (i > 0 && !(now[2] > now[-2])) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: kp_zr is %g and does not increase on the one before (%g)",
-                        r->beam, r->path, r->number, now[2], now[-2]);
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "kp_zr is %g and does not increase on the one before (%g)", now[2],
+                                   now[-2]);
         }
     }
-    SPARI_TRY(find_key(r, "BldFile"));
+    SPARI_TRY(spari_read_key(r, "BldFile"));
     const char *at = r->line;
-    next_word(&at, word);
-    size_t folder = 0, size = strlen(word) + 1;
-    const char *slash = strrchr(r->path, '/');
-    folder = word[0] != '/' && slash ? (size_t)(slash - r->path) + 1 : 0;
-    b->file = spari_zalloc((int64_t)(folder + size), 1);
-    if (!b->file) {
-        return no_memory_to_read(r);
-    }
-    memcpy(b->file, r->path, folder);
-    memcpy(b->file + folder, word, size);
-    return SPAR_OK;
+    spari_read_word(&at, word);
+    b->file = spari_read_beside(r, word);
+    return b->file ? SPAR_OK : spari_read_no_memory(r);
 }
 
-static int read_damping(reader *r, blade *b) {
-    char word[LINE_SIZE];
+static int read_damping(spari_reader *r, blade *b) {
+    char word[SPARI_READ_LINE];
     int type = 0;
-    SPARI_TRY(find_key(r, "damp_type"));
-    SPARI_TRY(whole_number(r, "damp_type", 0, 0, &type));
+    SPARI_TRY(spari_read_key(r, "damp_type"));
+    SPARI_TRY(spari_read_whole(r, "damp_type", 0, 0, &type));
     if (type > 1) {
-        return FAIL(r, SPAR_ERR_UNSUPPORTED,
-                    "'%s': %s, line %d: damp_type is %d; 0 (none) and 1 (stiffness-proportional) can be read; for "
-                    "modal damping ratios see spar_beam_set_modal_damping",
-                    r->beam, r->path, r->number, type);
+        return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
+                               "damp_type is %d; 0 (none) and 1 (stiffness-proportional) can be read; for "
+                               "modal damping ratios see spar_beam_set_modal_damping",
+                               type);
     }
     b->damped = type == 1;
     for (;;) {
-        SPARI_TRY(next_line(r, "mu1"));
+        SPARI_TRY(spari_read_line(r, "mu1"));
         const char *at = r->line;
-        if (next_word(&at, word) && strcasecmp(word, "mu1") == 0) {
+        if (spari_read_word(&at, word) && strcasecmp(word, "mu1") == 0) {
             break;
         }
     }
-    SPARI_TRY(next_line(r, "the units of mu1 to mu6"));
-    SPARI_TRY(next_line(r, "mu1 to mu6"));
-    SPARI_TRY(numbers(r, "mu1 to mu6", 6, b->mu));
+    SPARI_TRY(spari_read_line(r, "the units of mu1 to mu6"));
+    SPARI_TRY(spari_read_line(r, "mu1 to mu6"));
+    SPARI_TRY(spari_read_numbers(r, "mu1 to mu6", 6, b->mu));
     for (int i = 0; i < 6; i++) {
         if (b->mu[i] < 0) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: mu%d is negative", r->beam, r->path, r->number, i + 1);
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "mu%d is negative", i + 1);
         }
     }
     return SPAR_OK;
 }
 
-static int read_matrix(reader *r, const char *what, double *M) {
+static int read_matrix(spari_reader *r, const char *what, double *M) {
     for (int i = 0; i < 6; i++) {
-        SPARI_TRY(i == 0 ? skip_blank(r, what) : next_line(r, what));
-        SPARI_TRY(numbers(r, what, 6, M + 6 * i));
+        SPARI_TRY(i == 0 ? spari_read_filled(r, what) : spari_read_line(r, what));
+        SPARI_TRY(spari_read_numbers(r, what, 6, M + 6 * i));
     }
     return SPAR_OK;
 }
 
-static int read_blade(reader *r, blade *b) {
-    SPARI_TRY(find_key(r, "station_total"));
-    SPARI_TRY(whole_number(r, "station_total", 1, 0, &b->stations));
+static int read_blade(spari_reader *r, blade *b) {
+    SPARI_TRY(spari_read_key(r, "station_total"));
+    SPARI_TRY(spari_read_whole(r, "station_total", 1, 0, &b->stations));
     SPARI_TRY(read_damping(r, b));
     do {
-        SPARI_TRY(next_line(r, "the heading 'distributed properties'"));
+        SPARI_TRY(spari_read_line(r, "the heading 'distributed properties'"));
         for (char *c = r->line; *c; c++) {
             *c = (char)toupper((unsigned char)*c);
         }
@@ -277,15 +137,15 @@ static int read_blade(reader *r, blade *b) {
     b->mass = spari_zalloc(36 * n, sizeof *b->mass);
     b->line = spari_zalloc(n, sizeof *b->line);
     if (!b->eta || !b->stiffness || !b->mass || !b->line) {
-        return no_memory_to_read(r);
+        return spari_read_no_memory(r);
     }
     for (int64_t i = 0; i < n; i++) {
-        SPARI_TRY(skip_blank(r, "the place of a station"));
-        SPARI_TRY(numbers(r, "the place of a station", 1, b->eta + i));
+        SPARI_TRY(spari_read_filled(r, "the place of a station"));
+        SPARI_TRY(spari_read_numbers(r, "the place of a station", 1, b->eta + i));
         b->line[i] = r->number;
         if (!(b->eta[i] >= 0 && b->eta[i] <= 1) || (i > 0 && !(b->eta[i] > b->eta[i - 1]))) {
-            return FAIL(r, SPAR_ERR_IO, "'%s': %s, line %d: station %lld stands at %g; stations increase from 0 to 1",
-                        r->beam, r->path, r->number, (long long)i + 1, b->eta[i]);
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "station %lld stands at %g; stations increase from 0 to 1",
+                                   (long long)i + 1, b->eta[i]);
         }
         SPARI_TRY(read_matrix(r, "stiffness matrix", b->stiffness + 36 * i));
         SPARI_TRY(read_matrix(r, "mass matrix", b->mass + 36 * i));
@@ -308,19 +168,21 @@ static void permute_axes(double *M) {
     }
 }
 
-static int check_sections(const reader *r, const blade *b) {
+static int check_sections(const spari_reader *r, const blade *b) {
     for (int64_t i = 0; i < b->stations; i++) {
         double m, c[3], J[6];
         const char *wrong = spari_stiffness_fault(b->stiffness + 36 * i);
         if (wrong) {
-            return FAIL(r, SPAR_ERR_ARGUMENT, "'%s': %s, line %d: the stiffness matrix of station %lld is %s", r->beam,
-                        r->path, b->line[i], (long long)i + 1, wrong);
+            return spari_fail(r->session, SPAR_ERR_ARGUMENT,
+                              "%s: '%s': %s, line %d: the stiffness matrix of station %lld is %s", r->call, r->subject,
+                              r->path, b->line[i], (long long)i + 1, wrong);
         }
         wrong = spari_mass_split(b->mass + 36 * i, &m, c, J);
         if (wrong) {
-            return FAIL(r, SPAR_ERR_ARGUMENT,
-                        "'%s': %s, line %d: the mass matrix of station %lld is not that of a rigid section: %s",
-                        r->beam, r->path, b->line[i], (long long)i + 1, wrong);
+            return spari_fail(r->session, SPAR_ERR_ARGUMENT,
+                              "%s: '%s': %s, line %d: the mass matrix of station %lld is not that of a rigid section: "
+                              "%s",
+                              r->call, r->subject, r->path, b->line[i], (long long)i + 1, wrong);
         }
     }
     return SPAR_OK;
@@ -410,7 +272,7 @@ static int make_axis(const blade *b, axis *a) {
 }
 
 /* Hands it to the beam; what the beam had before stays when something is refused. */
-static int describe_blade(spar_member *m, const reader *r, blade *b) {
+static int describe_blade(spar_member *m, const spari_reader *r, blade *b) {
     double mu[6];
     axis a = {0};
     for (int64_t i = 0; i < b->stations; i++) {
@@ -422,7 +284,7 @@ static int describe_blade(spar_member *m, const reader *r, blade *b) {
     }
     SPARI_TRY(check_sections(r, b));
     spari_beam *fresh = spari_zalloc(1, sizeof *fresh), *old = m->beam;
-    int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : no_memory_to_read(r);
+    int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : spari_read_no_memory(r);
     if (status == SPAR_OK) {
         fresh->rule = old->rule, fresh->points = old->points;
         m->beam = fresh;
@@ -444,17 +306,17 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
     SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__,
                   beam->name);
     blade b = {0};
-    reader *r = spari_zalloc(1, sizeof *r);
+    spari_reader *r = spari_zalloc(1, sizeof *r);
     SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
     r->session = beam->session;
-    r->beam = beam->name;
+    r->subject = beam->name;
     r->call = __func__;
-    int status = open_file(r, primary_path);
+    int status = spari_read_open(r, primary_path);
     if (status == SPAR_OK) {
         status = read_primary(r, &b);
         fclose(r->file);
     }
-    status = status == SPAR_OK ? open_file(r, blade_path ? blade_path : b.file) : status;
+    status = status == SPAR_OK ? spari_read_open(r, blade_path ? blade_path : b.file) : status;
     if (status == SPAR_OK) {
         status = read_blade(r, &b);
         fclose(r->file);

@@ -173,6 +173,8 @@ program test_bindings
   call check(.not. c_associated(made), 'spar_aero_destroy')
   call refused(spar_aero_set_section(none, 0_c_int64_t, 0.0_c_double, 0.0_c_double, none), 'spar_aero_set_section')
   call refused(spar_aero_set_rotor(none, hub_radius=0.0_c_double, tip_radius=0.0_c_double), 'spar_aero_set_rotor')
+  call refused(spar_fluid_read_aerodyn(none, n=0_c_int64_t), 'spar_fluid_read_aerodyn')
+  call refused(spar_aero_read_aerodyn(none), 'spar_aero_read_aerodyn')
   call refused(spar_aero_set_turn(none, 0_c_int), 'spar_aero_set_turn')
   call refused(spar_aero_set_blades(none, 0_c_int), 'spar_aero_set_blades')
   call refused(spar_aero_set_effects(none, 0_c_int), 'spar_aero_set_effects')

@@ -118,6 +118,42 @@ void do_spar_aero_destroy(call *c) {
     RUN_VOID(c, spar_aero_destroy(&a->a));
 }
 
+/* AeroDyn's files; now and then ones that are not there, or not what they should be. */
+static void pick_files(call *c, const char **primary, const char **blade) {
+    static const char *const files[] = {SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat",
+                                        SPAR_SOURCE_DIR "/tests/data/aerodyn/blade.dat",
+                                        SPAR_SOURCE_DIR "/tests/data/aerodyn/DU40_A17.dat", "nowhere.dat"};
+    *primary = odd(c) ? NULL : files[odd(c) ? below(c, 4) : 0];
+    *blade = chance(c, 60) ? NULL : files[odd(c) ? below(c, 4) : 1];
+    text(c, ", %s, %s", *primary ? *primary : "NULL", *blade ? *blade : "NULL");
+}
+
+void do_spar_fluid_read_aerodyn(call *c) {
+    live_fluid *f = arg_fluid(c);
+    const char *primary, *blade;
+    pick_files(c, &primary, &blade);
+    double *q = chance(c, 50) ? NULL : arg_quaternions(c, 1, 1);
+    int stations = chance(c, 30);
+    int64_t n = stations ? 0 : arg_count(c, 2, 4);
+    double *span = stations ? NULL : arg_rising(c, length(n), 0, 61);
+    c->wild = 1; /* far from members of a metre */
+    RUN(c, spar_fluid_read_aerodyn(f->f, primary, blade, q, n, span));
+}
+
+void do_spar_aero_read_aerodyn(call *c) {
+    live_aero *a = arg_aero(c);
+    const char *primary, *blade;
+    if (a->a && a->orphan) {
+        return;
+    }
+    pick_files(c, &primary, &blade);
+    double *q = chance(c, 50) ? NULL : arg_quaternions(c, 1, 1);
+    int stations = a->a && a->n == 19 ? chance(c, 50) : odd(c);
+    double *span = stations ? NULL : arg_rising(c, a->a && a->n > 0 ? a->n : 2, 0, 61);
+    c->wild = 1; /* chords of metres */
+    RUN(c, spar_aero_read_aerodyn(a->a, primary, blade, q, span));
+}
+
 void do_spar_aero_set_section(call *c) {
     live_aero *a = arg_aero(c);
     static const int64_t odds[] = {-1, INT64_MIN, INT64_MAX, 50, INT64_C(1) << 60};

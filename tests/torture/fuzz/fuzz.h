@@ -177,6 +177,8 @@ enum {
     CALL(spar_aero_create, 30, FUZZ_CHANGES)                                                                           \
     CALL(spar_aero_destroy, 10, FUZZ_TEXT)                                                                             \
     CALL(spar_aero_set_section, 80, FUZZ_CHANGES)                                                                      \
+    CALL(spar_fluid_read_aerodyn, 12, FUZZ_CHANGES)                                                                    \
+    CALL(spar_aero_read_aerodyn, 20, FUZZ_CHANGES)                                                                     \
     CALL(spar_aero_set_rotor, 50, FUZZ_CHANGES)                                                                        \
     CALL(spar_aero_set_turn, 25, FUZZ_CHANGES)                                                                         \
     CALL(spar_aero_set_blades, 25, FUZZ_CHANGES)                                                                       \

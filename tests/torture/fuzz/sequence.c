@@ -87,6 +87,7 @@ static void blades(writer *w) {
     for (int k = 0; k < 8; k++) {
         part(w, 100, CALL_spar_aero_set_section);
     }
+    part(w, 10, CALL_spar_aero_read_aerodyn);
     part(w, 60, CALL_spar_aero_set_rotor);
     part(w, 20, CALL_spar_aero_set_effects);
     part(w, 80, CALL_spar_aero_solve);

@@ -826,9 +826,35 @@ static void act_aero(void) {
     end_session(&s);
 }
 
-const act acts[] = {{"describe", act_describe, 1},       {"step", act_step, 1},     {"fidelities", act_fidelities, 1},
-                    {"fluids", act_fluids, 1},           {"static", act_static, 1}, {"save", act_save, 1},
-                    {"output", act_output, 1},           {"try", act_try, 1},       {"effects", act_effects, 1},
-                    {"beamdyn", act_beamdyn, 1},         {"aero", act_aero, 1},     {"advise", act_advise, 0},
-                    {"equilibrium", act_equilibrium, 1}, {"joints", act_joints, 1}};
+/* A blade by AeroDyn's files, at its stations and between them. */
+static void act_aerodyn(void) {
+    static const char primary[] = SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat";
+    static const double q[4] = {0.8, -0.6, 0, 0}, span[3] = {5, 12, 33};
+    spar_session *s = begin_session();
+    spar_member *blade = begin_beam(s, "blade", 1, 4, 0);
+    CALL(spar_member_commit, blade);
+    for (int k = 0; k < 2 && run.rank == 0; k++) {
+        spar_fluid *f = NULL;
+        spar_aero *aero = NULL;
+        double x[3 * 19] = {0}, arm[3 * 19] = {0};
+        CALL(spar_fluid_create, blade, k ? "fine" : "stations", &f);
+        CALL(spar_fluid_read_aerodyn, f, primary, NULL, k ? q : NULL, k ? 3 : 0, k ? span : NULL);
+        CALL(spar_fluid_map, f);
+        CALL(spar_fluid_get_feet, f, SPAR_NODES_MOTION, x, NULL, arm);
+        NOTE(arm);
+        CALL(spar_aero_create, 1, &f, &aero);
+        CALL(spar_aero_read_aerodyn, aero, primary, NULL, k ? q : NULL, k ? span : NULL);
+        PLAIN(spar_aero_destroy, &aero);
+    }
+    end_session(&s);
+}
+
+const act acts[] = {{"describe", act_describe, 1},     {"step", act_step, 1},
+                    {"fidelities", act_fidelities, 1}, {"fluids", act_fluids, 1},
+                    {"static", act_static, 1},         {"save", act_save, 1},
+                    {"output", act_output, 1},         {"try", act_try, 1},
+                    {"effects", act_effects, 1},       {"beamdyn", act_beamdyn, 1},
+                    {"aerodyn", act_aerodyn, 1},       {"aero", act_aero, 1},
+                    {"advise", act_advise, 0},         {"equilibrium", act_equilibrium, 1},
+                    {"joints", act_joints, 1}};
 const int act_count = (int)(sizeof acts / sizeof *acts);

@@ -1,6 +1,7 @@
 /* The functions that are local: they send and wait for nothing. */
 " spar_aero_create spar_aero_destroy spar_aero_effect_name spar_aero_get_flags spar_aero_get_loads "
     " spar_aero_get_rotor spar_aero_get_sections spar_aero_set_blades spar_aero_set_effects spar_aero_set_rotor "
+    " spar_aero_read_aerodyn spar_fluid_read_aerodyn "
     " spar_aero_set_section spar_aero_set_turn spar_aero_solve spar_beam_create spar_beam_get_section "
     " spar_beam_read_beamdyn spar_beam_set_axis spar_beam_set_damping spar_beam_set_line_load spar_beam_set_nodes "
     " spar_beam_set_quadrature spar_beam_set_sections spar_effect_name spar_fluid_check_matrices spar_fluid_create "
