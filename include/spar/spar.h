@@ -509,7 +509,8 @@ SPAR_API int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, con
 /* load[n][6]: out, N, N m, dead, follower, line and fluid loads in use, global axes, line loads as the nodal loads that
    do the same work: those the structure is to be solved with. After spar_step_begin these are predicted; after a
    spar_step_check that was not done they are the accelerated ones of the next solution (an external member is solved
-   with these); after one that was done, and between steps, those pushed last. */
+   with these); after one that was done, and between steps, those pushed last. Of an external member they have what
+   joints put on it, predicted and accelerated with the rest; of a point the joints' at the latest iterate. */
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 /* load[6]: out, what the support gives the root, moment about the root; 0 where it is free. */
 SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);

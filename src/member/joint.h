@@ -80,6 +80,9 @@ void spari_joint_places(const spar_joint *joint, spari_place place[2]);
 void spari_joint_acceleration(const spar_joint *joint, double acceleration[6]);
 /* load[6] += what the joints put on a node of a member, in the motion after. */
 void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
+/* The same on all nodes [n][6] of an external member, of any other nothing: what its host solves it with, so that they
+   are among the loads that the coupling iterates. */
+void spari_joints_on_external(const spar_member *member, double *load);
 void spari_joint_free(spar_joint *joint);
 
 #endif

@@ -38,6 +38,12 @@ void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
     }
 }
 
+void spari_joints_on_external(const spar_member *m, double *load) {
+    for (int64_t i = 0; m->external && m->session->joints && i < m->nodes; i++) {
+        spari_joints_on(m, i, load + 6 * i);
+    }
+}
+
 void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
     spari_place place[2];
     double z[6], B[6][12], v[12] = {0}, a[12] = {0};

@@ -88,8 +88,8 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     if (member->applied) {
         spari_applied_nodal(member, member->after.q, load);
     }
-    for (int64_t i = 0; i < member->nodes && s->joints && (member->external || member->kind == SPARI_POINT); i++) {
-        spari_joints_on(member, i, load + 6 * i);
+    if (s->joints && member->kind == SPARI_POINT && !member->external) {
+        spari_joints_on(member, 0, load);
     }
     return SPAR_OK;
 }

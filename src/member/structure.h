@@ -72,7 +72,8 @@ struct spar_member {
        after load_solved[0]    all that the motion at t^n was found with load_history[k]   accepted: load_pushed at t^n,
        t^{n-1}, t^{n-2}, as far back as the predictor looks load_before       load_pushed before the first step: what it
        goes back to when that is given up Accepting a step makes load_pushed the newest of the history (load_used, where
-       nothing was checked) and load_solved[1] load_solved[0]; giving it up puts both back. */
+       nothing was checked) and load_solved[1] load_solved[0]; giving it up puts both back. Of an external member the
+       fluids' have the joints' with them. */
     double *dead;
     double *load_used;
     double *load_pushed;

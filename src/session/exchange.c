@@ -155,6 +155,7 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
     memcpy(load, s->own->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
+    spari_joints_on_external(m, load);
 }
 
 /* One member's block: unknowns' q, v, a; dissipation. */

@@ -338,22 +338,6 @@ static int solve_all(spar_session *s, int load_steps, int onward) {
     return SPAR_OK;
 }
 
-/* The fluid's loads on these shapes, from all ranks. */
-static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
-    int status = spari_lend(s, call, solve, 0, context);
-    if (status == SPAR_ERR_COMM) {
-        return status;
-    }
-    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
-    SPARI_TRY(spari_enter(s, call, status));
-    SPARI_TRY(spari_session_exchange_loads(s, NULL));
-    for (spar_member *m = s->members; m; m = m->next) {
-        spari_session_take_loads(s, m, m->load_pushed);
-    }
-    s->iteration++;
-    return SPAR_OK;
-}
-
 /* The member whose loads changed most in the last iteration. */
 static const spar_member *most_changed(const spar_session *s) {
     const spar_member *found = s->members;
@@ -413,6 +397,36 @@ static int not_solved(spar_session *s, const char *call, int status) {
     char why[SPARI_MESSAGE_SIZE];
     memcpy(why, s->message, sizeof why);
     return status == SPAR_ERR_COMM ? status : not_settled(s, call, status, why);
+}
+
+/* Whether joints load external members: what they put on them is that of the place where the host has just put them, so
+   the others are solved again. */
+static int ties_external(const spar_session *s) {
+    int ties = 0;
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        ties = ties || j->member[0]->external || (j->member[1] && j->member[1]->external);
+    }
+    return ties;
+}
+
+/* The fluid's loads on these shapes, from all ranks. */
+static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
+    int status = spari_lend(s, call, solve, 0, context);
+    if (status == SPAR_ERR_COMM) {
+        return status;
+    }
+    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
+    SPARI_TRY(spari_enter(s, call, status));
+    if (ties_external(s)) {
+        status = solve_all(s, 1, 1);
+        SPARI_TRY(status == SPAR_OK ? status : not_solved(s, call, status));
+    }
+    SPARI_TRY(spari_session_exchange_loads(s, NULL));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_session_take_loads(s, m, m->load_pushed);
+    }
+    s->iteration++;
+    return SPAR_OK;
 }
 
 /* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */

@@ -215,9 +215,21 @@ int spar_step_check(spar_session *session, int *done) {
 
 /* ---- accept and reject ---- */
 
+/* Whether it is an external member that joints load and no fluid does. */
+static int has_joints_alone(const spar_member *m) {
+    int alone = m->external && m->session->joints;
+    for (const spar_fluid *f = m->session->fluids; f && alone; f = spari_fluid_next(f)) {
+        alone = spari_fluid_member(f) != m;
+    }
+    return alone;
+}
+
 static void shift_history(spar_session *s, spar_member *m) {
-    /* a step that was never checked had no loads but those it was solved with */
-    if (s->phase != SPARI_CHECKED) {
+    /* a step that was never checked had no loads but those it was solved with, and the joints' */
+    if (s->phase != SPARI_CHECKED && has_joints_alone(m)) {
+        memset(m->load_pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
+        spari_joints_on_external(m, m->load_pushed);
+    } else if (s->phase != SPARI_CHECKED) {
         memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
     }
     spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);

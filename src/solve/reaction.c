@@ -93,7 +93,9 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         double r_i[3], moment[3], f[6], tied[6] = {0};
-        spari_joints_on(m, i, tied);
+        if (!m->external) { /* its loads have them */
+            spari_joints_on(m, i, tied);
+        }
         for (int k = 0; k < 6; k++) {
             f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - tied[k];
         }

@@ -68,9 +68,13 @@ void spari_work_step(spar_member *m) {
         spari_applied_nodal(m, m->after.q, w->load);
     }
     for (int64_t i = 0; i < n; i++) {
-        double fluid[6], kept[6];
+        double fluid[6], kept[6],
+            tied[6] = {0}; /* of an external member the loads it is solved with have the joints' */
+        if (m->external) {
+            spari_joints_on(m, i, tied);
+        }
         for (int c = 0; c < 6; c++) {
-            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c];
+            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c] - tied[c];
             fluid[c] = 0.5 * (w->fluid[6 * i + c] + now);
             kept[c] = m->dead[6 * i + c] + 0.5 * w->load[6 * i + c];
             w->fluid[6 * i + c] = now;

@@ -112,7 +112,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     if (m->applied) {
         spari_applied_nodal(m, m->now.q, loads);
     }
-    for (int64_t i = 0; i < m->nodes && m->session->joints; i++) {
+    for (int64_t i = 0; i < m->nodes && m->session->joints && !m->external; i++) {
         spari_joints_on(m, i, loads + 6 * i);
     }
     sum[LOADS] += squares(loads, m->nodes, length);

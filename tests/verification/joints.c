@@ -11,7 +11,8 @@
    - Four-bar with a driven crank: the rocker's angle from the circle equations; spatial slider-crank on ball and
      universal joint: the slider from the rod's length. Whatever dt is.
    - Body on springs and dampers in six directions: exp(-d t)(cos w t + d/w sin w t).
-   - The same in a fluid of ten times its mass: no more coupling iterations than where the spring is the fluid's load.
+   - The same in a fluid of ten times its mass: no more coupling iterations than where the spring is the fluid's load,
+   or the body is an external member that the host integrates, with a spring of its own or on the joint.
  */
 #include "verification.h"
 
@@ -384,40 +385,121 @@ static void test_springs(void **state) {
 
 /* ---- a heavy fluid ---- */
 
-/* Iterations of 100 steps of a body of 2 kg in a fluid of ten times its mass, swinging by a spring of 800 N/m: a
-   joint's, or one that the fluid's load has. */
-static int iterate(int scheme, int joint) {
-    const double ratio = 10, K[36] = {[0] = 800};
+/* A body of 2 kg in a fluid of ten times its mass swings by a spring of 800 N/m: a joint's, one that the fluid's load
+   has or one that the host has; the body is spar's, or external. */
+typedef enum spring_of { OF_JOINT, OF_FLUID, OF_HOST } spring_of;
+static const double heavy_k = 800, heavy_step = 0.02, heavy_rho = 0.9;
+
+/* The host's generalised-alpha, as spar's: m a + k x = load at t^{n+1}. */
+typedef struct hosts {
+    double x, v, a, b;
+} hosts;
+
+static hosts advance(const hosts *n, double k, double m, double load) {
+    const double h = heavy_step, am = (2 * heavy_rho - 1) / (heavy_rho + 1), af = heavy_rho / (heavy_rho + 1),
+                 gamma = 0.5 + af - am, beta = 0.25 * (0.5 + gamma) * (0.5 + gamma), part = (1 - af) / (1 - am);
+    double old = (af * n->a - am * n->b) / (1 - am); /* b^{n+1} = old + part a^{n+1} */
+    double x = n->x + h * n->v + h * h * ((0.5 - beta) * n->b + beta * old);
+    hosts to;
+    to.a = (load - k * x) / (m + k * h * h * beta * part);
+    to.b = old + part * to.a;
+    to.x = x + h * h * beta * part * to.a;
+    to.v = n->v + h * ((1 - gamma) * n->b + gamma * to.b);
+    return to;
+}
+
+static void create_heavy(pistons *p, int external) {
+    const double ratio = 10, x[3] = {0};
+    double mass[36];
+    pistons_create(p, external ? 0 : 1, &ratio);
+    if (external) {
+        p->n = 1, p->mass[0] = 2, p->ratio[0] = ratio;
+        scene_mass(mass, 2, nothing, (double[]){1, 1, 1});
+        OK(p->session, spar_rigid_create(p->session, "hosts", x, straight, mass, &p->body[0]));
+        OK(p->session, spar_member_set_external(p->body[0], 1));
+        OK(p->session, spar_member_commit(p->body[0]));
+        OK(p->session, spar_fluid_create(p->body[0], "water", &p->fluid[0]));
+        OK(p->session, spar_fluid_set_motion_nodes(p->fluid[0], 1, x));
+        OK(p->session, spar_fluid_set_force_nodes(p->fluid[0], 1, x));
+        OK(p->session, spar_fluid_map(p->fluid[0]));
+    }
+    p->b[0] = 30;
+}
+
+/* The loop of an external member (examples/external.c); iterations. */
+static int step_external(pistons *p, hosts *now, double k) {
+    int done = 0, taken = 0;
+    hosts to = *now;
+    OK(p->session, spar_step_begin(p->session, heavy_step));
+    for (; !done; taken++) {
+        double load[6];
+        OK(p->session, spar_member_get_loads(p->body[0], load));
+        to = advance(now, k, p->mass[0], load[0]);
+        const double q[7] = {to.x, 0, 0, 1}, v[6] = {to.v}, a[6] = {to.a};
+        OK(p->session, spar_member_set_motion(p->body[0], q, v, a));
+        OK(p->session, spar_step_solve(p->session));
+        OK(p->session, pistons_fluid(p->session, 0, heavy_step, taken, p));
+        OK(p->session, spar_step_check(p->session, &done));
+    }
+    OK(p->session, spar_step_accept(p->session));
+    *now = to;
+    return taken;
+}
+
+/* Iterations of 100 steps, and where the body is then. */
+static int iterate(int scheme, int external, spring_of spring, double *x) {
+    const double K[36] = {[0] = heavy_k};
     pistons p;
+    hosts now = {0};
     int sum = 0;
-    pistons_create(&p, 1, &ratio);
-    p.b[0] = 30;
-    p.stiffness = joint ? 0 : 800;
-    OK(p.session, spar_session_set_integrator(p.session, 0.9, 1));
+    create_heavy(&p, external);
+    p.stiffness = spring == OF_FLUID ? heavy_k : 0;
+    OK(p.session, spar_session_set_integrator(p.session, heavy_rho, 1));
     OK(p.session, spar_session_set_coupling(p.session, scheme, 1e-9, 1e-8, 60));
-    if (joint) {
+    if (spring == OF_JOINT) {
         spar_joint *j = NULL;
-        OK(p.session, spar_joint_create(p.session, "spring", p.body[0], 0, NULL, 0, SPAR_FREE_X, &j));
+        OK(p.session, spar_joint_create(p.session, "spring", p.body[0], 0, NULL, 0, external ? 63 : SPAR_FREE_X, &j));
         OK(p.session, spar_joint_set_spring(j, K, NULL, NULL));
     }
     for (int i = 0; i < 100; i++) {
         int taken = 0;
-        OK(p.session, spar_step(p.session, 0.02, pistons_fluid, &p, &taken));
+        if (external) {
+            taken = step_external(&p, &now, spring == OF_HOST ? heavy_k : 0);
+        } else {
+            OK(p.session, spar_step(p.session, heavy_step, pistons_fluid, &p, &taken));
+        }
         sum += taken;
     }
+    double q[7];
+    OK(p.session, spar_member_get_motion(p.body[0], q, NULL, NULL));
+    *x = q[0];
     pistons_destroy(&p);
     return sum;
 }
 
 static void test_heavy_fluid(void **state) {
     (void)state;
+    static const struct {
+        const char *of, *than;
+        int external, of_external;
+        spring_of spring, other;
+    } pair[] = {{"on a spring", "spring as the fluid's load", 0, 0, OF_JOINT, OF_FLUID},
+                {"on a spring", "external, spring of the host's", 0, 1, OF_JOINT, OF_HOST},
+                {"external, on a spring", "spring as the fluid's load", 1, 0, OF_JOINT, OF_FLUID}};
     for (int iqn = 0; iqn <= 1; iqn++) {
         int scheme = iqn ? SPAR_COUPLING_IQN_ILS : SPAR_COUPLING_AITKEN;
-        int sprung = iterate(scheme, 1), loaded = iterate(scheme, 0);
-        verify(iqn ? "added mass 10 on a spring, IQN-ILS: more iterations"
-                   : "added mass 10 on a spring, Aitken: more iterations",
-               fmax(0, sprung - loaded), 0, 0, "spring as the fluid's load");
-        assert_in_range(loaded, 100, 600);
+        for (size_t k = 0; k < sizeof pair / sizeof *pair; k++) {
+            double x, y;
+            char what[96];
+            int n = iterate(scheme, pair[k].external, pair[k].spring, &x),
+                most = iterate(scheme, pair[k].of_external, pair[k].other, &y);
+            snprintf(what, sizeof what, "added mass 10, %s, %s: more iterations", pair[k].of,
+                     iqn ? "IQN-ILS" : "Aitken");
+            verify(what, fmax(0, n - most), 0, 0, pair[k].than);
+            snprintf(what, sizeof what, "added mass 10, %s, %s: place, m", pair[k].of, iqn ? "IQN-ILS" : "Aitken");
+            verify(what, x, y, 1e-7, pair[k].than);
+            assert_in_range(most, 100, 600);
+        }
     }
     verified();
 }
