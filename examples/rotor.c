@@ -3,6 +3,7 @@
    its share of the blades. Run it with --help for what can be chosen. Compiled with ROTOR_SHOWS_EFFECTS it is
    spar-effects: the same scene, and what each effect is worth in it. */
 #include "nrel5mw.h"
+#include "ranks.h"
 #include "rotor_options.h"
 #include "rotor_report.h"
 #include "rotor_view.h"
@@ -12,9 +13,6 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-#ifdef SPAR_WITH_MPI
-#include <spar/spar_mpi.h>
-#endif
 
 static const double pi = 3.14159265358979323846, standard_gravity = 9.80665;
 
@@ -61,50 +59,6 @@ static void lap(scene *s, int phase, double *since) {
     *since = t;
 }
 
-/* ---- ranks ---- */
-
-static void ranks_begin(scene *s, int *argc, char ***argv) {
-    s->ranks = 1;
-#ifdef SPAR_WITH_MPI
-    MPI_Init(argc, argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &s->rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &s->ranks);
-#else
-    (void)argc, (void)argv;
-#endif
-}
-
-static int create_session(scene *s) {
-#ifdef SPAR_WITH_MPI
-    if (s->ranks > 1) {
-        return spar_session_create_mpi(MPI_COMM_WORLD, &s->session);
-    }
-#endif
-    return spar_session_create(&s->session);
-}
-
-/* x[n] becomes its sum over the ranks. */
-static void ranks_sum(const scene *s, double *x, int n) {
-#ifdef SPAR_WITH_MPI
-    if (s->ranks > 1) {
-        MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-    }
-#else
-    (void)s, (void)x, (void)n;
-#endif
-}
-
-static void ranks_end(const scene *s, int failed) {
-#ifdef SPAR_WITH_MPI
-    if (failed && s->ranks > 1) { /* the others may be waiting */
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    MPI_Finalize();
-#else
-    (void)s, (void)failed;
-#endif
-}
-
 /* ---- failure ---- */
 
 /* Says what went wrong; a rank whose peer failed leaves that to the peer. */
@@ -129,7 +83,7 @@ static int complain(const scene *s, int status) {
 
 static int describe_session(scene *s) {
     const rotor_options *o = &s->options;
-    TRY(create_session(s));
+    TRY(ranks_create_session(s->ranks, &s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, o->substeps));
     TRY(spar_session_set_predictor(s->session, o->predictor));
@@ -379,7 +333,7 @@ static int record(scene *s, double t, double dt, double angle, int iterations) {
     if (s->mine > 0) {
         TRY(spar_aero_get_rotor(s->aero, &rotor[0], &rotor[1], NULL));
     }
-    ranks_sum(s, rotor, 2);
+    ranks_sum(s->ranks, rotor, 2);
     row[ROTOR_TIME] = t;
     row[ROTOR_AZIMUTH] = fmod(angle, 2 * pi) * 180 / pi;
     row[ROTOR_WIND] = wind_speed(&s->options, t);
@@ -679,7 +633,7 @@ static int rotor(scene *s) {
 
 int main(int argc, char **argv) {
     scene s = {0};
-    ranks_begin(&s, &argc, &argv);
+    ranks_begin(&argc, &argv, &s.rank, &s.ranks);
     clear(&s);
     int failed = rotor_options_read(&s.options, argc, argv);
     if (!failed && s.options.help) {
@@ -690,6 +644,6 @@ int main(int argc, char **argv) {
         failed = rotor(&s);
     }
     release(&s);
-    ranks_end(&s, failed);
+    ranks_end(s.ranks, failed);
     return failed ? 1 : 0;
 }

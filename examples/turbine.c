@@ -1,7 +1,8 @@
 /* The NREL 5-MW turbine in the wind, end to end, with public functions only: tower, nacelle, shaft, drivetrain, hub,
    pitch bearings and blades tied by joints and solved as one; the published controller gives the generator's torque and
-   the pitch; blade element momentum theory is the fluid. Rotor speed and pitch follow the wind. Run it with --help for
-   what can be chosen. */
+   the pitch; blade element momentum theory is the fluid. Rotor speed and pitch follow the wind. Alone or under mpirun,
+   where each rank takes the air of its share of the blades. Run it with --help for what can be chosen. */
+#include "ranks.h"
 #include "rotor_report.h"
 #include "turbine_control.h"
 #include "turbine_model.h"
@@ -48,7 +49,8 @@ static const struct {
     {"rho-inf", "R", offsetof(options, rho_inf), 0, 1, "spectral radius of generalised-alpha [0.8]"},
     {"tolerance", "R", offsetof(options, tolerance), 0, 1,
      "change of the loads that ends the coupling's iteration [1e-6]"},
-    {"vtk-every", "S", offsetof(options, vtk_every), 0, 1e9, "time between pictures for ParaView, 0: none [0.5]"},
+    {"vtk-every", "S", offsetof(options, vtk_every), 0, 1e9,
+     "time between pictures for ParaView, of a run on one rank; 0: none [0.5]"},
     {"out", "FOLDER", offsetof(options, out), 0, 0, "where the files go [turbine-out]"},
     {"data", "FOLDER", offsetof(options, data), 0, 0, "the blade's tables [" SPAR_DATA_DIR "/nrel5mw]"},
     {"no-plots", NULL, offsetof(options, no_plots), 0, 0, "no PNG plots (they need gnuplot)"},
@@ -119,7 +121,7 @@ typedef struct scene {
     turbine_view view;
     char title[160];
     double *motion, *reference; /* of a blade's nodes [7], [3]; of the tower's, if these are more */
-    int pictures;
+    int pictures, rank, ranks;
 } scene;
 
 static int complain(const scene *s, int status) {
@@ -160,8 +162,8 @@ static int set_up(scene *s) {
     rotor_operating_point(o->wind, &rpm, &pitch);
     rpm = isfinite(o->rpm) ? o->rpm : rpm;
     pitch = (isfinite(o->pitch) ? o->pitch : pitch) * pi / 180;
-    const turbine_options how = {o->data, (int)o->elements, (int)o->nodes, 1, 8, pitch, 0};
-    TRY(spar_session_create(&s->session));
+    const turbine_options how = {o->data, (int)o->elements, (int)o->nodes, 1, 8, pitch, s->rank, s->ranks, 0};
+    TRY(ranks_create_session(s->ranks, &s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, 1));
     TRY(spar_session_set_coupling(s->session, SPAR_COUPLING_FIXED_POINT, 0, o->tolerance, 30));
@@ -212,7 +214,7 @@ static int record_tip(scene *s, int b, double *out) {
 }
 
 static int record(scene *s, double time, int iterations) {
-    double *row = turbine_report_row(&s->report), base[6], angle, speed, twist;
+    double *row = turbine_report_row(&s->report), base[6], air[2] = {0, 0}, angle, speed, twist;
     turbine *t = &s->turbine;
     if (!row) {
         return complain(s, SPAR_ERR_MEMORY);
@@ -227,7 +229,12 @@ static int record(scene *s, double time, int iterations) {
     row[TURBINE_GENERATOR] = turbine_gear * s->control.torque;
     row[TURBINE_SHAFT_POWER] = row[TURBINE_GENERATOR] * speed;
     row[TURBINE_POWER] = turbine_efficiency * row[TURBINE_SHAFT_POWER];
-    TRY(spar_aero_get_rotor(t->aero, &row[TURBINE_THRUST], &row[TURBINE_AIR_TORQUE], NULL));
+    if (t->blown > 0) {
+        TRY(spar_aero_get_rotor(t->aero, &air[0], &air[1], NULL));
+    }
+    ranks_sum(s->ranks, air, 2);
+    row[TURBINE_THRUST] = air[0];
+    row[TURBINE_AIR_TORQUE] = air[1];
     row[TURBINE_TOP_FORE] = s->motion[7 * (t->tower_nodes - 1)];
     row[TURBINE_TOP_SIDE] = s->motion[7 * (t->tower_nodes - 1) + 1];
     row[TURBINE_BASE_MOMENT] = -base[4];
@@ -280,7 +287,7 @@ static double now(void) {
 static void show_progress(const scene *s, double t, double begun, double *shown) {
     int terminal = isatty(STDERR_FILENO);
     double wall = now() - begun, part = t / s->options.seconds;
-    if (s->options.quiet != 0 || wall < 2 || wall - *shown < (terminal ? 0.2 : 10)) {
+    if (s->rank != 0 || s->options.quiet != 0 || wall < 2 || wall - *shown < (terminal ? 0.2 : 10)) {
         return;
     }
     *shown = wall;
@@ -305,7 +312,7 @@ static int run(scene *s) {
         if (record(s, t, iterations) != SPAR_OK) {
             return 1;
         }
-        if (o->vtk_every > 0 && t >= picture - 1e-9) {
+        if (o->vtk_every > 0 && s->ranks == 1 && t >= picture - 1e-9) {
             picture += o->vtk_every;
             if (take_picture(s, t) != SPAR_OK) {
                 return 1;
@@ -322,8 +329,11 @@ static int run(scene *s) {
 static int turbine_program(scene *s) {
     char folder[1024];
     snprintf(folder, sizeof folder, "%s/vtk", s->options.out);
-    if (rotor_make_folder(folder) != 0 || set_up(s) != SPAR_OK || run(s) != SPAR_OK) {
+    if ((s->rank == 0 && rotor_make_folder(folder) != 0) || set_up(s) != SPAR_OK || run(s) != SPAR_OK) {
         return 1;
+    }
+    if (s->rank != 0) {
+        return 0;
     }
     turbine_report_print(&s->report, s->options.mean, stdout);
     if (turbine_report_write(&s->report, s->options.no_plots == 0) != 0) {
@@ -338,12 +348,16 @@ static int turbine_program(scene *s) {
 
 int main(int argc, char **argv) {
     scene s = {0};
+    ranks_begin(&argc, &argv, &s.rank, &s.ranks);
     int failed = read_options(&s.options, argc, argv);
     if (!failed && s.options.help != 0) {
-        print_help(argv[0]);
+        if (s.rank == 0) {
+            print_help(argv[0]);
+        }
     } else if (!failed) {
         failed = turbine_program(&s);
     }
     release(&s);
+    ranks_end(s.ranks, failed);
     return failed ? 1 : 0;
 }

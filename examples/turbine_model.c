@@ -126,10 +126,13 @@ static int create_blades(turbine *t, const turbine_options *o) {
         TRY(nrel5mw_create_blade(&t->data, &t->rotor, t->session, b, o->elements, o->nodes, &t->blade[b]));
         TRY(o->driven_roots ? SPAR_OK : spar_member_set_root(t->blade[b], SPAR_ROOT_FREE)); /* the bearing holds it */
         TRY(spar_member_commit(t->blade[b]));
-        TRY(nrel5mw_create_sections(&t->data, &t->rotor, b, t->blade[b], &t->air[b], t->twist));
+        if (o->ranks < 2 || b % o->ranks == o->rank) {
+            TRY(nrel5mw_create_sections(&t->data, &t->rotor, b, t->blade[b], &t->air[t->blown], t->twist));
+            t->blown++;
+        }
     }
     TRY(spar_member_get_count(t->blade[0], &t->blade_nodes));
-    return nrel5mw_create_aero(&t->data, &t->rotor, TURBINE_BLADES, t->air, t->twist, &t->aero);
+    return nrel5mw_create_aero(&t->data, &t->rotor, t->blown, t->air, t->twist, &t->aero);
 }
 
 /* ---- joints ---- */
@@ -243,7 +246,7 @@ int turbine_blow(turbine *t, turbine_wind wind, void *context, double time) {
         TRY(turbine_get_hub(t, hub, axis, NULL));
         TRY(spar_aero_set_rotor(t->aero, hub, axis, cone * t->data.hub_radius, cone * t->data.tip_radius));
     }
-    for (int b = 0; b < TURBINE_BLADES; b++) {
+    for (int b = 0; b < t->blown; b++) {
         double *place = t->place + 3 * b * t->sections, *inflow = t->inflow + 3 * b * t->sections;
         TRY(spar_fluid_pull_motion(t->air[b], 1, place, NULL));
         for (int64_t i = 0; i < t->sections; i++) {

@@ -19,6 +19,7 @@ typedef struct turbine_options {
     int elements, nodes;             /* of a blade; elements 0: rigid blades */
     int tower_elements, tower_nodes; /* nodes of each element */
     double pitch;                    /* rad, of the reference configuration */
+    int rank, ranks;                 /* this one and their number (0: alone), which share the blades' air */
     int driven_roots;                /* 1: no tower, shaft and bearings: blades on roots driven by the host */
 } turbine_options;
 
@@ -28,11 +29,12 @@ typedef struct turbine {
     spar_session *session; /* the caller's */
     spar_member *tower, *nacelle, *generator, *hub, *blade[TURBINE_BLADES];
     spar_joint *yaw, *shaft, *drivetrain, *bearing[TURBINE_BLADES];
-    spar_fluid *air[TURBINE_BLADES];
+    spar_fluid *air[TURBINE_BLADES]; /* of the blades whose air is on this rank, */
+    int blown;                       /* so many */
     spar_aero *aero;
     int64_t tower_nodes, blade_nodes, sections; /* tower, a blade, its aerodynamic sections */
     double shaft_place[3], shaft_axes[4];       /* of its joints in the reference: x along it, downwind */
-    double *place, *inflow;                     /* [blades][sections][3] */
+    double *place, *inflow;                     /* [blown][sections][3] */
     double *twist; /* [sections], what their frames have not of it, as spar_aero_set_section */
 } turbine;
 
