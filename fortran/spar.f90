@@ -61,6 +61,7 @@ module spar
   public :: SPAR_QUADRATURE_SECTIONS, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY, SPAR_INTERPOLATE_NODAL
   public :: SPAR_INTERPOLATE_CONSISTENT, SPAR_NODES_MOTION, SPAR_NODES_FORCE, SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
   public :: SPAR_MATRIX_LOCAL_TO_GLOBAL, SPAR_MATRIX_GLOBAL_TO_LOCAL
+  public :: SPAR_KIND_SECTIONS, SPAR_KIND_SHARED, SPAR_KIND_WEIGHTS, SPAR_KIND_FORCES
   public :: SPAR_MAP_FAR, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING
   public :: SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_AERO_INDUCTION
   public :: SPAR_EFFECT_WORK, SPAR_EFFECT_DEFAULT
@@ -235,6 +236,7 @@ module spar
     procedure :: set_force_nodes => fluid_set_force_nodes
     procedure :: set_sections => fluid_set_sections
     procedure :: read_aerodyn => fluid_read_aerodyn
+    procedure :: set_motion_sections => fluid_set_motion_sections
     procedure :: set_projection => fluid_set_projection
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: map => fluid_map
@@ -251,6 +253,10 @@ module spar
     procedure :: pull_poses => fluid_pull_poses
     procedure :: pull_matrices => fluid_pull_matrices
     procedure :: check_matrices => fluid_check_matrices
+    procedure :: pull_force_places => fluid_pull_force_places
+    procedure :: get_kind => fluid_get_kind
+    procedure :: get_places => fluid_get_places
+    procedure :: get_forces => fluid_get_forces
     procedure :: pull_forces => fluid_pull_forces
     procedure :: push_forces => fluid_push_forces
     procedure :: push_forces_at => fluid_push_forces_at
@@ -2113,6 +2119,34 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_read_aerodyn
 
+  subroutine fluid_set_motion_sections(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in), optional :: offset(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), &
+        [3_c_int64_t, size(xi, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('fluid%set_motion_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_set_motion_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
+        stat, errmsg)
+  end subroutine fluid_set_motion_sections
+
+  subroutine fluid_get_kind(self, which, kind, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int), intent(inout) :: kind
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_kind(self%handle, which, kind), self%session, stat, errmsg)
+  end subroutine fluid_get_kind
+
   subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer(c_int), intent(in) :: method
@@ -2329,6 +2363,79 @@ contains
     end if
     call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
   end subroutine fluid_pull_poses
+
+  subroutine fluid_pull_force_places(self, theta, x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%pull_force_places', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_force_places(self%handle, theta, x, v, q), self%session, stat, errmsg)
+  end subroutine fluid_pull_force_places
+
+  subroutine fluid_get_places(self, which, x, v, q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, which, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(foot)) call need(fault, 'foot', shape(foot, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_places', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_places(self%handle, which, x, v, q, foot), self%session, stat, errmsg)
+  end subroutine fluid_get_places
+
+  subroutine fluid_get_forces(self, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: force(:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_forces', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_forces(self%handle, force), self%session, stat, errmsg)
+  end subroutine fluid_get_forces
 
   ! matrix(row, column, n): the convention as its name says. C fills row by row, so the transpose of what C's name says is asked for.
   subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)

@@ -37,6 +37,7 @@ module spar_c
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
+  integer(c_int), parameter :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
   integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, &
       SPAR_EFFECT_GRAVITY = 4, SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
       SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
@@ -782,6 +783,45 @@ module spar_c
       real(c_double), intent(in), optional :: xi(*), offset(*)
       integer(c_int) :: status
     end function spar_fluid_set_sections
+
+    function spar_fluid_set_motion_sections(fluid, n, xi, offset) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: xi(*), offset(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_motion_sections
+
+    function spar_fluid_get_kind(fluid, which, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_fluid_get_kind
+
+    function spar_fluid_pull_force_places(fluid, theta, x, v, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), v(*), q(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_force_places
+
+    function spar_fluid_get_places(fluid, which, x, v, q, foot) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: x(*), v(*), q(*), foot(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_places
+
+    function spar_fluid_get_forces(fluid, force) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: force(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_forces
 
     function spar_fluid_set_projection(fluid, method, max_distance) bind(c) result(status)
       import :: c_double, c_int, c_ptr

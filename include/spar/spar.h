@@ -764,6 +764,12 @@ SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const doub
      xi[n]: in, in [-1,1] over the whole beam
      offset[n][3]: in, m, from the line to the node in the section frame (x tangent, y, z), NULL: 0 */
 SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+/* Motion nodes alone as sections, beside force nodes at other places: those of spar_fluid_set_sections, which stay
+   where they are with the forces that are kept, or of spar_fluid_set_force_nodes. For actuator lines whose velocities
+   are sampled at fewer or other sections than forces are spread from (AMR-Wind), or at three quarters of the chord.
+   Forces are pushed to, and pulled at (spar_fluid_pull_forces, spar_fluid_pull_force_places), the force nodes; all
+   other pulls are at the motion nodes. To be mapped. n, xi[n], offset[n][3]: in, as above. */
+SPAR_API int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
 /* How feet are found, for the next spar_fluid_map.
      method: in, SPAR_PROJECT_*, default bounded
      max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and refused under the option fluid.far = refuse);
@@ -783,6 +789,15 @@ SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
 SPAR_API int spar_fluid_map(spar_fluid *fluid);
 /* which: in, SPAR_NODES_*; n: out, its nodes on this rank. */
 SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);
+/* What the nodes of a set are. */
+enum {
+    SPAR_KIND_SECTIONS = 1, /* given by coordinate along the line, not by place */
+    SPAR_KIND_SHARED = 2,   /* they are motion nodes and force nodes at once */
+    SPAR_KIND_WEIGHTS = 4,  /* they take part of the motion (spar_fluid_set_motion_weights) */
+    SPAR_KIND_FORCES = 8    /* their node forces are kept (SPAR_EFFECT_FLUID_HISTORY) */
+};
+/* which: in, SPAR_NODES_*; kind: out, SPAR_KIND_* or-ed. */
+SPAR_API int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind);
 /* flag: in, one SPAR_MAP_*; n: out, how many mapped nodes of the set bear it. */
 SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
 /* Where the nodes are mapped to. Each NULL: not wanted.
@@ -826,6 +841,17 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, d
      node: out, which, the first of equals; -1: there are none
    Each NULL: not wanted. */
 SPAR_API int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node);
+/* Force nodes at t^n + theta dt, where an actuator line spreads what spar_fluid_pull_forces gives at the same theta.
+   Each output NULL: not wanted. x[n][3], v[n][3]: out, m, m/s q[n][4]: out, orientation of the section now, scalar part
+   >= 0 */
+SPAR_API int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q);
+/* Either set at t^{n+1} as it stands in the latest iterate, between steps now: for pictures and post-processing. A
+   getter: it counts as no pull, and a trial leaves nothing out. Each output NULL: not wanted.
+     which: in, SPAR_NODES_*
+     x[n][3], v[n][3]: out, m, m/s, of nodes with weights the part they take
+     q[n][4]: out, orientation of the section at the foot, scalar part >= 0
+     foot[n][3]: out, m, where the foot is */
+SPAR_API int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot);
 /* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
    m(column, row, n), that is the transpose. */
 enum {
@@ -844,6 +870,9 @@ SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const 
    as long as nothing was. force[n][3]: out, N, by force node. Zeros before the first push. SPAR_ERR_STATE: they are
    not kept (SPAR_EFFECT_FLUID_HISTORY). */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
+/* The same at t^{n+1} as a getter: it counts as no pull. force[n][3]: out. SPAR_ERR_STATE: they are not kept
+   (SPAR_KIND_FORCES). */
+SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
 /* Loads at t^{n+1} on the force nodes where they are now (part 7 of a step, (T8) to (T10)); before the first step those
    at t = 0. Replaces what the fluid pushed before.
      force[n][3]: in, N

@@ -58,14 +58,8 @@ int spari_fluid_is_pending(const spar_fluid *fluid);
 /* After the way back: the fluids that the host has destroyed within the trial. */
 void spari_fluid_release_gone(spar_session *session);
 
-/* For pictures, at t^{n+1} (between steps: now). Places, velocities [n][3] of the nodes of one set, orientations [n][4]
-   of their sections, and these feet [n][3]; any NULL. */
-int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q,
-                     double *foot);
-/* Whether the nodes are sections: one set, in the order along the member that the host gave. */
+/* Whether nodes of it are sections. */
 int spari_fluid_has_sections(const spar_fluid *fluid);
-/* The node forces pushed last, [n][3]; NULL where they are not kept. */
-const double *spari_fluid_forces(const spar_fluid *fluid);
 
 /* State for save and load, as doubles: loads and kept node forces, with the places of these nodes. */
 int64_t spari_fluid_state_size(const spar_fluid *fluid);

@@ -194,7 +194,8 @@ int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
    host has said which effects it wants. */
 static int keeps_forces(const spar_fluid *fluid) {
     const spar_member *m = fluid->member;
-    return fluid->history || (m->effects & SPAR_EFFECT_FLUID_HISTORY) || (fluid->shared && !m->effects_given);
+    return fluid->history || (m->effects & SPAR_EFFECT_FLUID_HISTORY) ||
+           (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !m->effects_given);
 }
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
@@ -250,7 +251,7 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
     return SPAR_OK;
 }
 
-static int check_which(const spar_fluid *fluid, int which, const char *caller) {
+int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller) {
     if (which != SPAR_NODES_MOTION && which != SPAR_NODES_FORCE) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "node set %d is not known; SPAR_NODES_MOTION or SPAR_NODES_FORCE", which);
@@ -260,15 +261,26 @@ static int check_which(const spar_fluid *fluid, int which, const char *caller) {
 
 int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_which(fluid, which, __func__));
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the place for the count is NULL");
     *n = spari_fluid_set(fluid, which)->n;
     return SPAR_OK;
 }
 
+int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
+    SPARI_FLUID_REQUIRE(fluid, kind, SPAR_ERR_ARGUMENT, "the place for the kind is NULL");
+    const spari_node_set *set = spari_fluid_set(fluid, which);
+    int bears_forces = which == SPAR_NODES_FORCE || fluid->shared;
+    *kind = (set->sections ? SPAR_KIND_SECTIONS : 0) | (fluid->shared ? SPAR_KIND_SHARED : 0) |
+            (set->weight ? SPAR_KIND_WEIGHTS : 0) | (bears_forces && fluid->history ? SPAR_KIND_FORCES : 0);
+    return SPAR_OK;
+}
+
 int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_which(fluid, which, __func__));
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the place for the count is NULL");
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
@@ -283,7 +295,7 @@ int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int6
 int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_which(fluid, which, __func__));
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     int64_t n = s && (xi || distance || flags) ? s->n : 0; /* without an array the question is whether there is a map */
@@ -306,7 +318,7 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *d
 int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_which(fluid, which, __func__));
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     for (int64_t p = 0; s && p < s->n; p++) {
@@ -329,7 +341,7 @@ int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, doubl
 int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(check_which(fluid, which, __func__));
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     int n = fluid->member->per_element;

@@ -198,6 +198,18 @@ int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const 
     return SPAR_OK;
 }
 
+/* The nodes of one set go, before others come. Sections that served both stay with the other set. */
+static void empty_set(spar_fluid *fluid, int which) {
+    if (fluid->shared) {
+        fluid->shared = 0;
+        if (which == SPAR_NODES_MOTION) {
+            fluid->set[SPAR_NODES_FORCE] = fluid->set[SPAR_NODES_MOTION];
+            fluid->set[SPAR_NODES_MOTION] = (spari_node_set){0};
+        }
+    }
+    spari_node_set_clear(&fluid->set[which]);
+}
+
 /* A copy of x [n], zeros for NULL. */
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
@@ -211,14 +223,7 @@ static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, 
     if (!copy) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld nodes", (long long)n);
     }
-    if (fluid->shared) { /* sections served both; the other set keeps them */
-        fluid->shared = 0;
-        if (which == SPAR_NODES_MOTION) {
-            fluid->set[SPAR_NODES_FORCE] = fluid->set[SPAR_NODES_MOTION];
-            fluid->set[SPAR_NODES_MOTION] = (spari_node_set){0};
-        }
-    }
-    spari_node_set_clear(&fluid->set[which]);
+    empty_set(fluid, which);
     fluid->set[which] = (spari_node_set){.pending = 1, .n = n, .x = copy};
     return SPAR_OK;
 }
@@ -235,31 +240,54 @@ int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
     return set_places(fluid, SPAR_NODES_FORCE, n, x, __func__);
 }
 
-int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    SPARI_QUIET;
-    SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n >= 0 && n <= SPARI_MOST && (n == 0 || xi), SPAR_ERR_ARGUMENT,
-                        "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
-                        xi ? "" : " without coordinates");
+/* Copies of the host's sections, to be mapped; nothing of the fluid changes. */
+static int copy_sections(const spar_fluid *fluid, int64_t n, const double *xi, const double *offset,
+                         spari_node_set *set, const char *caller) {
+    SPARI_TRY(spari_fluid_check_idle(fluid, caller));
+    if (n < 0 || n > SPARI_MOST || (n > 0 && !xi)) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
+                                  xi ? "" : " without coordinates");
+    }
     for (int64_t j = 0; j < n; j++) {
-        SPARI_FLUID_REQUIRE(fluid, xi[j] >= -1 && xi[j] <= 1, SPAR_ERR_ARGUMENT,
-                            "section %lld: xi = %g lies outside [-1,1]; xi = 2 eta - 1 over the whole beam",
-                            (long long)j, xi[j]);
+        if (!(xi[j] >= -1 && xi[j] <= 1)) {
+            return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                      "section %lld: xi = %g lies outside [-1,1]; xi = 2 eta - 1 over the whole beam",
+                                      (long long)j, xi[j]);
+        }
     }
     if (offset) {
-        SPARI_TRY(spari_fluid_check_values(fluid, __func__, "offset of section", offset, n, 3));
+        SPARI_TRY(spari_fluid_check_values(fluid, caller, "offset of section", offset, n, 3));
     }
     double *copy = spari_copy(offset, 3 * n), *at = spari_copy(xi, n);
     if (!copy || !at) {
         free(copy);
         free(at);
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for %lld sections", (long long)n);
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld sections", (long long)n);
     }
+    *set = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .xi = at};
+    return SPAR_OK;
+}
+
+int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+    SPARI_QUIET;
+    SPARI_FLUID_HANDLE(fluid);
+    spari_node_set made;
+    SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
     spari_node_set_clear(&fluid->set[0]);
     spari_node_set_clear(&fluid->set[1]);
     fluid->shared = 1;
-    fluid->set[SPAR_NODES_MOTION] = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .xi = at};
+    fluid->set[SPAR_NODES_MOTION] = made;
+    return SPAR_OK;
+}
+
+int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+    SPARI_QUIET;
+    SPARI_FLUID_HANDLE(fluid);
+    spari_node_set made;
+    SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
+    empty_set(fluid, SPAR_NODES_MOTION);
+    fluid->set[SPAR_NODES_MOTION] = made;
     return SPAR_OK;
 }
 

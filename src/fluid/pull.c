@@ -285,9 +285,9 @@ static double (*second_tile(const spar_fluid *fluid))[SPARI_ROW] {
 }
 
 /* Of part of a turn there is no one rotation, so that weighted nodes have none. */
-static int check_turns(const spar_fluid *fluid, const wanted *w, const char *caller) {
+static int check_turns(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
     int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
-    if (turns && spari_fluid_set(fluid, SPAR_NODES_MOTION)->weight) {
+    if (turns && spari_fluid_set(fluid, which)->weight) {
         return spari_fluid_refuse(fluid, SPAR_ERR_UNSUPPORTED, caller,
                                   "motion nodes with weights have places, velocities and accelerations, but take no "
                                   "section's rotation; pull it from a fluid without weights");
@@ -328,11 +328,11 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
     return spari_fluid_check_rotation(fluid, least, caller);
 }
 
-/* The host's pulls are of the motion nodes. */
-static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
+/* The host's pulls. */
+static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     const spari_nodes *s;
     wanted left = *w;
-    SPARI_TRY(check_turns(fluid, w, caller));
+    SPARI_TRY(check_turns(fluid, which, w, caller));
     fluid->asked |= parts_of(w, theta);
     theta = spari_fluid_time(fluid, theta);
     if (fluid->mute & SPARI_MUTE_HALF_STEP && theta > 0) {
@@ -340,12 +340,16 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
     }
     SPARI_TRY(need_states(fluid, theta, caller));
     if (fluid->mute) {
-        SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, caller, &s));
+        SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &s));
         if (s) {
-            mute_parts(fluid, spari_fluid_set(fluid, SPAR_NODES_MOTION), &left);
+            mute_parts(fluid, spari_fluid_set(fluid, which), &left);
         }
     }
-    return pull_set(fluid, SPAR_NODES_MOTION, theta, &left, caller);
+    return pull_set(fluid, which, theta, &left, caller);
+}
+
+static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
+    return pull_nodes(fluid, SPAR_NODES_MOTION, theta, w, caller);
 }
 
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
@@ -434,6 +438,13 @@ int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q,
     return pull_motion(fluid, theta, &w, __func__);
 }
 
+int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q) {
+    SPARI_QUIET;
+    SPARI_FLUID_HANDLE(fluid);
+    wanted w = {.x.d = x, .v.d = v, .q.d = q};
+    return pull_nodes(fluid, SPAR_NODES_FORCE, theta, &w, __func__);
+}
+
 static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
     if (convention != SPAR_MATRIX_LOCAL_TO_GLOBAL && convention != SPAR_MATRIX_GLOBAL_TO_LOCAL) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
@@ -506,7 +517,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     double *right = spari_zalloc(9 * n, sizeof *right);
     SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
     wanted w = {.matrix.d = right, .convention = convention};
-    int status = check_turns(fluid, &w, __func__);
+    int status = check_turns(fluid, SPAR_NODES_MOTION, &w, __func__);
     status = status != SPAR_OK ? status : pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
     for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
         const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
@@ -519,10 +530,12 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, double *x, double *v, double *q,
-                     double *foot) {
+int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot) {
+    SPARI_QUIET;
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    SPARI_TRY(pull_set(fluid, which, 1, &w, call)); /* and fills the coefficients of the motion */
+    SPARI_TRY(pull_set(fluid, which, 1, &w, __func__)); /* and fills the coefficients of the motion */
     const spari_nodes *s = spari_fluid_set(fluid, which)->nodes;
     for (int64_t p = 0; s && foot && p < s->n; p++) {
         const double *c = fluid->field[0] + (ptrdiff_t)spari_nodes_element(s, p) * s->per_element * SPARI_FIELDS;
@@ -533,9 +546,5 @@ int spari_fluid_look(const spar_fluid *fluid, const char *call, int which, doubl
 }
 
 int spari_fluid_has_sections(const spar_fluid *fluid) {
-    return fluid->shared;
-}
-
-const double *spari_fluid_forces(const spar_fluid *fluid) {
-    return fluid->history ? fluid->history->after : NULL;
+    return fluid->set[0].sections || fluid->set[1].sections;
 }

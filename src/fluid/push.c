@@ -10,21 +10,28 @@
 
 /* ---- loads in ---- */
 
-static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, const char *caller) {
-    SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
-    theta = spari_fluid_time(fluid, theta);
+/* Whether node forces can be given, of *n nodes. */
+static int check_forces(const spar_fluid *fluid, int has_place, int64_t *n, const char *caller) {
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
-    int64_t n = s ? s->n : 0;
-    if (n > 0 && !d && !f) {
+    *n = s ? s->n : 0;
+    if (*n > 0 && !has_place) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the place for the forces is NULL");
     }
-    const spari_history *h = fluid->history;
-    if (!h && s) {
+    if (!fluid->history && s) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
                                   "node forces are not kept; ask for SPAR_EFFECT_FLUID_HISTORY with "
                                   "spar_member_set_effects before the member is committed");
     }
+    return SPAR_OK;
+}
+
+static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, const char *caller) {
+    int64_t n;
+    const spari_history *h = fluid->history;
+    SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
+    theta = spari_fluid_time(fluid, theta);
+    SPARI_TRY(check_forces(fluid, d || f, &n, caller));
     fluid->asked |= SPARI_MUTE_HISTORY;
     if (fluid->mute & SPARI_MUTE_HISTORY) {
         memset(d ? (void *)d : (void *)f, 0, (size_t)(3 * n) * (d ? sizeof *d : sizeof *f));
@@ -51,6 +58,16 @@ int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
     return pull_forces(fluid, theta, NULL, force, __func__);
+}
+
+int spar_fluid_get_forces(const spar_fluid *fluid, double *force) {
+    SPARI_FLUID_HANDLE(fluid);
+    int64_t n;
+    SPARI_TRY(check_forces(fluid, force != NULL, &n, __func__));
+    if (n > 0) {
+        memcpy(force, fluid->history->after, 3 * (size_t)n * sizeof *force);
+    }
+    return SPAR_OK;
 }
 
 static void keep_forces(spar_fluid *fluid, spari_source force) {

@@ -95,6 +95,7 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
 /* Of one state's tile: places and what of velocities and accelerations is there become the part the nodes take. The set
    has weights. */
 void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
+int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller);
 /* Finite numbers x [n][width]. */
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
                              int width);

@@ -1,9 +1,10 @@
 /* A picture of a fluid's nodes on this rank: where they are, where their feet are, and what the map thinks of them. */
 #include "../base/quiet.h"
-#include "../fluid/fluid.h"
+#include "../base/status.h"
 #include "../math/rotation.h"
 #include "vtk.h"
 #include <spar/spar_output.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,7 +20,8 @@ static const struct {
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
 typedef struct sketch {
-    int64_t count[2], n; /* nodes of the sets, and of both */
+    int64_t count[2], n; /* nodes of the sets, and of both; none of a second set that is the first */
+    int kind[2];         /* SPAR_KIND_* */
     double *table;       /* 2 n points */
     double *q;
     int *flags;
@@ -31,14 +33,13 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
 }
 
 /* Fills the nodes of one set, which stand at `first` of all. */
-static int fill_set(const spar_fluid *fluid, const char *call, int which, int64_t first, const sketch *s) {
+static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    SPARI_TRY(spari_fluid_look(fluid, call, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
-                               at(s, X, 3, s->n + first)));
+    SPARI_TRY(spar_fluid_get_places(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
+                                    at(s, X, 3, s->n + first)));
     SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
-    const double *force = spari_fluid_forces(fluid);
-    if (force && (which == SPAR_NODES_FORCE || spari_fluid_has_sections(fluid))) {
-        memcpy(at(s, FORCE, 3, first), force, (size_t)(3 * s->count[which]) * sizeof *force);
+    if (s->kind[which] & SPAR_KIND_FORCES) {
+        SPARI_TRY(spar_fluid_get_forces(fluid, at(s, FORCE, 3, first)));
     }
     for (int64_t i = first; i < first + s->count[which]; i++) {
         for (int k = 0; k < 3; k++) {
@@ -62,13 +63,18 @@ static void copy_to_feet(const sketch *s) {
 }
 
 /* Sections in a row, then a connector from every node to its foot. Returns how many lines. */
-static int64_t draw_lines(const spar_fluid *fluid, const sketch *s) {
-    int64_t lines = 0, end = 0;
-    if (spari_fluid_has_sections(fluid) && s->n > 1) {
-        for (; end < s->n; end++) {
-            s->line_point[end] = end;
+static int64_t draw_lines(const sketch *s) {
+    int64_t lines = 0, end = 0, node = 0;
+    for (int which = 0; which < 2; which++) {
+        int row = (s->kind[which] & SPAR_KIND_SECTIONS) && s->count[which] > 1;
+        for (int64_t i = 0; i < s->count[which]; i++, node++) {
+            if (row) {
+                s->line_point[end++] = node;
+            }
         }
-        s->line_end[lines++] = end;
+        if (row) {
+            s->line_end[lines++] = end;
+        }
     }
     for (int64_t i = 0; i < s->n; i++) {
         s->line_point[end++] = i;
@@ -78,8 +84,7 @@ static int64_t draw_lines(const spar_fluid *fluid, const sketch *s) {
     return lines;
 }
 
-static int write_nodes(const spar_fluid *fluid, const sketch *s, spar_session *session, const char *path,
-                       const char *call) {
+static int write_nodes(const sketch *s, spar_session *session, const char *path, const char *call) {
     spari_vtk_field field[FIELDS];
     for (int f = 0; f < FIELDS; f++) {
         field[f] = (spari_vtk_field){field_of[f].name, field_of[f].components, at(s, field_of[f].column, 1, 0)};
@@ -87,22 +92,32 @@ static int write_nodes(const spar_fluid *fluid, const sketch *s, spar_session *s
     spari_vtk_picture picture = {.points = 2 * s->n,
                                  .x = at(s, X, 3, 0),
                                  .verts = s->n,
-                                 .lines = draw_lines(fluid, s),
+                                 .lines = draw_lines(s),
                                  .line_end = s->line_end,
                                  .line_point = s->line_point,
-                                 .fields = spari_fluid_forces(fluid) ? FIELDS : FIELDS - 1,
+                                 .fields = (s->kind[0] | s->kind[1]) & SPAR_KIND_FORCES ? FIELDS : FIELDS - 1,
                                  .field = field};
     SPARI_TRY(spar_session_get_time(session, &picture.time, NULL, NULL));
     return spari_vtk_write(session, call, path, &picture);
 }
 
+/* What a call below has refused, as this one's refusal. */
+static int retell(spar_session *session, int status, const char *call) {
+    char text[SPARI_MESSAGE_SIZE];
+    if (status == SPAR_OK) {
+        return SPAR_OK;
+    }
+    (void)snprintf(text, sizeof text, "%s", spar_session_message(session));
+    return spari_fail(session, status, "%s: %s", call, text);
+}
+
 static int draw(const spar_fluid *fluid, const sketch *s, spar_session *session, const char *path, const char *call) {
-    SPARI_TRY(fill_set(fluid, call, SPAR_NODES_MOTION, 0, s));
-    if (!spari_fluid_has_sections(fluid)) {
-        SPARI_TRY(fill_set(fluid, call, SPAR_NODES_FORCE, s->count[0], s));
+    SPARI_TRY(retell(session, fill_set(fluid, SPAR_NODES_MOTION, 0, s), call));
+    if (!(s->kind[0] & SPAR_KIND_SHARED)) {
+        SPARI_TRY(retell(session, fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s), call));
     }
     copy_to_feet(s);
-    return write_nodes(fluid, s, session, path, call);
+    return write_nodes(s, session, path, call);
 }
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
@@ -113,15 +128,15 @@ int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     spar_session *session;
     SPARI_TRY(spar_fluid_get_member(fluid, &member));
     SPARI_TRY(spar_member_get_session(member, &session));
-    SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &s.count[0]));
-    if (!spari_fluid_has_sections(fluid)) {
-        SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &s.count[1]));
+    for (int which = 0; which < 2 && !(s.kind[0] & SPAR_KIND_SHARED); which++) {
+        SPARI_TRY(spar_fluid_get_count(fluid, which, &s.count[which]));
+        SPARI_TRY(spar_fluid_get_kind(fluid, which, &s.kind[which]));
     }
     s.n = s.count[0] + s.count[1];
     s.table = spari_zalloc(2 * COLUMNS * s.n, sizeof *s.table);
     s.q = spari_zalloc(4 * s.n, sizeof *s.q);
     s.flags = spari_zalloc(s.n, sizeof *s.flags);
-    s.line_end = spari_zalloc(s.n + 1, sizeof *s.line_end);
+    s.line_end = spari_zalloc(s.n + 2, sizeof *s.line_end);
     s.line_point = spari_zalloc(3 * s.n, sizeof *s.line_point);
     int whole = s.table && s.q && s.flags && s.line_end && s.line_point;
     int status = whole ? draw(fluid, &s, session, path, __func__)

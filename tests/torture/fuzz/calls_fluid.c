@@ -66,11 +66,19 @@ void do_spar_fluid_set_force_nodes(call *c) {
     set_nodes(c, spar_fluid_set_force_nodes);
 }
 
-void do_spar_fluid_set_sections(call *c) {
+static void set_sections(call *c, int (*set)(spar_fluid *fluid, int64_t n, const double *xi, const double *offset)) {
     live_fluid *f = arg_fluid(c);
     int64_t n = chance(c, 5) ? 0 : arg_count(c, 2, 4), room = length(n);
     double *xi = arg_rising(c, room, -0.9, 1), *offset = arg_reals_or_null(c, 3 * room, -0.05, 0.05);
-    RUN(c, spar_fluid_set_sections(f->f, n, xi, offset));
+    RUN(c, set(f->f, n, xi, offset));
+}
+
+void do_spar_fluid_set_sections(call *c) {
+    set_sections(c, spar_fluid_set_sections);
+}
+
+void do_spar_fluid_set_motion_sections(call *c) {
+    set_sections(c, spar_fluid_set_motion_sections);
 }
 
 void do_spar_fluid_set_motion_weights(call *c) {
@@ -145,6 +153,13 @@ void do_spar_fluid_get_count(call *c) {
     int which = arg_int(c, 0, 1);
     int64_t *n = arg_out(c, sizeof *n, 0);
     RUN(c, spar_fluid_get_count(f->f, which, n));
+}
+
+void do_spar_fluid_get_kind(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int *kind = arg_out(c, sizeof *kind, 0);
+    RUN(c, spar_fluid_get_kind(f->f, which, kind));
 }
 
 void do_spar_fluid_get_flag_count(call *c) {
@@ -251,6 +266,28 @@ void do_spar_fluid_check_matrices(call *c) {
         (void)spar_fluid_pull_matrices(f->f, 1, convention, matrix);
     }
     RUN(c, spar_fluid_check_matrices(f->f, convention, matrix));
+}
+
+void do_spar_fluid_pull_force_places(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n);
+    RUN(c, spar_fluid_pull_force_places(f->f, theta, x, v, q));
+}
+
+void do_spar_fluid_get_places(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which);
+    double *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n),
+           *foot = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_get_places(f->f, which, x, v, q, foot));
+}
+
+void do_spar_fluid_get_forces(call *c) {
+    live_fluid *f = arg_fluid(c);
+    double *force = OUT(c, 3 * fluid_count(f, SPAR_NODES_FORCE));
+    RUN(c, spar_fluid_get_forces(f->f, force));
 }
 
 void do_spar_fluid_pull_forces(call *c) {

@@ -131,6 +131,11 @@ enum {
     CALL(spar_fluid_set_motion_weights, 60, FUZZ_CHANGES)                                                              \
     CALL(spar_fluid_get_motion_weights, 20, FUZZ_PURE)                                                                 \
     CALL(spar_fluid_fade_motion, 40, FUZZ_CHANGES)                                                                     \
+    CALL(spar_fluid_set_motion_sections, 60, FUZZ_CHANGES)                                                             \
+    CALL(spar_fluid_get_kind, 20, FUZZ_PURE)                                                                           \
+    CALL(spar_fluid_pull_force_places, 60, FUZZ_PURE)                                                                  \
+    CALL(spar_fluid_get_places, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_get_forces, 30, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_projection, 50, FUZZ_CHANGES)                                                                  \
     CALL(spar_fluid_set_interpolation, 50, FUZZ_CHANGES)                                                               \
     CALL(spar_fluid_map, 140, FUZZ_CHANGES)                                                                            \

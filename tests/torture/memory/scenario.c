@@ -494,6 +494,9 @@ static void act_fluids(void) {
     CALL(spar_fluid_create, b, "sections", &sections);
     CALL(spar_fluid_set_sections, sections, 5, xi, NULL);
     CALL(spar_fluid_map, sections);
+    CALL(spar_fluid_set_motion_sections, sections, 5, xi, NULL);
+    CALL(spar_fluid_map, sections);
+    CALL(spar_fluid_get_kind, sections, SPAR_NODES_FORCE, flags);
     CALL(spar_fluid_get_count, f, SPAR_NODES_FORCE, &count);
     CALL(spar_fluid_get_flag_count, f, SPAR_NODES_FORCE, SPAR_MAP_END, &count);
     CALL(spar_fluid_get_map, f, SPAR_NODES_MOTION, out, w, flags);
@@ -504,6 +507,9 @@ static void act_fluids(void) {
     go(&h, 1);
     CALL(spar_fluid_pull_sections, sections, 1, q, w, NULL);
     CALL(spar_fluid_pull_sections, sections, 0.5, q, w, out);
+    CALL(spar_fluid_pull_force_places, sections, 0.5, out, w, q);
+    CALL(spar_fluid_get_places, sections, SPAR_NODES_FORCE, out, w, q, NULL);
+    CALL(spar_fluid_get_forces, sections, w);
     CALL(spar_fluid_pull_poses, sections, 1, out, q, w, w, w, w);
     CALL(spar_fluid_pull_matrices, sections, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
     CALL(spar_fluid_check_matrices, sections, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
