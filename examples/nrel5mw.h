@@ -12,6 +12,10 @@
 #include <spar/spar.h>
 #include <spar/spar_aero.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct nrel5mw_polar {
     char name[32];
     int64_t n;
@@ -70,5 +74,9 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
    nrel5mw_create_sections (alike for all blades). */
 int nrel5mw_create_aero(nrel5mw *data, const nrel5mw_rotor *rotor, int n, spar_fluid *const *fluids,
                         const double *twist, spar_aero **aero);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -4,6 +4,10 @@
 
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct rotor_options {
     double wind, rpm, pitch; /* m/s, rev/min, deg; rpm and pitch not finite: from the table of rotor_operating_point */
     double shear, hub_height, yaw;
@@ -32,5 +36,9 @@ const char *rotor_scheme_name(int scheme);
 const char *rotor_fidelity_name(int fidelity);
 /* The options that advice is about, as they stand on a command line. */
 void rotor_options_print(const rotor_options *options, FILE *file);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,6 +6,10 @@
 #include "rotor_options.h"
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One row of the history: these, then ROTOR_PER_BLADE for each blade. */
 enum { ROTOR_TIME, ROTOR_AZIMUTH, ROTOR_WIND, ROTOR_THRUST, ROTOR_TORQUE, ROTOR_POWER, ROTOR_ITERATIONS, ROTOR_BLADES };
 enum { ROTOR_FLAP, ROTOR_EDGE, ROTOR_FLAP_MOMENT, ROTOR_EDGE_MOMENT, ROTOR_PER_BLADE };
@@ -57,5 +61,9 @@ void rotor_report_print(const rotor_report *report, FILE *file);
 int rotor_report_write(const rotor_report *report);
 /* Makes the folder and those above it. Returns 0, or 1 with a line on stderr. */
 int rotor_make_folder(const char *path);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 #include "rotor_options.h"
 #include <spar/spar_aero.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The scene as it stands, and the host's calls that its steps are made of. */
 typedef struct rotor_trial {
     spar_session *session;
@@ -25,5 +29,9 @@ int rotor_view_effects(const rotor_trial *trial, int csv, int show);
 /* Asks for the cheapest settings that keep the tolerance, says them in words, and puts them into the options.
    Collective; returns a spar status. */
 int rotor_view_advice(const rotor_trial *trial, rotor_options *options, int show);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 #ifndef TURBINE_CONTROL_H
 #define TURBINE_CONTROL_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct turbine_control {
     double speed;    /* filtered */
     double integral; /* of the speed's error, rad */
@@ -20,5 +24,9 @@ void turbine_control_begin(turbine_control *control, double speed, double pitch)
 void turbine_control_step(turbine_control *control, double speed, double dt);
 /* The law of the torque: without filter and limit of rate. */
 double turbine_torque(double speed, double pitch);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

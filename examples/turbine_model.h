@@ -12,6 +12,10 @@
 
 #include "nrel5mw.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { TURBINE_BLADES = 3 };
 
 typedef struct turbine_options {
@@ -65,5 +69,9 @@ int turbine_set_torque(turbine *turbine, double torque);
 int turbine_blow(turbine *turbine, turbine_wind wind, void *context, double t);
 /* Hub now: place of its centre, and the rotor's axis. */
 int turbine_get_hub(const turbine *turbine, double x[3], double axis[3], double q[4]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Columns of the history. */
 enum {
     TURBINE_TIME,
@@ -41,5 +45,9 @@ void turbine_report_print(const turbine_report *report, double seconds, FILE *fi
 int turbine_report_write(const turbine_report *report, int plots);
 /* Runs gnuplot on a script in the folder. 0 when it drew. */
 int turbine_draw(const char *folder, const char *script);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

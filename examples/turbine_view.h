@@ -4,6 +4,10 @@
 
 #include "turbine_model.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { TURBINE_PATCHES = 3 + TURBINE_BLADES }; /* tower, nacelle, spinner, blades */
 
 /* A surface of rows times columns points. */
@@ -28,5 +32,9 @@ int turbine_view_write_vtk(const turbine_view *view, const char *path, double ti
 int turbine_view_draw(const turbine_view *view, const char *folder, int picture);
 /* v in the axes of the frame q: R(q)^T v */
 void turbine_turn_back(const double q[4], const double v[3], double out[3]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

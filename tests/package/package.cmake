@@ -82,4 +82,10 @@ if(CMAKE_CXX_COMPILER)
   spar_package_test(cxx "${CMAKE_CXX_COMPILER}" -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror
     "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" "${here}/headers.cpp" -o "${work}/headers_cxx"
     "-L${prefix}/${CMAKE_INSTALL_LIBDIR}" "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar ${mpi_flags})
+  if(TARGET spar_example_parts AND TARGET spar_host_parts AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+    add_dependencies(test_case spar_example_parts spar_host_parts)
+    spar_package_test(cxx_examples sh "${here}/cxx_examples" "${PROJECT_SOURCE_DIR}" "${work}/cxx_examples" "${CMAKE_CXX_COMPILER}"
+      "$<TARGET_FILE:spar_example_parts>" "$<TARGET_FILE:spar_host_parts>" "-L${prefix}/${CMAKE_INSTALL_LIBDIR}"
+      "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar -lm)
+  endif()
 endif()

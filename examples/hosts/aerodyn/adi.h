@@ -5,6 +5,10 @@
 #ifndef ADI_H
 #define ADI_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { ADI_TEXT = 1025, ADI_FATAL = 4, ADI_CHANNELS = 8000, ADI_CHANNEL_TEXT = 20 };
 
 /* Once: turbines, the environment, pictures (0: none). */
@@ -40,5 +44,9 @@ void ADI_C_CalcOutput(const double *t, float *channel_values, int *status, char 
 void ADI_C_GetRotorLoads(const int *i, const int *points, float *load, float hub_wind[3], int *status,
                          char message[ADI_TEXT]);
 void ADI_C_End(int *status, char message[ADI_TEXT]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

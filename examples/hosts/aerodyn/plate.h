@@ -5,6 +5,10 @@
 
 #include <math.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 static const double plate_chord = 3, plate_cm = -0.05; /* m */
 
 /* Rows of a polar: angle (rad), lift, drag, moment. */
@@ -22,5 +26,9 @@ static inline void plate_coefficients(double alpha, double *cl, double *cd) {
     *cl = plate_cl[i - 1] + t * (plate_cl[i] - plate_cl[i - 1]);
     *cd = plate_cd[i - 1] + t * (plate_cd[i] - plate_cd[i - 1]);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include <spar/spar.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct spar_aerodyn spar_aerodyn;
 
 /* A rigid part of the turbine now, global axes; q: hub: x along the shaft, downwind, z along blade 1 at azimuth 0;
@@ -42,5 +46,9 @@ void spar_aerodyn_get_force(const spar_aerodyn *aerodyn, double force[3]);
 /* The library's output channel i, 0 if there is none. */
 double spar_aerodyn_get_channel(const spar_aerodyn *aerodyn, int i);
 const char *spar_aerodyn_message(const spar_aerodyn *aerodyn);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 #include "case.h"
 #include "cs_defs.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The session, with what the case file structure.case in the folder of the run describes: made at the first call, by
    all ranks together. */
 spar_session *saturne_session(void);
@@ -54,5 +58,9 @@ void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nsc
                               cs_real_t *disale);
 void CS_PROCF(usaste, USASTE)(int *idfstr);
 void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
