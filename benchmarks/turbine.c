@@ -70,7 +70,7 @@ static double now(void) {
 
 /* A run of some steps: processor time and coupling iterations of a step. */
 static int run(int roots, int steps, double *seconds, double *iterations) {
-    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, roots};
+    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, roots, 0};
     turbine t = {.session = NULL};
     turbine_control c;
     spar_session *s = NULL;

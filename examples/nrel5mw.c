@@ -324,6 +324,107 @@ void nrel5mw_free(nrel5mw *data) {
     *data = (nrel5mw){0};
 }
 
+/* ---- other sections than those of the table ---- */
+
+static double mix(double a, double b, double t) {
+    return a + t * (b - a);
+}
+
+/* Column y of a polar at an angle within its rows. */
+static double at_angle(const nrel5mw_polar *polar, const double *y, double alpha) {
+    int64_t i = 1;
+    while (i + 1 < polar->n && polar->alpha[i] < alpha) {
+        i++;
+    }
+    return mix(y[i - 1], y[i], (alpha - polar->alpha[i - 1]) / (polar->alpha[i] - polar->alpha[i - 1]));
+}
+
+/* Between two polars of one range, at the angles of both. */
+static int blend_polar(const nrel5mw_polar *a, const nrel5mw_polar *b, double t, nrel5mw_polar *out) {
+    const size_t most = (size_t)(a->n + b->n);
+    *out = (nrel5mw_polar){.alpha = calloc(most, sizeof(double)),
+                           .cl = calloc(most, sizeof(double)),
+                           .cd = calloc(most, sizeof(double)),
+                           .cm = calloc(most, sizeof(double))};
+    snprintf(out->name, sizeof out->name, "%.12s_%.12s", a->name, b->name);
+    if (!out->alpha || !out->cl || !out->cd || !out->cm) {
+        return SPAR_ERR_MEMORY;
+    }
+    for (int64_t i = 0, k = 0; i < a->n || k < b->n; out->n++) {
+        const double to_a = i < a->n ? a->alpha[i] : INFINITY, to_b = k < b->n ? b->alpha[k] : INFINITY,
+                     alpha = fmin(to_a, to_b);
+        i += to_a <= alpha;
+        k += to_b <= alpha;
+        out->alpha[out->n] = alpha;
+        out->cl[out->n] = mix(at_angle(a, a->cl, alpha), at_angle(b, b->cl, alpha), t);
+        out->cd[out->n] = mix(at_angle(a, a->cd, alpha), at_angle(b, b->cd, alpha), t);
+        out->cm[out->n] = mix(at_angle(a, a->cm, alpha), at_angle(b, b->cm, alpha), t);
+    }
+    return SPAR_OK;
+}
+
+/* Section i of the new ones, part t of the way from section k to k + 1 of the old. */
+static int place_section(const nrel5mw *data, int64_t k, double t, nrel5mw *fine, int64_t i) {
+    fine->span[i] = mix(data->span[k], data->span[k + 1], t);
+    fine->curve[i] = mix(data->curve[k], data->curve[k + 1], t);
+    fine->sweep[i] = mix(data->sweep[k], data->sweep[k + 1], t);
+    fine->twist[i] = mix(data->twist[k], data->twist[k + 1], t);
+    fine->chord[i] = mix(data->chord[k], data->chord[k + 1], t);
+    fine->polar_of[i] = data->polar_of[k];
+    if (data->polar_of[k] == data->polar_of[k + 1]) {
+        return SPAR_OK;
+    }
+    fine->polar_of[i] = fine->polar_n++;
+    return blend_polar(&data->polar[data->polar_of[k]], &data->polar[data->polar_of[k + 1]], t,
+                       &fine->polar[fine->polar_of[i]]);
+}
+
+/* Memory of n sections and the polars they may need; the old polars keep their places. */
+static int allocate_sections(const nrel5mw *data, int64_t n, nrel5mw *fine) {
+    double **array[] = {&fine->span, &fine->curve, &fine->sweep, &fine->twist, &fine->chord};
+    int good = 1;
+    *fine = *data;
+    fine->aero_n = n;
+    fine->polar_of = calloc((size_t)n, sizeof *fine->polar_of);
+    fine->polar = calloc((size_t)(data->polar_n + n), sizeof *fine->polar);
+    for (size_t a = 0; a < sizeof array / sizeof array[0]; a++) {
+        *array[a] = calloc((size_t)n, sizeof(double));
+        good = good && *array[a];
+    }
+    return good && fine->polar_of && fine->polar;
+}
+
+static void free_sections(nrel5mw *data) {
+    void *all[] = {data->span, data->curve, data->sweep, data->twist, data->chord, data->polar_of, data->polar};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        free(all[i]);
+    }
+}
+
+int nrel5mw_resample(nrel5mw *data, int64_t n) {
+    nrel5mw fine;
+    const int64_t last = data->aero_n - 1;
+    int status = SPAR_OK;
+    if (n < 2) {
+        return FAIL(data, SPAR_ERR_ARGUMENT, "%lld sections: at least 2 are wanted", (long long)n);
+    }
+    if (!allocate_sections(data, n, &fine)) {
+        free_sections(&fine);
+        return FAIL(data, SPAR_ERR_MEMORY, "sections: no memory");
+    }
+    memcpy(fine.polar, data->polar, (size_t)data->polar_n * sizeof *fine.polar);
+    for (int64_t i = 0, k = 0; i < n && status == SPAR_OK; i++) {
+        const double span = mix(data->span[0], data->span[last], (double)i / (double)(n - 1));
+        while (k + 1 < last && data->span[k + 1] <= span) {
+            k++;
+        }
+        status = place_section(data, k, (span - data->span[k]) / (data->span[k + 1] - data->span[k]), &fine, i);
+    }
+    free_sections(data);
+    *data = fine;
+    return status == SPAR_OK ? SPAR_OK : FAIL(data, status, "sections: no memory");
+}
+
 /* ---- where the rotor stands ---- */
 
 void nrel5mw_rotor_default(const nrel5mw *data, nrel5mw_rotor *rotor) {

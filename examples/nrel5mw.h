@@ -52,6 +52,9 @@ typedef struct nrel5mw_rotor {
 /* Reads the directory's tables. Returns a spar status; data is to be freed in any case. */
 int nrel5mw_load(nrel5mw *data, const char *directory);
 void nrel5mw_free(nrel5mw *data);
+/* n aerodynamic sections in place of the table's, evenly spaced from its first to its last: for an actuator line as
+   fine as its grid. Chord, twist and places are linear between the table's; so are polars, at the angles of both. */
+int nrel5mw_resample(nrel5mw *data, int64_t n);
 /* Hub at the origin, up = z, precone and tilt of the tables, wind along x (tilted: the axis leans below it). */
 void nrel5mw_rotor_default(const nrel5mw *data, nrel5mw_rotor *rotor);
 

@@ -162,7 +162,7 @@ static int set_up(scene *s) {
     rotor_operating_point(o->wind, &rpm, &pitch);
     rpm = isfinite(o->rpm) ? o->rpm : rpm;
     pitch = (isfinite(o->pitch) ? o->pitch : pitch) * pi / 180;
-    const turbine_options how = {o->data, (int)o->elements, (int)o->nodes, 1, 8, pitch, s->rank, s->ranks, 0};
+    const turbine_options how = {o->data, (int)o->elements, (int)o->nodes, 1, 8, pitch, s->rank, s->ranks, 0, 0};
     TRY(ranks_create_session(s->ranks, &s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, 1));

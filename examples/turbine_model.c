@@ -174,6 +174,7 @@ static void place_rotor(turbine *t, const turbine_options *o) {
 int turbine_create(turbine *t, spar_session *session, const turbine_options *o) {
     *t = (turbine){.session = session};
     TRY(nrel5mw_load(&t->data, o->data));
+    TRY(o->sections > 0 ? nrel5mw_resample(&t->data, o->sections) : SPAR_OK);
     place_rotor(t, o);
     if (!o->driven_roots) {
         TRY(create_tower(t, o));

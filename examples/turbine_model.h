@@ -25,6 +25,7 @@ typedef struct turbine_options {
     double pitch;                    /* rad, of the reference configuration */
     int rank, ranks;                 /* this one and their number (0: alone), which share the blades' air */
     int driven_roots;                /* 1: no tower, shaft and bearings: blades on roots driven by the host */
+    int sections;                    /* aerodynamic, of a blade; 0: those of the tables */
 } turbine_options;
 
 typedef struct turbine {

@@ -61,7 +61,7 @@ static void test_pitch(void **state) {
 /* ---- the machine ---- */
 
 static int build(turbine *t, spar_session **s, int elements, double pitch) {
-    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", elements, 6, 1, 6, pitch, 0, 1, 0};
+    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", elements, 6, 1, 6, pitch, 0, 1, 0, 0};
     OK(NULL, spar_session_create(s));
     OK(*s, spar_session_set_integrator(*s, 0.8, 1));
     return turbine_create(t, *s, &how);

@@ -12,10 +12,11 @@ enum { BLADES = 3 };
 enum { BESIDE_NOTHING, BESIDE_BEM, BESIDE_PLATE };
 
 static const double pi = 3.14159265358979323846;
+static const double hub_height = 90; /* m: InflowWind has no wind below the ground */
 
 typedef struct options {
     const char *aerodyn, *inflow, *data;
-    double wind, rpm, pitch, seconds, dt, allowed;
+    double wind, rpm, pitch, seconds, dt, tolerance, allowed;
     int beside, iterations;
 } options;
 
@@ -64,8 +65,7 @@ static int create_session(scene *s) {
     TRY(spar_session_create(&s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -9.80665}));
     TRY(spar_session_set_integrator(s->session, 0.8, 1));
-    /* AeroDyn's loads come in single precision: 7 digits */
-    return spar_session_set_coupling(s->session, SPAR_COUPLING_FIXED_POINT, 0, 1e-5, s->o->iterations);
+    return spar_session_set_coupling(s->session, SPAR_COUPLING_FIXED_POINT, 0, s->o->tolerance, s->o->iterations);
 }
 
 /* ---- hub and nacelle at time t ---- */
@@ -172,6 +172,7 @@ static int create(scene *s, const options *o, const nrel5mw *data, int with_aero
     s->data = data;
     nrel5mw_rotor_default(data, &s->rotor);
     s->rotor.pitch = o->pitch * pi / 180;
+    s->rotor.hub[2] = hub_height;
     s->speed = o->rpm * pi / 30;
     TRY(create_session(s));
     TRY(create_blades(s, twist));
@@ -268,6 +269,7 @@ static void help(void) {
          "  --pitch DEG       blade pitch [0]\n"
          "  --seconds S       time to simulate [10]\n"
          "  --dt S            step of AeroDyn and of the coupling [0.02]\n"
+         "  --tolerance R     of the coupling; AeroDyn in single precision has noise of some 3e-5 [1e-4]\n"
          "  --iterations N    of the coupling at most [20]\n"
          "  --beside bem|plate runs the rotor with spar's own blade elements too: those of the turbine, or the "
          "stand-in's plates\n"
@@ -280,9 +282,10 @@ static int options_read(options *o, int argc, char **argv) {
         const char *name;
         double *number;
         const char **text;
-    } known[] = {{"--aerodyn", NULL, &o->aerodyn}, {"--inflow", NULL, &o->inflow}, {"--data", NULL, &o->data},
-                 {"--wind", &o->wind, NULL},       {"--rpm", &o->rpm, NULL},       {"--pitch", &o->pitch, NULL},
-                 {"--seconds", &o->seconds, NULL}, {"--dt", &o->dt, NULL},         {"--allowed", &o->allowed, NULL}};
+    } known[] = {{"--aerodyn", NULL, &o->aerodyn},    {"--inflow", NULL, &o->inflow}, {"--data", NULL, &o->data},
+                 {"--wind", &o->wind, NULL},          {"--rpm", &o->rpm, NULL},       {"--pitch", &o->pitch, NULL},
+                 {"--seconds", &o->seconds, NULL},    {"--dt", &o->dt, NULL},         {"--allowed", &o->allowed, NULL},
+                 {"--tolerance", &o->tolerance, NULL}};
     for (int i = 1; i < argc; i += 2) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         size_t k = 0, n = sizeof known / sizeof known[0];
@@ -310,6 +313,7 @@ int main(int argc, char **argv) {
                  .rpm = 9.16,
                  .seconds = 10,
                  .dt = 0.02,
+                 .tolerance = 1e-4,
                  .allowed = 1,
                  .iterations = 20};
     nrel5mw data;

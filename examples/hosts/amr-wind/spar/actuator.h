@@ -1,0 +1,64 @@
+/* A turbine of spar as the actuator lines of a flow solver, without a word of the solver: the NREL 5-MW turbine of
+   examples/turbine_model.h (tower, nacelle, shaft, pitch bearings and controller, or blades at a given speed), forces
+   by blade elements in the flow that the solver has sampled at the points, without momentum theory: the induced flow is
+   in the solver's. One process; no MPI.
+
+   Points: the hub (0), then the sections of the blades, one blade after the other. Arrays of them are those of
+   AMR-Wind's ExternalTurbine: single precision, by component (x of all points, y, z), places relative to the tower's
+   base. */
+#ifndef ACTUATOR_H
+#define ACTUATOR_H
+
+#include <spar/spar.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct actuator_machine actuator_machine;
+
+typedef struct actuator_options {
+    const char *data;  /* folder of the turbine's tables */
+    int points;        /* of a blade */
+    int whole;         /* 1: tower, shaft, controller; 0: blades whose roots turn at the given speed */
+    int nodes;         /* of a blade's beam */
+    double rpm, pitch; /* rev/min; rad, positive towards feather: at the start, or given */
+    double wind;       /* m/s along x: what the turbine is bent by before the first step */
+    double density;    /* kg/m^3, the flow's */
+    double gravity;    /* m/s^2, downwards */
+    double rho_inf;    /* of the integrator */
+    int substeps;      /* of the structure in a step of the flow */
+} actuator_options;
+
+/* options: out, the NREL 5-MW turbine at rated wind but for data. */
+void actuator_default(actuator_options *options);
+/* The turbine at t = 0, bent. Answers a spar status; actuator_destroy in any case. */
+int actuator_create(const actuator_options *options, actuator_machine **out);
+void actuator_destroy(actuator_machine **a);
+int actuator_get_count(const actuator_machine *a);
+/* Forces at t = 0 in the flow there: velocity[3][points], m/s. */
+int actuator_start(actuator_machine *a, const float *velocity);
+/* From t^n to t^n + dt in the flow as it was sampled at the points at t^n. Structure and forces agree at the end of the
+   step; the flow is held. */
+int actuator_step(actuator_machine *a, double dt, const float *velocity);
+/* Points now, each NULL: not wanted. place[3][points], m; speed[3][points], m/s; chord[points], m;
+   orientation[points][9]: local to global, row by row; x along the span, y to the trailing edge (hub: x along the
+   shaft, downwind). force[3][points]: N, on the blades, half-way through the last step (the mean of those at its ends):
+   they belong half-way between the places before and after it. The hub's is 0. */
+int actuator_get_points(actuator_machine *a, float *place, float *speed, float *force, float *orientation,
+                        float *chord);
+/* Each NULL: not wanted. x[3]: m; omega[3]: rad/s; axes[9]: as an orientation. */
+int actuator_get_hub(actuator_machine *a, double x[3], double omega[3], double axes[9]);
+/* Of the last forces. Each NULL: not wanted. thrust: N along the shaft; torque: N m about it; speed: of the rotor,
+   rad/s; force[3]: their sum at the end of the step, N. */
+int actuator_get_rotor(actuator_machine *a, double *thrust, double *torque, double *speed, double force[3]);
+/* The whole state, between steps: path, and path.host beside it. */
+int actuator_save(actuator_machine *a, const char *path);
+int actuator_load(actuator_machine *a, const char *path);
+const char *actuator_message(const actuator_machine *a);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
