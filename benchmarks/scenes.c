@@ -46,12 +46,17 @@ static void diagonal(double *m, double a, double b, double c, double d, double e
     }
 }
 
-static int straight_beam(scene_run *r, double length, const double *C, const double *M, int root) {
+static int straight_beam(scene_run *r, double length, const double *C, const double *M, double added, int root) {
     const double eta[2] = {0, 1}, xyz[6] = {0, 0, 0, length, 0, 0};
     TRY(spar_beam_create(r->session, "beam", r->knobs.elements, r->knobs.nodes, &r->member));
     TRY(spar_beam_set_axis(r->member, 2, eta, xyz, NULL));
     TRY(spar_beam_set_sections(r->member, 1, eta, C, M));
     TRY(spar_member_set_root(r->member, root));
+    if (r->knobs.guess > 0) {
+        double A[36];
+        diagonal(A, 0, 0, added * r->knobs.guess, 0, 0, 0);
+        TRY(spar_member_set_added_mass(r->member, 1, eta, A));
+    }
     return commit(r->member, &r->knobs);
 }
 
@@ -174,7 +179,7 @@ static int build_wing(scene_run *r) {
     }
     diagonal(C, 1e7, 1e7, 1e7, 1e4, 2e4, 4e6);
     diagonal(M, 0.75, 0.75, 0.75, 0.1, 0.05, 0.05);
-    TRY(straight_beam(r, 16, C, M, SPAR_ROOT_FIXED));
+    TRY(straight_beam(r, 16, C, M, 0, SPAR_ROOT_FIXED));
     b->density = 0.0889, b->n = WING_STRIPS;
     r->solve = glide;
     for (int i = 0; i < WING_STRIPS; i++) { /* aerodynamic centre a quarter chord ahead of the elastic axis */
@@ -252,7 +257,7 @@ static int build_strip(scene_run *r, const strip *of, double length, const doubl
     *f = *of;
     f->run = r;
     r->context = f, r->release = free, r->solve = press, r->before = keep;
-    TRY(straight_beam(r, length, C, M, root));
+    TRY(straight_beam(r, length, C, M, 2 * STRIPS * of->added / length, root));
     for (int i = 0; i < 2 * STRIPS; i++) {
         const double x[3] = {length * (0.5 + i % STRIPS) / STRIPS, 0, (i < STRIPS ? 0.02 : -0.02) * length};
         memcpy(f->rest + 3 * i, x, sizeof x);

@@ -163,6 +163,8 @@ module spar
     procedure :: set_external => member_set_external
     procedure :: set_effects => member_set_effects
     procedure :: set_fidelity => member_set_fidelity
+    procedure :: set_added_mass => member_set_added_mass
+    procedure :: get_added_mass => member_get_added_mass
     procedure :: set_initial_velocity => member_set_initial_velocity
     procedure :: set_owner => member_set_owner
     procedure :: commit => member_commit
@@ -1348,6 +1350,48 @@ contains
     if (present(modes)) n = modes
     call finish(spar_member_set_fidelity(self%handle, kind, n), self%session, stat, errmsg)
   end subroutine member_set_fidelity
+
+  ! of a rigid body one mass, and eta is not looked at; no stations: no guess
+  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(in) :: mass(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_added_mass', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_set_added_mass(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, errmsg)
+  end subroutine member_set_added_mass
+
+  ! n: stations; eta and mass are filled as far as they reach
+  subroutine member_get_added_mass(self, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(mass, 3, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_added_mass', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_member_get_added_mass(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_member_get_added_mass(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(mass)) &
+        status = spar_member_get_added_mass(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_added_mass
 
   subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self

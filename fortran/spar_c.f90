@@ -490,6 +490,23 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_set_fidelity
 
+    function spar_member_set_added_mass(member, n, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*), mass(*)
+      integer(c_int) :: status
+    end function spar_member_set_added_mass
+
+    function spar_member_get_added_mass(member, n, capacity, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), mass(*)
+      integer(c_int) :: status
+    end function spar_member_get_added_mass
+
     function spar_member_set_initial_velocity(member, x0, v0, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member

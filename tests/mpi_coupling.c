@@ -23,11 +23,12 @@ typedef struct scene {
 } scene;
 
 static int rank, size;
+static double guess; /* of the piston's added mass, kg, and of as much spread along the beam; 0: none */
 
 /* Rank `me` of `ranks` gets its share of the nodes. */
 static void create(scene *c, int me, int ranks, int scheme) {
     static const double q[4] = {1, 0, 0, 0}, where[3] = {0, 5, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 1, 1};
-    double K[36], M[36], mass[36], gravity[3] = {0, 0, -2};
+    double K[36], M[36], mass[36], added[36], along[36], gravity[3] = {0, 0, -2}, eta[1] = {0};
     int carriers = ranks > 1 ? ranks - 1 : 1;
     memset(c, 0, sizeof *c);
     if (ranks > 1) {
@@ -43,9 +44,13 @@ static void create(scene *c, int me, int ranks, int scheme) {
     c->beam = scene_beam(s, "beam", 3, POINTS / 3, 10, K, M);
     OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
     OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    scene_diagonal(added, guess, guess, guess, 0, 0, 0);
+    scene_diagonal(along, guess / 10, guess / 10, guess / 10, 0, 0, 0);
+    OK(s, spar_member_set_added_mass(c->beam, guess > 0, eta, along));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));
+    OK(s, spar_member_set_added_mass(c->piston, guess > 0, NULL, added));
     OK(s, spar_member_commit(c->piston));
     for (int i = 0; i < NODES; i++) {
         if (i % carriers == me) {
@@ -141,6 +146,40 @@ static void same_as_serial(void **state) {
         spar_session_destroy(&all.session);
         spar_session_destroy(&alone.session);
     }
+}
+
+/* The same with a guess of the added mass, which every rank has the loads corrected by. Ranks that give different
+   guesses are told at commit. */
+static void guess_over_ranks(void **state) {
+    (void)state;
+    static const double x[3] = {0, 9, 0}, q[4] = {1, 0, 0, 0}, c[3] = {0, 0, 0}, J[3] = {1, 1, 1};
+    double mass[36];
+    spar_member *body;
+    scene all, alone;
+    guess = 5;
+    create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
+    create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
+    guess = 0;
+    for (int step = 0; step < STEPS; step++) {
+        OK(all.session, spar_step(all.session, 0.02, solve, &all, NULL));
+        OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
+        compare(&all, &alone);
+    }
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
+    create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
+    scene_mass(mass, 3, c, J);
+    OK(all.session, spar_rigid_create(all.session, "other", x, q, mass, &body));
+    scene_diagonal(mass, rank == size - 1 ? 2 : 1, 1, 1, 0, 0, 0);
+    OK(all.session, spar_member_set_added_mass(body, 1, NULL, mass));
+    assert_int_equal(spar_member_commit(body), size > 1 ? SPAR_ERR_COMM : SPAR_OK);
+    scene_diagonal(mass, 1, 1, 1, 0, 0, 0);
+    if (size > 1) {
+        assert_non_null(strstr(spar_session_message(all.session), "description"));
+        OK(all.session, spar_member_set_added_mass(body, 1, NULL, mass));
+        OK(all.session, spar_member_commit(body));
+    }
+    spar_session_destroy(&all.session);
 }
 
 /* ---- what one rank can do wrong ---- */
@@ -452,6 +491,7 @@ static void refused_files(void **state) {
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_serial),
+        cmocka_unit_test(guess_over_ranks),
         cmocka_unit_test(totals_over_ranks),
         cmocka_unit_test(explicit_error_over_ranks),
         cmocka_unit_test(totals_over_ranks),

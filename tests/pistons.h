@@ -19,8 +19,9 @@ typedef struct pistons {
     double force[PISTONS_MOST][3]; /* pushed last */
 } pistons;
 
-/* Bodies of 2 kg along y, which move along x; integrator without damping */
-static inline void pistons_create(pistons *p, int n, const double *ratio) {
+/* Bodies of 2 kg along y, which move along x; integrator without damping. guess: of the added mass, as `ratio`, in the
+   structure's equations; NULL: none */
+static inline void pistons_create_with(pistons *p, int n, const double *ratio, const double *guess) {
     static const double q[4] = {1, 0, 0, 0}, centre[3] = {0, 0, 0}, inertia[3] = {1, 1, 1};
     memset(p, 0, sizeof *p);
     p->session = scene_session();
@@ -33,12 +34,20 @@ static inline void pistons_create(pistons *p, int n, const double *ratio) {
         p->ratio[i] = ratio[i];
         scene_mass(mass, p->mass[i], centre, inertia);
         OK(p->session, spar_rigid_create(p->session, name, x, q, mass, &p->body[i]));
+        if (guess) {
+            scene_diagonal(mass, 2 * guess[i], 0, 0, 0, 0, 0);
+            OK(p->session, spar_member_set_added_mass(p->body[i], 1, NULL, mass));
+        }
         OK(p->session, spar_member_commit(p->body[i]));
         OK(p->session, spar_fluid_create(p->body[i], name, &p->fluid[i]));
         OK(p->session, spar_fluid_set_motion_nodes(p->fluid[i], 1, x));
         OK(p->session, spar_fluid_set_force_nodes(p->fluid[i], 1, x));
         OK(p->session, spar_fluid_map(p->fluid[i]));
     }
+}
+
+static inline void pistons_create(pistons *p, int n, const double *ratio) {
+    pistons_create_with(p, n, ratio, NULL);
 }
 
 static inline void pistons_destroy(pistons *p) {

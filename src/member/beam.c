@@ -388,15 +388,14 @@ int spari_beam_place_nodes(spar_member *member) {
 
 /* ---- sections and quadrature ---- */
 
-/* Linear in eta between stations, constant beyond the first and last. */
-void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
-    int64_t i = 0, n = beam->section_count;
-    while (i < n - 2 && eta > beam->section_eta[i + 1]) {
+void spari_beam_table_at(int64_t n, const double *stations, const double *table, double eta, double out[36]) {
+    int64_t i = 0;
+    while (i < n - 2 && eta > stations[i + 1]) {
         i++;
     }
     double s = 0;
     if (n > 1) {
-        s = (eta - beam->section_eta[i]) / (beam->section_eta[i + 1] - beam->section_eta[i]);
+        s = (eta - stations[i]) / (stations[i + 1] - stations[i]);
         s = fmin(fmax(s, 0), 1);
     }
     for (int k = 0; k < 36; k++) {
@@ -404,8 +403,11 @@ void spari_beam_section_at(const spari_beam *beam, const double *table, double e
     }
 }
 
-/* T C T^T with T = diag(R, R) */
-static void turn_section(const double R[9], const double *C, double *out) {
+void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
+    spari_beam_table_at(beam->section_count, beam->section_eta, table, eta, out);
+}
+
+void spari_beam_turn_section(const double R[9], const double *C, double *out) {
     double half[36];
     for (int bi = 0; bi < 6; bi += 3) {
         for (int i = 0; i < 3; i++) {
@@ -519,7 +521,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
     memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
     b->length += b->weight[k];
     spari_beam_section_at(beam, beam->stiffness, eta, section);
-    turn_section(R, section, b->C + 36 * (int64_t)k);
+    spari_beam_turn_section(R, section, b->C + 36 * (int64_t)k);
     for (int i = 0; i < 6; i++) {
         b->stiffest = fmax(b->stiffest, section[7 * i]);
     }
@@ -529,7 +531,7 @@ static void fill_point(const spar_member *member, spari_body *b, int k, int e, d
                 section[6 * i + j] *= sqrt(mu[i] * mu[j]);
             }
         }
-        turn_section(R, section, b->D + 36 * (int64_t)k);
+        spari_beam_turn_section(R, section, b->D + 36 * (int64_t)k);
     }
     if (b->mass) {
         double *m = b->mass + 10 * (int64_t)k;

@@ -424,6 +424,10 @@ uint64_t spari_member_make(const spar_member *m) {
                      m->elements, m->per_element, m->fidelity, (int)m->modes};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);
+    if (m->guess_count > 0) {
+        size_t n = (size_t)m->guess_count * sizeof(double);
+        h = spari_hash_bytes(spari_hash_bytes(h, m->guess_eta, n), m->guess, 36 * n);
+    }
     const spari_beam *b = m->beam;
     if (b) {
         size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);

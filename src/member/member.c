@@ -1,6 +1,7 @@
 /* A member as it is described and where it is: counts, reference, motion, loads; and its two numberings. */
 #include "../base/quiet.h"
 #include "../math/rotation.h"
+#include "added.h"
 #include "applied.h"
 #include "body.h"
 #include "edge.h"
@@ -84,6 +85,9 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     const double *fluid = used ? member->load_used : member->load_pushed;
     for (int64_t i = 0; i < 6 * member->nodes; i++) {
         load[i] = member->dead[i] + fluid[i];
+    }
+    if (s->phase != SPARI_IDLE && spari_added_shift(member)) {
+        spari_added_correct(member, -1, load);
     }
     if (member->applied) {
         spari_applied_nodal(member, member->after.q, load);

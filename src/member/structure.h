@@ -25,6 +25,7 @@ typedef struct spari_assembly spari_assembly; /* src/solve/tied.h: members that 
 typedef struct spari_work spari_work;         /* src/solve/work.h: the work done on a member */
 typedef struct spari_applied spari_applied;   /* src/member/applied.h: follower loads and loads along the line */
 typedef struct spari_remake spari_remake;     /* src/trial/remake.h: a member made anew for a trial */
+typedef struct spari_added spari_added;       /* src/member/added.h: a guess of the fluid's added mass */
 typedef struct spari_body spari_body;         /* src/member/body.h: what of it is solved, on every rank */
 
 /* How the deformation of a member is seen. */
@@ -54,7 +55,9 @@ struct spar_member {
     int64_t nodes;
     double *xr, *qr; /* reference places [n][3] and orientations [n][4], placed; after commit */
     double place_x[3], place_q[4];
-    double mass[36];       /* rigid */
+    double mass[36];     /* rigid */
+    int64_t guess_count; /* of the fluid's added mass, as the host guesses it: stations (a rigid body: 1); 0: none */
+    double *guess_eta, *guess;
     double velocity[3][3]; /* x0, v0, omega of the initial rigid-body field */
     int velocity_given;
     spari_beam *beam;
@@ -87,7 +90,8 @@ struct spar_member {
     void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
     spari_assembly *assembly;           /* it is solved with others; NULL: alone */
     spari_work *work;                   /* NULL: not asked for */
-    spari_remake *advice;               /* of spar_session_advise; NULL: none */
+    spari_added *added;   /* NULL: no guess of the added mass; else the loads above have lives of their own */
+    spari_remake *advice; /* of spar_session_advise; NULL: none */
 };
 
 /* The arrays over the nodes, in one table: all that makes, frees, saves, loads or carries over a member walks it. */

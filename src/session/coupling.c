@@ -3,6 +3,7 @@
 #include "../base/quiet.h"
 
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "own.h"
@@ -21,7 +22,7 @@ void spari_coupling_free(spari_coupling **coupling) {
         return;
     }
     double *all[] = {c->length,   c->unit, c->x,     c->g,    c->predicted, c->motion,
-                     c->residual, c->size, c->image, c->room, c->missed};
+                     c->residual, c->size, c->image, c->room, c->missed,    c->shift};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -39,10 +40,12 @@ static int make_vectors(const spar_session *s, spari_coupling *c) {
     int64_t n = iterated ? c->n : 0;
     spari_accelerator_settings set = {s->scheme,         s->relaxation,      s->coupling_columns,
                                       s->coupling_reuse, s->coupling_filter, c->weighs};
-    int64_t largest = 0, images = c->weighs ? 2 * n : c->estimates ? c->n : 0;
+    int64_t largest = 0, images = c->weighs ? 2 * n : c->estimates ? c->n : 0, shifted = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         largest = m->nodes > largest ? m->nodes : largest;
+        shifted = m->added && c->weighs ? n : shifted;
     }
+    images += shifted;
     c->most = iterated ? s->coupling_max : 1;
     return (c->length = spari_zalloc(c->members, sizeof(double))) &&
            (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
@@ -52,6 +55,7 @@ static int make_vectors(const spar_session *s, spari_coupling *c) {
            (iterated || (c->missed = spari_zalloc(c->n, sizeof(double)))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
            (c->image = spari_zalloc(images + 1, sizeof(double))) &&
+           (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
            (c->room = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
@@ -118,6 +122,9 @@ static void stack(const spar_session *s) {
             double unit = i % 6 < 3 ? 1 : c->unit[k];
             c->x[at] = unit * m->load_used[i];
             c->g[at] = unit * m->load_pushed[i];
+            if (c->shift) {
+                c->shift[at] = m->added ? unit * m->added->shift[i] : 0;
+            }
         }
     }
 }
@@ -141,8 +148,10 @@ static void load_norms(const spar_session *s, const double *from, double *change
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         const double *used = from ? from : m->load_used;
         double per_length = 1 / s->own->coupling->length[k];
+        const double *shift = spari_added_shift(m);
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * used[i];
+            f -= shift ? w * shift[i] : 0;
             r2 += r * r;
             f2 += f * f;
         }
@@ -276,7 +285,7 @@ static int weigh_residual(spar_session *s, double size, double *residual) {
     /* a step that has gone over to the loads' own norm stays with it */
     if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
-        const spari_weighed w = {c->n, c->unit, c->x, c->g, c->image, c->room};
+        const spari_weighed w = {c->n, c->unit, c->x, c->g, c->shift, c->image, c->room};
         SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));
         if (c->weighed) {
             *residual = whole > 0 ? size * (motion / whole) : 0;
@@ -376,12 +385,13 @@ static double work_defect(const spar_session *s, double *whole) {
     double defect = 0, d[6];
     *whole = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
+        const double *shift = spari_added_shift(m);
         for (int64_t i = 0; i < m->nodes; i++) {
             travel(m->now.q + 7 * i, m->after.q + 7 * i, d);
             for (int k = 0; k < 6; k++) {
                 double f = m->load_pushed[6 * i + k];
                 defect += 0.5 * (f - m->load_used[6 * i + k]) * d[k];
-                *whole += 0.5 * fabs(f * d[k]);
+                *whole += 0.5 * fabs((f - (shift ? shift[6 * i + k] : 0)) * d[k]);
             }
         }
     }

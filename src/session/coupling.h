@@ -16,7 +16,9 @@ typedef struct spari_coupling {
     double *length;    /* of each member: moments count as moment over length, turns as turn times length */
     double *unit;      /* of each member: the power of two next to 1/length, which scales moments without rounding */
     double *x, *g;     /* iterated: loads used and come back, stacked, moments times unit */
-    double *image;     /* weighing motion: [2 n + 1], what g - x and g move, stacked; and room for the ranks' status */
+    double *shift;     /* weighing motion, with an added mass: what x and g have beyond the loads, likewise; or NULL */
+    double *image;     /* weighing motion: [2 n + 1], what g - x and g move, stacked; with a shift [3 n + 1], the loads
+                          themselves behind; and room for the ranks' status */
     double *room;      /* likewise: loads of one member */
     double *predicted; /* iterated: loads the step began with, as they are */
     double *motion;    /* motion test: places and quaternions [7] of the iteration before */

@@ -14,6 +14,7 @@
 
 #include "../comm/enter.h"
 
+#include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
 #include "../solve/assembly.h"
@@ -110,6 +111,24 @@ static void pass_motion(passage *t, double *words, int width, int64_t n) {
     }
 }
 
+/* Numbers, checked to be some. */
+static void pass_numbers(passage *t, double *words, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, n);
+    if (t->mode == CHECK && !t->image->failed) {
+        t->image->failed = spari_first_nonfinite(there, n) >= 0;
+    }
+}
+
+static void pass_added(passage *t, spar_member *m) {
+    for (int k = 0; k < 2; k++) {
+        pass_numbers(t, m->added->past[k], 6 * m->nodes);
+    }
+    if (t->mode == READ) {
+        spari_added_see(m);
+    }
+}
+
 static void pass_member(passage *t, spar_member *m) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         const spari_nodal *row = spari_nodal_table + k;
@@ -124,21 +143,15 @@ static void pass_member(passage *t, spar_member *m) {
     pass(t, &m->dissipated_step, 1);
     pass_int(t, &m->motion_given);
     pass_int(t, &m->drive_given);
+    if (m->added) {
+        pass_added(t, m);
+    }
     if (t->mode == WRITE) {
         spari_applied_save(m, t->image);
     } else if (t->mode == CHECK) {
         spari_applied_check(m, t->image);
     } else {
         spari_applied_load(m, t->image);
-    }
-}
-
-/* Numbers, checked to be some. */
-static void pass_numbers(passage *t, double *words, int64_t n) {
-    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, words, n);
-    if (t->mode == CHECK && !t->image->failed) {
-        t->image->failed = spari_first_nonfinite(there, n) >= 0;
     }
 }
 

@@ -1,6 +1,7 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
+#include "../member/added.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
@@ -53,6 +54,9 @@ static void predict_loads(spar_member *m, int order, double dt, const double las
             f += w[k] * m->load_history[k][i];
         }
         m->load_used[i] = f;
+    }
+    if (m->added) {
+        spari_added_predict(m, w);
     }
 }
 
@@ -169,6 +173,10 @@ int spar_step_solve(spar_session *session) {
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
+        if (m->added) {
+            spari_added_see(m);
+            spari_added_correct(m, -1, m->load_solved[1]);
+        }
     }
     s->failed = 0;
     s->phase = SPARI_SOLVED;
@@ -196,6 +204,9 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
+        if (m->added) {
+            spari_added_correct(m, 1, m->load_pushed);
+        }
     }
     s->iteration++;
     s->phase = SPARI_CHECKED;
@@ -231,6 +242,10 @@ static void shift_history(spar_session *s, spar_member *m) {
         spari_joints_on_external(m, m->load_pushed);
     } else if (s->phase != SPARI_CHECKED) {
         memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
+    }
+    if (m->added) {
+        spari_added_correct(m, -1, m->load_pushed);
+        spari_added_accept(m);
     }
     spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
 }

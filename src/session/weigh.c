@@ -52,23 +52,25 @@ static int is_symmetric(const spari_weighed *c, const double *answer, const doub
 }
 
 int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
-    double *answer = c->image, *whole = c->image + c->n;
-    int64_t at = 0;
+    double *answer = c->image, *whole = c->image + c->n, *bare = c->shift ? whole + c->n : whole;
+    int64_t at = 0, images = c->shift ? 3 * c->n : 2 * c->n;
     int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
-    memset(c->image, 0, (size_t)(2 * c->n + 1) * sizeof *c->image);
+    memset(c->image, 0, (size_t)(images + 1) * sizeof *c->image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
         if (m->owner == rank && m->row->answer) {
             singular = singular || answer_stacked(c, m, c->unit[k], at, c->g, c->x, answer) ||
-                       answer_stacked(c, m, c->unit[k], at, c->g, NULL, whole);
+                       answer_stacked(c, m, c->unit[k], at, c->g, NULL, whole) ||
+                       (c->shift && answer_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
         }
     }
     if (singular) { /* its numbers would make the sums none, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, c->image, 2 * c->n, SPAR_OK, s->message, sizeof s->message));
-    double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, whole, NULL, c->n);
+    SPARI_TRY(spari_comm_sum(s->comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
+    double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, bare, c->shift, c->n);
+    double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n)) : all;
     *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0) &&
-          is_symmetric(c, answer, whole, work, all);
+          is_symmetric(c, answer, whole, work, both);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;

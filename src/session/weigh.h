@@ -11,14 +11,17 @@ typedef struct spari_weighed {
     int64_t n;
     const double *unit;  /* of each member, in order */
     const double *x, *g; /* [n] used, and come back */
-    double *image;       /* [2 n + 1] out: the motion that g - x calls for, and that of g; room for the ranks' status */
-    double *room;        /* 6 of each node of the largest member */
+    const double *shift; /* [n] what g has beyond the loads, where an added mass is in them; NULL: nothing */
+    double *image; /* [2 n + 1] out: the motion that g - x calls for, and that of g; with a shift [3 n + 1], also that
+                      of the loads; room for the ranks' status */
+    double *room;  /* 6 of each node of the largest member */
 } spari_weighed;
 
 /* Whether the flexibility of all members that fluids act on is known to the library, and wanted (coupling.norm). */
 int spari_weighs_motion(const spar_session *session);
-/* Fills w->image, and the sizes of g - x and g in that norm. All ranks: what an owner finds goes to the others. *ok:
-   whether the norm is one: both are numbers, of squares that are not negative, and the flexibility is symmetric. */
+/* Fills w->image, and the sizes of g - x and of the loads in that norm. All ranks: what an owner finds goes to the
+   others. *ok: whether the norm is one: both are numbers, of squares that are not negative, and the flexibility is
+   symmetric. */
 int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
 
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:

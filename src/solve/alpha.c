@@ -3,6 +3,7 @@
 #include "alpha.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/applied.h"
 #include "leap.h"
 #include "root.h"
@@ -118,6 +119,9 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     }
     if (s->arms) {
         spari_arms_residual(s->arms, at->q + 3, r + 3);
+    }
+    if (member->added) {
+        scale = fmax(scale, spari_added_times(member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, r));
     }
     memset(r, 0, (size_t)spari_member_held(member) * sizeof *r);
     return scale;
@@ -403,6 +407,7 @@ static int begin_leap(spari_solver *s, const spar_member *member, const spari_sc
     SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
                   "member '%s': found a singular tangent at t = %g, the beginning of a longer step; take a smaller dt",
                   member->name, member->session->time);
+    s->factored = s->factored && !member->added; /* that tangent knows no added mass */
     memcpy(s->leapt, b, (size_t)n6 * sizeof *b);
     s->h_leapt = c->h;
     return SPAR_OK;

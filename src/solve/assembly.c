@@ -370,6 +370,7 @@ static void begin_substep(spari_limb *p, int k, int substeps, double dt, double 
     for (int i = 0; i < 6 * s->n; i++) {
         s->steps.load[i] = (1 - f) * s->steps.load0[i] + f * s->steps.load1[i];
     }
+    spari_scheme_begin_added(m, f, s->steps.load);
     if (s->arms) {
         spari_arms_at(s->arms, f);
     }

@@ -2,11 +2,13 @@
 #include "frame.h"
 
 #include "../base/scene.h"
+#include "../member/added.h"
 #include "../member/beam.h"
 #include "fidelity.h"
 #include "reaction.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- life ---- */
 
@@ -26,9 +28,9 @@ static int carve_states(spari_frame *f) {
 
 static int allocate_matrices(spari_frame *f, const spar_member *m) {
     int turns = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
-    double **matrices[] = {&f->K, &f->M, &f->D};
-    const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL};
-    for (int k = 0; k < 3; k++) {
+    double **matrices[] = {&f->K, &f->M, &f->D, &f->A};
+    const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL, m->added != NULL};
+    for (int k = 0; k < 4; k++) {
         ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
     }
     for (int k = 0; k < SPARI_TURNS; k++) {
@@ -69,9 +71,9 @@ static void frame_free(void *solution) {
     if (!f) {
         return;
     }
-    double *all[] = {f->basis,   f->K,         f->M,     f->D,          f->sumK,        f->sumC,        f->sumf,
-                     f->begin.y, f->from.y,    f->to.y,  f->steps.load, f->steps.load0, f->steps.load1, f->r,
-                     f->dx,      f->increment, f->nodal, f->turned,     f->element};
+    double *all[] = {f->basis, f->A,       f->K,         f->M,     f->D,          f->sumK,        f->sumC,
+                     f->sumf,  f->begin.y, f->from.y,    f->to.y,  f->steps.load, f->steps.load0, f->steps.load1,
+                     f->r,     f->dx,      f->increment, f->nodal, f->turned,     f->element};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
@@ -109,6 +111,11 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
     int cols = (int)m->modes + f->held;
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK && f->A) {
+        for (int e = 0; e < f->elements; e++) {
+            spari_added_tangent(m, e, 1, NULL, f->A + (int64_t)f->block * f->block * e);
+        }
+    }
     if (status == SPAR_OK && m->modes > 0) {
         status = spari_frame_fill_basis(f, arm, cols);
         status = status == SPAR_OK && spari_frame_project(f, cols) ? SPAR_ERR_MEMORY : status;

@@ -39,6 +39,7 @@ typedef struct spari_frame {
     int64_t size;                                   /* doubles of one matrix: elements * block * block */
     double *basis;                                  /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
+    double *A;                                      /* the guess of the fluid's added mass, likewise */
     double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
     double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
     double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
@@ -88,9 +89,9 @@ int spari_frame_pair_of(int k, int l);
 int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
 /* y [n] += factor * X x for a matrix of the frame */
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
-/* Factors ck K + cv C + cm M with the held unknowns out; S: room for an element. C may be NULL. */
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, double cm, double *S,
-                        int *singular);
+/* Factors ck K + cv C + cm (M + A) with the held unknowns out; S: room for an element. C, A may be NULL. */
+void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
+                        double cm, double *S, int *singular);
 
 /* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the lowest
    modes; those that are free are orthonormal in the norm of the mass. arm [nodes][3] from the root. */

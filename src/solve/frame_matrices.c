@@ -25,14 +25,14 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
     }
 }
 
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, double cm, double *S,
-                        int *singular) {
+void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
+                        double cm, double *S, int *singular) {
     int64_t mm = (int64_t)f->block * f->block;
     spari_linear_zero(f->linear);
     for (int e = 0; e < f->elements; e++) {
         for (int64_t i = 0; i < mm; i++) {
             int64_t at = mm * e + i;
-            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0);
+            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0) + (A ? cm * A[at] : 0);
         }
         spari_linear_add(f->linear, e, S);
     }
@@ -193,7 +193,7 @@ static int stretch_terms(spari_frame *f, const setup *w) {
     if (!S) {
         return SPAR_ERR_MEMORY;
     }
-    spari_frame_factor(f, f->K, 1, NULL, 0, 0, w->S[0], &singular);
+    spari_frame_factor(f, f->K, 1, NULL, 0, NULL, 0, w->S[0], &singular);
     for (int k = 0; k < SPARI_TURNS && !singular; k++) {
         double *x = s + (int64_t)k * n6;
         cblas_daxpy(n6, -1, f->f[k], 1, x, 1);

@@ -148,12 +148,12 @@ static void no_strain(const spari_frame *f, double *X) {
 
 int spari_frame_project(spari_frame *f, int cols) {
     int bad = 0;
-    double **all[3 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D};
+    double **all[4 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D, &f->A};
     for (int k = 0; k < SPARI_TURNS; k++) {
-        all[3 + k] = &f->N[k];
+        all[4 + k] = &f->N[k];
     }
     for (int k = 0; k < 3; k++) {
-        all[3 + SPARI_TURNS + k] = &f->G[k];
+        all[4 + SPARI_TURNS + k] = &f->G[k];
     }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));

@@ -4,6 +4,7 @@
 #include "../base/blas.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/pose.h"
@@ -220,13 +221,18 @@ static void unbalance(const spari_frame *f, const spari_frame_state *s, int stil
     memset(r, 0, (size_t)f->held * sizeof *r);
 }
 
-static int factor_step(spari_frame *f, const spari_scheme *c) {
+/* A: f->A, or NULL: without it */
+static int factor_with(spari_frame *f, const spari_scheme *c, const double *A) {
     int singular;
-    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, c->cm, f->element, &singular);
+    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, A, c->cm, f->element, &singular);
     f->factored = !singular;
     f->kept_cm = c->cm, f->kept_cv = c->cv;
     memcpy(f->kept_omega, f->omega, sizeof f->omega);
     return singular;
+}
+
+static int factor_step(spari_frame *f, const spari_scheme *c) {
+    return factor_with(f, c, f->A);
 }
 
 static double largest(const spari_frame *f, const double *x) {
@@ -294,7 +300,7 @@ static void times_mass_of_frame(void *self, const spar_member *m, const double *
    itself, which is kept for it. */
 static int leap(spari_frame *f, const spar_member *m, const spari_scheme *c, spari_frame_state *from) {
     double *y = f->increment;
-    if (!f->factored && factor_step(f, c)) {
+    if ((!f->factored || f->A) && factor_with(f, c, NULL)) {
         return 1;
     }
     memcpy(y, from->b, (size_t)f->n * sizeof *y);
@@ -303,7 +309,20 @@ static int leap(spari_frame *f, const spar_member *m, const spari_scheme *c, spa
         return 1;
     }
     cblas_daxpy(f->n, -1, y, 1, from->b, 1);
+    f->factored = f->factored && !f->A; /* that matrix knows no added mass */
     return 0;
+}
+
+/* out += what the guess of the fluid's added mass takes of the accelerations as they are published: those of the nodes,
+   which follow their rotation vectors and the root, so that at convergence it is to rounding what the loads have been
+   corrected by. Spends dx. */
+static void add_fictitious(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *out) {
+    double *q = f->turned, *v = q + 7 * (int64_t)f->nodes, *a = v + 6 * (int64_t)f->nodes, *x = f->nodal;
+    to_nodes(f, m, s, q, v, a);
+    memset(x, 0, (size_t)(6 * f->nodes) * sizeof *x);
+    (void)spari_added_times(m, SPARI_UNKNOWNS, SPARI_UNKNOWNS, a, 1, x);
+    turn_loads(f, s->root.q + 3, x, f->dx);
+    cblas_daxpy(f->n, 1, f->dx, 1, out, 1);
 }
 
 enum { MOST_ITERATIONS = 30 };
@@ -333,14 +352,17 @@ static int solve_substep(spari_frame *f, const spar_member *m, const spari_schem
     predict_unknowns(f, c, from, to);
     double *fixed = f->increment;
     for (int it = 0; it < MOST_ITERATIONS; it++) {
-        if (it == 0 || m->applied) {
+        if (it == 0 || m->applied || f->A) {
             forcing(f, m, to, c->still, fixed);
+        }
+        if (f->A) {
+            add_fictitious(f, m, to, fixed);
         }
         unbalance(f, to, c->still, fixed, f->r);
         if (!f->factored && factor_step(f, c)) {
             return 1;
         }
-        int exact = !m->applied && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
+        int exact = !m->applied && !f->A && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
         memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
         if (spari_linear_solve(f->linear, f->dx)) {
             return 1;
@@ -374,7 +396,7 @@ static int start_frame(void *self, const spar_member *m, const spari_scheme *c) 
     int singular;
     spari_rotate_back(b->root.q + 3, b->root.v + 3, omega);
     combine(f, omega);
-    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, c->cm, f->element, &singular);
+    spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, NULL, c->cm, f->element, &singular);
     f->factored = 0;
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
     forcing(f, m, b, c->still, f->increment);

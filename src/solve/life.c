@@ -5,6 +5,7 @@
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
@@ -187,6 +188,8 @@ void spari_member_release(spar_member *m) {
     }
     spari_work_free(m->work);
     m->work = NULL;
+    spari_added_free(m->added);
+    m->added = NULL;
     spari_applied_free(m->applied);
     spari_applied_free(m->applied_next);
     m->applied = m->applied_next = NULL;
@@ -224,6 +227,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
         *spari_nodal_array(m, k) = NULL;
     }
     m->work = NULL;
+    m->added = NULL;
     m->applied = m->applied_next = NULL;
     m->solution = NULL;
     m->body = NULL;
@@ -262,6 +266,7 @@ int spari_member_build(spar_member *m) {
     }
     if (m->row->solved) {
         SPARI_TRY(build_body(m));
+        SPARI_TRY(spari_added_create(m, m->row->whole));
     }
     if (m->row->create) {
         int status = m->row->create(m);
@@ -335,6 +340,8 @@ void spari_member_free(spar_member *member) {
     spari_member_release(member);
     spari_beam_free(member->beam);
     free(member->advice);
+    free(member->guess_eta);
+    free(member->guess);
     free(member->name);
     free(member);
 }

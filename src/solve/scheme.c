@@ -2,6 +2,7 @@
 #include "scheme.h"
 
 #include "../base/scene.h"
+#include "../member/added.h"
 #include "../member/body.h"
 #include "drive.h"
 
@@ -39,6 +40,12 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     }
 }
 
+void spari_scheme_begin_added(const spar_member *m, double s, double *load) {
+    if (m->added && s < 1) {
+        (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, load);
+    }
+}
+
 /* A much larger step gets no more than four times the distance: it is mostly what an unresolved part left there. */
 double spari_scheme_ratio(double before, double h) {
     return before > 0 && h != before ? fmin(h / before, 4) : 1;
@@ -70,6 +77,7 @@ int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t,
         for (int i = 0; i < loads; i++) {
             t->load[i] = (1 - part.s) * t->load0[i] + part.s * t->load1[i];
         }
+        spari_scheme_begin_added(m, part.s, t->load);
         before = power;
         SPARI_TRY(how->substep(self, m, &c, &part, &power));
         m->dissipated_step += 0.5 * c.h * (before + power);

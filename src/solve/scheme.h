@@ -56,6 +56,10 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps);
 int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *steps, int loads, spar_member *member,
                          int damped, double dt);
 
+/* Of a member with a guess of the fluid's added mass: load [unique][6] at the part s of a step, between those at t^n
+   and the corrected ones at t^{n+1}, becomes one between corrected ones. */
+void spari_scheme_begin_added(const spar_member *member, double s, double *load);
+
 /* Of a step h to the one before (0: none), for spari_scheme_stretch. */
 double spari_scheme_ratio(double before, double h);
 /* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its

@@ -3,6 +3,7 @@
 
 #include "../base/scene.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/applied.h"
 
 #include <stdlib.h>
@@ -108,6 +109,9 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
         }
         if (s->arms && factor != 0) {
             spari_arms_tangent(s->arms, q + 3, s->element);
+        }
+        if (tinv && member->added) { /* it belongs to the balance of a step, not to what begins one */
+            spari_added_tangent(member, e, cm, tinv, s->element);
         }
         spari_linear_add(s->linear, e, s->element);
     }

@@ -4,6 +4,7 @@
 #include "../base/scene.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../solve/fidelity.h"
@@ -64,6 +65,7 @@ static void carry_state(spar_member *old, spar_member *m) {
             spari_resample_loads(E, P, n, from, to);
         }
     }
+    spari_added_carry(old, m);
     spari_member_restart(m);
     memcpy(m->drive, old->drive, sizeof m->drive);
 }

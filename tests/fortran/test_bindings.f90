@@ -73,6 +73,8 @@ program test_bindings
   call refused(spar_member_set_external(none, 0_c_int), 'spar_member_set_external')
   call refused(spar_member_set_effects(none, 0_c_int), 'spar_member_set_effects')
   call refused(spar_member_set_fidelity(none, 0_c_int, 0_c_int64_t), 'spar_member_set_fidelity')
+  call refused(spar_member_set_added_mass(none, 0_c_int64_t), 'spar_member_set_added_mass')
+  call refused(spar_member_get_added_mass(none, capacity=0_c_int64_t), 'spar_member_get_added_mass')
   call refused(spar_member_set_initial_velocity(none), 'spar_member_set_initial_velocity')
   call refused(spar_member_set_owner(none, 0_c_int), 'spar_member_set_owner')
   call refused(spar_member_commit(none), 'spar_member_commit')

@@ -178,6 +178,20 @@ void do_spar_member_set_effects(call *c) {
     RUN(c, spar_member_set_effects(m->m, effects));
 }
 
+void do_spar_member_set_added_mass(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t n = chance(c, 10) ? 0 : m->kind == KIND_BEAM ? arg_count(c, 1, 3) : arg_count(c, 1, 1), room = length(n);
+    double *eta = arg_rising(c, room, 0, 1), *M = arg_mass(c, room, 1);
+    RUN(c, spar_member_set_added_mass(m->m, n, eta, M));
+}
+
+void do_spar_member_get_added_mass(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);
+    double *eta = OUT_OR_NULL(c, length(capacity)), *M = OUT_OR_NULL(c, 36 * length(capacity));
+    RUN(c, spar_member_get_added_mass(m->m, n, capacity, eta, M));
+}
+
 void do_spar_member_set_fidelity(call *c) {
     live_member *m = arg_member(c, KIND_BEAM);
     int kind = arg_int(c, SPAR_FIDELITY_PRESCRIBED, SPAR_FIDELITY_EXACT);

@@ -44,6 +44,7 @@ static void beam(writer *w) {
     part(w, 50, CALL_spar_member_set_fidelity);
     part(w, 30, CALL_spar_beam_set_damping);
     part(w, 15, CALL_spar_beam_set_quadrature);
+    part(w, 20, CALL_spar_member_set_added_mass);
 }
 
 static void fluid(writer *w) {

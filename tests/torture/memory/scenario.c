@@ -443,7 +443,10 @@ static void act_fidelities(void) {
                  {SPAR_FIDELITY_PRESCRIBED, 0, SPAR_ROOT_DRIVEN, 1, 3}};
     static const char *const name[4] = {"rigid", "linear", "modal", "prescribed"};
     host h = {.fluids = 4, .members = 4};
-    double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3];
+    double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3], guess[72] = {0},
+           eta[2] = {0, 1};
+    int64_t stations;
+    guess[7] = guess[14] = guess[36 + 7] = 0.1;
     spar_session *s = h.session = begin_session();
     CALL(spar_session_set_coupling, s, SPAR_COUPLING_AITKEN, 1e-9, 1e-7, 40);
     for (int k = 0; k < 4; k++) {
@@ -451,6 +454,10 @@ static void act_fidelities(void) {
         CALL(spar_member_set_root, m, what[k].root);
         CALL(spar_member_set_fidelity, m, what[k].kind, what[k].modes);
         CALL(spar_member_set_effects, m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+        if (k != 3) {
+            CALL(spar_member_set_added_mass, m, 2, eta, guess);
+            CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
+        }
         CALL(spar_member_commit, m);
         h.fluid[k] = begin_fluid(m, name[k], 10, &h.n[k], h.x[k]);
         CALL(spar_fluid_map, h.fluid[k]);
