@@ -5,34 +5,19 @@
 #include "spar_saturne.h"
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 static struct {
     FILE *history;
-    double spar_seconds, began; /* s of processor time, of this rank */
-    double errors[3];           /* most so far: force, moment, power */
+    double errors[3]; /* most so far: force, moment, power */
     long steps, iterations;
     int most;
     cs_lnum_t n_loaded, *loaded; /* faces whose force the history has */
     double span;                 /* m, that force is divided by */
 } report;
 
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-void saturne_clock_begin(void) {
-    report.began = processor_seconds();
-}
-
-void saturne_clock_end(void) {
-    report.spar_seconds += processor_seconds() - report.began;
-}
-
 void saturne_report_begin(void) {
     const double metre = 1;
+    saturne_mesh_begin();
     report.span = saturne_number("span", &metre);
     report.n_loaded = saturne_faces(saturne_text("loaded", saturne_text("wetted", NULL)), &report.loaded);
 }
@@ -81,6 +66,7 @@ void saturne_report_step(spar_member *wet, spar_fluid *surface) {
     watch(wet, u, v);
     saturne_check(spar_session_get_time(saturne_session(), &t, NULL, &iterations));
     saturne_check(spar_session_get_report(saturne_session(), SPAR_REPORT_COUNT, entry));
+    saturne_mesh_step(cs_math_3_norm(u));
     report.steps++;
     report.iterations += iterations;
     report.most = CS_MAX(report.most, iterations);
@@ -102,8 +88,9 @@ void saturne_report_step(spar_member *wet, spar_fluid *surface) {
 }
 
 void saturne_report_run(void) {
-    double seconds[2] = {report.spar_seconds, processor_seconds()};
-    cs_parall_sum(2, CS_DOUBLE, seconds);
+    double seconds[2];
+    saturne_clock_read(seconds);
+    const double corner = saturne_mesh_end();
     BFT_FREE(report.loaded);
     if (cs_glob_rank_id > 0 || report.steps == 0) {
         return;
@@ -117,6 +104,7 @@ void saturne_report_run(void) {
     fprintf(f, "force_error %.1e\nmoment_error %.1e\npower_error %.1e\n", report.errors[0], report.errors[1],
             report.errors[2]);
     fprintf(f, "seconds %.3f\nspar_seconds %.3f\nspar_share %.5f\n", seconds[1], seconds[0], seconds[0] / seconds[1]);
+    fprintf(f, "least_corner %.4f\n", corner);
     fclose(f);
     if (report.history != NULL) {
         fclose(report.history);

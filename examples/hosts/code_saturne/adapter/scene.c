@@ -1,5 +1,4 @@
-/* The session and the case file, and code_saturne's user routines that are alike in all cases. */
-#include "cs_ale.h"
+/* The session and the case file, with or without a mesh that moves. */
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
@@ -7,6 +6,7 @@
 #include "spar_saturne.h"
 #include <spar/spar_mpi.h>
 #include <stdlib.h>
+#include <time.h>
 
 static spar_session *session;
 static spar_case *scene;
@@ -93,31 +93,27 @@ void saturne_mark(const char *criterion, int type, int *types) {
     BFT_FREE(faces);
 }
 
-/* ---- user routines ---- */
+/* ---- the clock ---- */
 
-void cs_user_model(void) {
-    cs_get_glob_turb_model()->iturb = CS_TURB_NONE;
-    cs_glob_ale = CS_ALE_LEGACY;
+static double spar_seconds, began; /* s of processor time, of this rank */
+
+static double processor_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* The mesh's conditions: 1 fixed, 2 sliding; impale: a vertex whose displacement is given. */
-void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
-                              int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
-                              cs_real_t *disale) {
-    (void)itrale, (void)nvar, (void)nscal, (void)icodcl, (void)itypfb, (void)dt, (void)rcodcl, (void)xyzno0;
-    (void)disale;
-    saturne_mark(saturne_text("fixed", ""), 1, ialtyb);
-    saturne_mark(saturne_text("sliding", ""), 2, ialtyb);
-    if (*saturne_text("fade", "") != '\0') {
-        for (cs_lnum_t v = 0; v < cs_glob_mesh->n_vertices; v++) {
-            impale[v] = 1;
-        }
-    }
+void saturne_clock_begin(void) {
+    began = processor_seconds();
 }
 
-/* Wetted faces belong to an external structure: -1. */
-void CS_PROCF(usaste, USASTE)(int *idfstr) {
-    saturne_mark(saturne_text("wetted", NULL), -1, idfstr);
+void saturne_clock_end(void) {
+    spar_seconds += processor_seconds() - began;
+}
+
+void saturne_clock_read(double seconds[2]) {
+    seconds[0] = spar_seconds, seconds[1] = processor_seconds();
+    cs_parall_sum(2, CS_DOUBLE, seconds);
 }
 
 /* Without an XML file the library's own version of this one stops the run. */

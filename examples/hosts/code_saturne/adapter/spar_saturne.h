@@ -45,12 +45,19 @@ void saturne_wall_forces(cs_lnum_t n, const cs_lnum_t *faces, double *force);
 /* Processor time that goes to spar: between begin and end, of this rank. */
 void saturne_clock_begin(void);
 void saturne_clock_end(void);
+/* seconds[2]: out, of spar and of the whole run so far, summed over the ranks. Collective. */
+void saturne_clock_read(double seconds[2]);
 /* What the history is about. */
 void saturne_report_begin(void);
 /* A line of history.csv, after a step was accepted. Collective. */
 void saturne_report_step(spar_member *wet, spar_fluid *surface);
 /* summary.txt, at the end of the run. Collective. */
 void saturne_report_run(void);
+
+/* The mesh, mesh.c. out: how far the structure is out, m. end: the least sine of a corner in the run, collective. */
+void saturne_mesh_begin(void);
+void saturne_mesh_step(double out);
+double saturne_mesh_end(void);
 
 /* code_saturne's Fortran user routines that are written in C here. */
 void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,

@@ -31,6 +31,7 @@ END {
     printf "  %-42s %s, %s, %s\n", "transfer's errors: force, moment, power", summary["force_error"], summary["moment_error"], summary["power_error"]
     printf "  %-42s %.4e, %.4e mm at t = %g s\n", "the tip", x[1, lines], x[2, lines], t[lines]
     if (solver == "code_saturne") printf "  %-42s %.0f %% of the least at the start\n", "least cell of the run", 100 * cell / first
+    if (solver == "code_saturne") printf "  %-42s %.0f degrees\n", "sharpest corner of the mesh in the run", 57.29578 * atan2(summary["least_corner"], sqrt(1 - summary["least_corner"] ^ 2))
     if (summary["force_error"] > 1e-12 || summary["moment_error"] > 1e-12 || summary["power_error"] > 1e-12 || cell <= 0) bad = 1
     if (name == "flag_fsi1" && t[lines] >= 7.9) {
         split("0.0227 0.8209 14.295 0.7638", should, " ")

@@ -16,3 +16,15 @@ unset y2label; unset y2tics
 set xlabel "t, s"; set ylabel "iterations"; set yrange [0:*]
 plot "history.csv" skip 1 using 1:11 with steps lc rgb "#444444" notitle
 unset multiplot
+
+# CASE_mesh.png: the mesh where the flag was farthest out, of all ranks.
+reset
+meshes = system("ls mesh.*.txt 2>/dev/null")
+if (words(meshes) > 0) {
+    set terminal pngcairo size 1100,480 font "sans,10"
+    set output case . "_mesh.png"
+    set size ratio -1
+    set xrange [0.05:0.85]; set yrange [0:0.41]
+    set xlabel "x, m"; set ylabel "y, m"
+    plot for [mesh in meshes] mesh with lines lw 0.5 lc rgb "#1f4e79" notitle
+}

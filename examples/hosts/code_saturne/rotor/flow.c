@@ -1,0 +1,41 @@
+/* The wind around the rotor: air, uniform at the inlet and at the start, no turbulence model. */
+#include "cs_base.h"
+#include "cs_headers.h"
+#include "cs_prototypes.h"
+#include "spar_saturne.h"
+
+void cs_user_model(void) {
+    cs_get_glob_turb_model()->iturb = CS_TURB_NONE;
+}
+
+void cs_user_parameters(cs_domain_t *domain) {
+    cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
+    cs_get_glob_time_step_options()->idtvar = 0;
+    domain->time_step->dt_ref = saturne_number("dt", NULL);
+    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    fluid->ro0 = 1.225, fluid->viscl0 = 1.8e-5, fluid->p0 = 0;
+}
+
+void cs_user_initialization(cs_domain_t *domain) {
+    cs_real_3_t *u = (cs_real_3_t *)CS_F_(vel)->val;
+    (void)domain;
+    for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells; cell++) {
+        u[cell][0] = saturne_number("wind", NULL), u[cell][1] = u[cell][2] = 0;
+    }
+}
+
+void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_t rcodcl[]) {
+    const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
+    const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
+    const double wind = saturne_number("wind", NULL);
+    (void)nvar, (void)icodcl;
+    saturne_mark("1", CS_INLET, bc_type);
+    saturne_mark("2", CS_OUTLET, bc_type);
+    saturne_mark("3", CS_SYMMETRY, bc_type);
+    for (cs_lnum_t face = 0; face < faces; face++) {
+        if (bc_type[face] == CS_INLET) {
+            rcodcl[iu * faces + face] = wind;
+            rcodcl[(iu + 1) * faces + face] = rcodcl[(iu + 2) * faces + face] = 0;
+        }
+    }
+}
