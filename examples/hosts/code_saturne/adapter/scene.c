@@ -1,4 +1,5 @@
 /* The session and the case file, with or without a mesh that moves. */
+#include "cs_ale.h"
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
@@ -91,6 +92,27 @@ void saturne_mark(const char *criterion, int type, int *types) {
         types[faces[i]] = type;
     }
     BFT_FREE(faces);
+}
+
+/* ---- what flows have alike ---- */
+
+static void set_precision(cs_field_t *field, double precision) {
+    cs_var_cal_opt_t options;
+    cs_field_get_key_struct(field, cs_field_key_id("var_cal_opt"), &options);
+    options.epsilo = precision, options.epsrsm = 10 * precision;
+    cs_field_set_key_struct(field, cs_field_key_id("var_cal_opt"), &options);
+}
+
+void saturne_steps(cs_domain_t *domain) {
+    const double usual = 1e-8, precision = saturne_number("precision", &usual);
+    cs_get_glob_time_step_options()->idtvar = 0;
+    domain->time_step->dt_ref = saturne_number("dt", NULL);
+    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    set_precision(CS_F_(vel), precision);
+    set_precision(CS_F_(p), precision);
+    if (cs_glob_ale != CS_ALE_NONE) {
+        set_precision(CS_F_(mesh_u), precision);
+    }
 }
 
 /* ---- the clock ---- */

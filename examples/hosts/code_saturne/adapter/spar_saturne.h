@@ -3,7 +3,7 @@
 
    Keys of [host code_saturne]; criteria are code_saturne's, which knows gmsh's numbers of faces and no names:
      flow NAME            folder of flow.c, mesh and comparison, for the run script
-     dt S, steps N        the run's
+     dt S, steps N        the run's; precision R: that of its linear solvers [1e-8]
      wetted CRITERION     faces that the structure moves, and member NAME that they hang on; its last node is watched
      loaded CRITERION     faces whose force the history has, per metre of span S; default: the wetted ones, 1 m
      fixed CRITERION      faces whose vertices stand still; sliding CRITERION: faces that vertices stay in
@@ -14,6 +14,7 @@
 
 #include "case.h"
 #include "cs_defs.h"
+#include "cs_domain.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -41,6 +42,9 @@ void saturne_mark(const char *criterion, int type, int *types);
 /* Forces of the fluid on boundary faces, from the pressure and velocity as they are now: what astfor_ is given has the
    pressure of the iteration before. Collective. n: faces; faces[n]; force[n][3]: out, N. */
 void saturne_wall_forces(cs_lnum_t n, const cs_lnum_t *faces, double *force);
+
+/* Puts dt, steps and precision in force, in cs_user_parameters. */
+void saturne_steps(cs_domain_t *domain);
 
 /* Processor time that goes to spar: between begin and end, of this rank. */
 void saturne_clock_begin(void);

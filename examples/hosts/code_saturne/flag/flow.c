@@ -9,9 +9,7 @@
 void cs_user_parameters(cs_domain_t *domain) {
     cs_var_cal_opt_t scheme;
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
-    cs_get_glob_time_step_options()->idtvar = 0;
-    domain->time_step->dt_ref = saturne_number("dt", NULL);
-    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    saturne_steps(domain);
     fluid->ro0 = 1000, fluid->viscl0 = 1, fluid->p0 = 0;
     cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
     scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1; /* centred, no slope test */

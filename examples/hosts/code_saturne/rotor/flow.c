@@ -10,9 +10,7 @@ void cs_user_model(void) {
 
 void cs_user_parameters(cs_domain_t *domain) {
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
-    cs_get_glob_time_step_options()->idtvar = 0;
-    domain->time_step->dt_ref = saturne_number("dt", NULL);
-    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    saturne_steps(domain);
     fluid->ro0 = 1.225, fluid->viscl0 = 1.8e-5, fluid->p0 = 0;
 }
 
