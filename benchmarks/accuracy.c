@@ -121,18 +121,18 @@ static void guesses(const scene *s) {
         double guess;
         int scheme, predictor;
         const char *name;
-    } all[] = {{0.5, SPAR_COUPLING_EXPLICIT, 0, "half, explicit, predictor 0"},
-               {0.8, SPAR_COUPLING_EXPLICIT, 1, "0.8, explicit"},
-               {1, SPAR_COUPLING_EXPLICIT, 0, "right, explicit, predictor 0"},
-               {1, SPAR_COUPLING_EXPLICIT, 1, "right, explicit"},
-               {1, SPAR_COUPLING_EXPLICIT, 2, "right, explicit, predictor 2"},
-               {2, SPAR_COUPLING_EXPLICIT, 1, "twice, explicit"},
-               {0.5, SPAR_COUPLING_FIXED_POINT, 1, "half, fixed point"},
-               {1, SPAR_COUPLING_FIXED_POINT, 1, "right, fixed point"},
-               {2, SPAR_COUPLING_FIXED_POINT, 1, "twice, fixed point"},
-               {0.5, SPAR_COUPLING_IQN_ILS, 1, "half, iqn"},
-               {1, SPAR_COUPLING_IQN_ILS, 1, "right, iqn"},
-               {2, SPAR_COUPLING_IQN_ILS, 1, "twice, iqn"}};
+    } all[] = {{0.5, SPAR_COUPLING_EXPLICIT, 0, "half explicit predictor 0"},
+               {0.8, SPAR_COUPLING_EXPLICIT, 1, "0.8 explicit"},
+               {1, SPAR_COUPLING_EXPLICIT, 0, "right explicit predictor 0"},
+               {1, SPAR_COUPLING_EXPLICIT, 1, "right explicit"},
+               {1, SPAR_COUPLING_EXPLICIT, 2, "right explicit predictor 2"},
+               {2, SPAR_COUPLING_EXPLICIT, 1, "twice explicit"},
+               {0.5, SPAR_COUPLING_FIXED_POINT, 1, "half fixed point"},
+               {1, SPAR_COUPLING_FIXED_POINT, 1, "right fixed point"},
+               {2, SPAR_COUPLING_FIXED_POINT, 1, "twice fixed point"},
+               {0.5, SPAR_COUPLING_IQN_ILS, 1, "half iqn"},
+               {1, SPAR_COUPLING_IQN_ILS, 1, "right iqn"},
+               {2, SPAR_COUPLING_IQN_ILS, 1, "twice iqn"}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         knobs k = s->standard;
         k.guess = all[i].guess, k.scheme = all[i].scheme, k.predictor = all[i].predictor;
