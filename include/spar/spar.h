@@ -450,21 +450,22 @@ SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t mod
 /* kind: out; modes: out, of a modal member, else 0. NULL: not wanted. Local. */
 SPAR_API int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *modes);
 /* What the host knows, or guesses, of the fluid's added mass, for a fluid that is heavy against the structure. It
-   stands in the member's equations beside its own mass, and the loads that fluids push are corrected by as much at the
-   acceleration that they answer to, so that it has no part in the converged answer, in weight, energies, modes, statics
-   or reactions. Iterations contract by |m_a - guess| / (m + guess) in place of m_a / m, where m is the mass and m_a the
-   fluid's added mass, and explicit coupling bears the same ratio in place of m_a / m: with a predictor of order 0, 1, 2
-   it is stable for (m_a - guess) / (m + guess) below 1, 1/3, 1/7; too large a guess is safe (with order 2 up to m + 2
-   m_a). What the coupling reports of an added mass is that ratio too. Explicit coupling leaves what it always leaves,
-   the change of loads since they were predicted: SPAR_REPORT_WORK_DEFECT, and the loads of spar_member_get_loads are
-   those that moved the structure. With substeps the part of the loads that the guess accounts for follows the
-   acceleration of each, the rest is linear over the step: the answer differs by dt^2 from that without it. With INERTIA
-   off it does nothing. Default: none, which costs nothing. Before commit; replaces an earlier one. Local. n: in,
-   stations of a beam, linear in eta between them and constant beyond; 1 of a rigid body; 0: no guess eta[n]: in, of a
-   beam, strictly increasing in [0,1]; else not looked at mass[n][36]: in, symmetric and positive semidefinite. Of a
-   beam per length, in section axes: kg/m, kg, kg m. Of a rigid body about its node, in its own axes: kg, kg m, kg m^2.
-   It turns with the member SPAR_ERR_UNSUPPORTED: a point; at commit: external or prescribed, which move as they are
-   told. */
+   stands in the member's equations beside its own mass, and the loads that fluids push are corrected by as much at
+   the acceleration that they answer to, so that it has no part in the converged answer, in weight, energies, modes,
+   statics or reactions. With mass m and the fluid's m_a iterations contract by |m_a - guess| / (m + guess) in place of
+   m_a / m, so that a guess too large is safe. Explicit coupling bears (m_a - guess) / (m + guess) below 1, 1/3 and 1/7
+   with a predictor of order 0, 1, 2; there a guess too large feeds the structure's modes, one too small damps them
+   (docs/theory.md): give rather too little, and order 0 where it is known to a half only. What the coupling reports of
+   an added mass is the same ratio. What explicit coupling leaves is told as always (SPAR_REPORT_WORK_DEFECT); the loads
+   of spar_member_get_loads within a step are those that move the structure. With substeps the part of the loads that
+   the guess accounts for follows the acceleration of each: the answer differs by dt^2 from that without a guess. With
+   INERTIA off it does nothing. Default: none, which costs nothing. Before commit; replaces an earlier one. Local.
+     n: in, stations of a beam, linear in eta between them and constant beyond; 1 of a rigid body; 0: no guess
+     eta[n]: in, of a beam, strictly increasing in [0,1]; else not looked at
+     mass[n][36]: in, symmetric and positive semidefinite; it turns with the member. Of a beam per length, in section
+           axes: kg/m, kg, kg m; of a rigid body about its node, in its own axes: kg, kg m, kg m^2
+   SPAR_ERR_UNSUPPORTED: a point; at commit: external or prescribed, which move as they are told; at the first step:
+   linear or modal, and tied by joints. */
 SPAR_API int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta, const double *mass);
 /* The guess that was given. n: out, stations, NULL: not wanted; capacity: in, of the arrays; eta[capacity],
    mass[capacity][36]: out, 0 behind the last, NULL: not wanted. Local. */
