@@ -239,6 +239,8 @@ module spar
     procedure :: set_sections => fluid_set_sections
     procedure :: read_aerodyn => fluid_read_aerodyn
     procedure :: set_motion_sections => fluid_set_motion_sections
+    procedure :: set_layout => fluid_set_layout
+    procedure :: get_layout => fluid_get_layout
     procedure :: set_projection => fluid_set_projection
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: map => fluid_map
@@ -2191,6 +2193,27 @@ contains
     call finish(spar_fluid_get_kind(self%handle, which, kind), self%session, stat, errmsg)
   end subroutine fluid_get_kind
 
+  ! (1, n): arrays x(n,3), by component; (3, 1): x(3,n).
+  subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int64_t), intent(in) :: node, component
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_layout(self%handle, which, node, component), self%session, stat, errmsg)
+  end subroutine fluid_set_layout
+
+  subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int), intent(in) :: which
+    integer(c_int64_t), intent(inout), optional :: node, component
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_layout(self%handle, which, node, component), self%session, stat, errmsg)
+  end subroutine fluid_get_layout
+
   subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer(c_int), intent(in) :: method
@@ -2346,8 +2369,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
       return
@@ -2371,8 +2394,8 @@ contains
       return
     end if
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_sections', fault, stat, errmsg, self%name)
       return
@@ -2395,12 +2418,12 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(alpha)) call need(fault, 'alpha', shape(alpha, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
       return
@@ -2423,8 +2446,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x)) call need_triples(self, SPAR_NODES_FORCE, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_FORCE, fault, 'v', shape(v, kind=c_int64_t), n)
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
     if (allocated(fault)) then
       call refuse('fluid%pull_force_places', fault, stat, errmsg, self%name)
@@ -2545,7 +2568,7 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_forces', fault, stat, errmsg, self%name)
       return
@@ -2568,8 +2591,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
+    if (present(moment)) call need_triples(self, SPAR_NODES_FORCE, fault, 'moment', shape(moment, kind=c_int64_t), n)
     if (allocated(fault)) then
       status = spar_fluid_push_forces(self%handle) ! no forces: the step must not go on with those of the push before
       call refuse('fluid%push_forces', fault, stat, errmsg, self%name)
@@ -2594,8 +2617,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
+    if (present(moment)) call need_triples(self, SPAR_NODES_FORCE, fault, 'moment', shape(moment, kind=c_int64_t), n)
     if (allocated(fault)) then
       status = spar_fluid_push_forces(self%handle) ! no forces: the step must not go on with those of the push before
       call refuse('fluid%push_forces_at', fault, stat, errmsg, self%name)
@@ -2619,8 +2642,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_motion_f32', fault, stat, errmsg, self%name)
       return
@@ -2644,8 +2667,8 @@ contains
       return
     end if
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need(fault, 'omega', shape(omega, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(accel)) call need(fault, 'accel', shape(accel, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_sections_f32', fault, stat, errmsg, self%name)
       return
@@ -2668,7 +2691,7 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_forces_f32', fault, stat, errmsg, self%name)
       return
@@ -2691,8 +2714,8 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, n])
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
+    if (present(moment)) call need_triples(self, SPAR_NODES_FORCE, fault, 'moment', shape(moment, kind=c_int64_t), n)
     if (allocated(fault)) then
       status = spar_fluid_push_forces_f32(self%handle) ! as in push_forces
       call refuse('fluid%push_forces_f32', fault, stat, errmsg, self%name)
@@ -3230,6 +3253,30 @@ contains
     fault = fault // '; it must be '
     call append_extents(fault, needs)
   end subroutine need
+
+  ! Triples of a fluid's n nodes: (3,n), or as large as the set's layout needs.
+  subroutine need_triples(fluid, which, fault, array, has, n)
+    class(spar_fluid), intent(in) :: fluid
+    integer(c_int), intent(in) :: which
+    character(:), allocatable, intent(inout) :: fault
+    character(*), intent(in) :: array
+    integer(c_int64_t), intent(in) :: has(:), n
+    integer(c_int64_t) :: node, component, numbers
+
+    if (allocated(fault)) return
+    node = 3
+    component = 1
+    if (spar_fluid_get_layout(fluid%handle, which, node, component) /= SPAR_OK) return
+    if (node == 3 .and. component == 1) then
+      call need(fault, array, has, [3_c_int64_t, n])
+      return
+    end if
+    numbers = 0
+    if (n > 0) numbers = (n - 1) * node + 2 * component + 1
+    if (product(has) >= numbers) return
+    fault = array // ' has ' // trim(text_of(product(has))) // ' numbers; the layout of its fluid needs ' // &
+        trim(text_of(numbers))
+  end subroutine need_triples
 
   subroutine append_extents(text, extents)
     character(:), allocatable, intent(inout) :: text

@@ -840,6 +840,22 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_get_forces
 
+    function spar_fluid_set_layout(fluid, which, node, component) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int64_t), value :: node, component
+      integer(c_int) :: status
+    end function spar_fluid_set_layout
+
+    function spar_fluid_get_layout(fluid, which, node, component) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int64_t), intent(inout), optional :: node, component
+      integer(c_int) :: status
+    end function spar_fluid_get_layout
+
     function spar_fluid_set_projection(fluid, method, max_distance) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid

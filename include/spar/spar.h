@@ -792,6 +792,18 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
    Forces are pushed to, and pulled at (spar_fluid_pull_forces, spar_fluid_pull_force_places), the force nodes; all
    other pulls are at the motion nodes. To be mapped. n, xi[n], offset[n][3]: in, as above. */
 SPAR_API int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+/* Where this rank's arrays [n][3] have their numbers, for hosts that keep structures of arrays or wider records:
+   component i of node j at number j * node + i * component. Holds for what is pulled at motion nodes (places,
+   velocities, accelerations, angular ones) or pushed to and pulled at force nodes (forces, moments, their places), in
+   double and single precision; what lies between is not touched. Quaternions, matrices, nodes as they are set and what
+   getters give stay packed. Allowed between calls at any time but in a trial; goes when nodes of the set are set anew.
+   Not saved. Fluids of spar_aero stay packed.
+     which: in, SPAR_NODES_*; of sections that serve both, each has its own
+     node, component: in, numbers between neighbours, 1 to 2^40: (3, 1) packed (default), (1, n) by component, (8, 1) in
+           records of eight. SPAR_ERR_ARGUMENT: two numbers would share a place */
+SPAR_API int spar_fluid_set_layout(spar_fluid *fluid, int which, int64_t node, int64_t component);
+/* node, component: out, NULL: not wanted. */
+SPAR_API int spar_fluid_get_layout(const spar_fluid *fluid, int which, int64_t *node, int64_t *component);
 /* How feet are found, for the next spar_fluid_map.
      method: in, SPAR_PROJECT_*, default bounded
      max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and refused under the option fluid.far = refuse);

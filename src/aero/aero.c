@@ -61,6 +61,18 @@ static int find_session(const spar_fluid *fluid, spar_session **session) {
     return spar_member_get_session(member, session);
 }
 
+/* Its arrays are packed: a fluid with a layout would read and write others. */
+static int check_packed(spar_session *session, const spar_fluid *fluid, int status, const char *call) {
+    for (int which = SPAR_NODES_MOTION; which <= SPAR_NODES_FORCE; which++) {
+        int64_t node = 3, component = 1;
+        SPARI_TRY(spar_fluid_get_layout(fluid, which, &node, &component));
+        SPARI_REQUIRE(session, node == 3 && component == 1, status,
+                      "%s: fluid '%s' has a layout of its own; take it away with spar_fluid_set_layout (3, 1)", call,
+                      spar_fluid_get_name(fluid));
+    }
+    return SPAR_OK;
+}
+
 /* All fluids there, of one session, made of n >= 2 sections each. */
 static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *call, spar_session **first,
                               int64_t *n) {
@@ -79,6 +91,7 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
                       "%s: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 sections "
                       "with spar_fluid_set_sections",
                       call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
+        SPARI_TRY(check_packed(session, fluid[b], SPAR_ERR_ARGUMENT, call));
         *n = b == 0 ? nodes : *n;
         SPARI_REQUIRE(session, nodes == *n, SPAR_ERR_ARGUMENT,
                       "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; give all blades the same number",
@@ -287,6 +300,7 @@ static int check_blades(const spar_aero *aero, const char *call) {
                       "%s: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
                       "force nodes now; make a new one",
                       call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
+        SPARI_TRY(check_packed(aero->session, fluid, SPAR_ERR_STATE, call));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
     SPARI_REQUIRE(aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,

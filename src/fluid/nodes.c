@@ -208,6 +208,7 @@ static void empty_set(spar_fluid *fluid, int which) {
         }
     }
     spari_node_set_clear(&fluid->set[which]);
+    fluid->layout[which] = (spari_layout){0, 0}; /* it was made for their number */
 }
 
 /* A copy of x [n], zeros for NULL. */
@@ -274,8 +275,10 @@ int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, cons
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
     SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
-    spari_node_set_clear(&fluid->set[0]);
-    spari_node_set_clear(&fluid->set[1]);
+    for (int which = 0; which < 2; which++) {
+        spari_node_set_clear(&fluid->set[which]);
+        fluid->layout[which] = (spari_layout){0, 0};
+    }
     fluid->shared = 1;
     fluid->set[SPAR_NODES_MOTION] = made;
     return SPAR_OK;

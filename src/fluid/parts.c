@@ -77,14 +77,14 @@ static int make_room(spar_fluid *fluid, int64_t n, int with_moment) {
 
 /* ---- a part ---- */
 
-/* The sums with a part from `last` to `theta` in them, into the room for the next. before: there were parts; load NULL:
+/* The sums with a part from `last` to `theta` in them, into the room for the next. before: there were parts; no load:
    zeros. */
-static void sum_up(spari_parts *p, int kind, int before, double last, double theta, const double *load) {
+static void sum_up(spari_parts *p, int kind, int before, double last, double theta, spari_source load) {
     int64_t n = 3 * p->n[kind];
     const double *old = p->sums[kind][0], length = theta - last, middle = 0.5 * (theta + last);
     double *sum = p->sums[kind][1];
     for (int64_t i = 0; i < n; i++) {
-        double impulse = load ? length * load[i] : 0;
+        double impulse = load.d || load.f ? length * spari_source_at(load, i / 3, (int)(i % 3)) : 0;
         sum[i] = (before ? old[i] : 0) + impulse;
         sum[n + i] = (before ? old[n + i] : 0) + middle * impulse;
     }
@@ -107,13 +107,14 @@ void spari_parts_see(spari_parts *p, double theta, int at_end) {
     }
 }
 
-int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, const double *force, const double *moment) {
-    SPARI_TRY(make_room(fluid, n, moment != NULL));
+int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, spari_source force, spari_source moment) {
+    const int has_moment = moment.d || moment.f;
+    SPARI_TRY(make_room(fluid, n, has_moment));
     spari_parts *p = fluid->parts;
     double last = theta > p->theta ? p->theta : 0; /* else the fluid goes through the step again */
     int before = last > 0, had_moment = before && p->moment;
     sum_up(p, FORCE, before, last, theta, force);
-    p->moment_next = had_moment || moment;
+    p->moment_next = had_moment || has_moment;
     if (p->moment_next) {
         sum_up(p, MOMENT, had_moment, last, theta, moment);
     }

@@ -124,6 +124,7 @@ typedef struct wanted {
     sink q;                         /* [n][4] */
     sink matrix;                    /* [n][9] */
     int convention;                 /* of the matrices */
+    const spari_layout *layout;     /* of the triples; NULL: packed */
 } wanted;
 
 static int is_wanted(sink s) {
@@ -153,7 +154,7 @@ typedef struct states {
 
 /* Three rows of the tile to the host's triples; rows of two states become those of the time between them, in the
  * first's place. */
-static void emit(const spari_nodes *s, int64_t first, const states *t, int row, sink out) {
+static void emit(const spari_nodes *s, int64_t first, const states *t, int row, sink out, const spari_layout *layout) {
     if (!is_wanted(out)) {
         return;
     }
@@ -163,7 +164,9 @@ static void emit(const spari_nodes *s, int64_t first, const states *t, int row, 
             t->buf[0][k][i] = t->share[0] * t->buf[0][k][i] + t->share[1] * t->buf[1][k][i];
         }
     }
-    if (out.d) {
+    if (layout) {
+        spari_tile_store_at(s, first, t->buf[0] + row, layout, out.d, out.f);
+    } else if (out.d) {
         spari_tile_store(s, first, t->buf[0] + row, out.d);
     } else {
         spari_tile_store_f32(s, first, t->buf[0] + row, out.f);
@@ -248,10 +251,13 @@ static int parts_of(const wanted *w, double theta) {
            (theta > 0 && theta < 1 ? SPARI_MUTE_HALF_STEP : 0);
 }
 
-static void zero(sink *out, int64_t n) {
-    const double none[3] = {0, 0, 0};
+static void zero(sink *out, int64_t n, const spari_layout *layout) {
+    int64_t node = layout ? layout->node : 3, component = layout ? layout->component : 1;
+    const double none = 0;
     for (int64_t j = 0; j < n && is_wanted(*out); j++) {
-        put_values(*out, j, 3, none);
+        for (int i = 0; i < 3; i++) {
+            put_values(*out, j * node + i * component, 1, &none);
+        }
     }
     *out = (sink){0};
 }
@@ -260,7 +266,7 @@ static void zero(sink *out, int64_t n) {
 static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wanted *w) {
     const spari_nodes *s = set->nodes;
     if (fluid->mute & SPARI_MUTE_VELOCITY) {
-        zero(&w->v, s->n);
+        zero(&w->v, s->n, w->layout);
     }
     if (!(fluid->mute & SPARI_MUTE_POSES)) {
         return;
@@ -273,9 +279,9 @@ static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wante
         put_values(w->matrix, spari_nodes_node(s, p), 9, m);
     }
     w->q = w->matrix = (sink){0};
-    zero(&w->omega, s->n);
-    zero(&w->accel, s->n);
-    zero(&w->alpha, s->n);
+    zero(&w->omega, s->n, w->layout);
+    zero(&w->accel, s->n, w->layout);
+    zero(&w->alpha, s->n, w->layout);
 }
 
 /* NULL where no average has been asked for yet. */
@@ -308,7 +314,8 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         return SPAR_OK;
     }
     t.n = fill_states(fluid, theta, what & SPARI_UPTO, t.share);
-    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f && !set->weight) {
+    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f && !set->weight &&
+        !w->layout) {
         return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
     }
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
@@ -318,11 +325,11 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         for (int i = 0; i < t.n && set->weight; i++) {
             spari_fluid_weigh(set, first, what & SPARI_UPTO, t.buf[i]);
         }
-        emit(s, first, &t, SPARI_R_PLACE, w->x);
-        emit(s, first, &t, SPARI_R_RATE, w->v);
-        emit(s, first, &t, SPARI_R_OMEGA, w->omega);
-        emit(s, first, &t, SPARI_R_ACCEL, w->accel);
-        emit(s, first, &t, SPARI_R_ALPHA, w->alpha);
+        emit(s, first, &t, SPARI_R_PLACE, w->x, w->layout);
+        emit(s, first, &t, SPARI_R_RATE, w->v, w->layout);
+        emit(s, first, &t, SPARI_R_OMEGA, w->omega, w->layout);
+        emit(s, first, &t, SPARI_R_ACCEL, w->accel, w->layout);
+        emit(s, first, &t, SPARI_R_ALPHA, w->alpha, w->layout);
         emit_orientations(fluid, set, first, &t, w);
     }
     return spari_fluid_check_rotation(fluid, least, caller);
@@ -333,6 +340,7 @@ static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *
     const spari_nodes *s;
     wanted left = *w;
     SPARI_TRY(check_turns(fluid, which, w, caller));
+    left.layout = spari_fluid_layout(fluid, which);
     fluid->asked |= parts_of(w, theta);
     theta = spari_fluid_time(fluid, theta);
     if (fluid->mute & SPARI_MUTE_HALF_STEP && theta > 0) {

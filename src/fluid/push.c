@@ -33,16 +33,16 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
     theta = spari_fluid_time(fluid, theta);
     SPARI_TRY(check_forces(fluid, d || f, &n, caller));
     fluid->asked |= SPARI_MUTE_HISTORY;
-    if (fluid->mute & SPARI_MUTE_HISTORY) {
-        memset(d ? (void *)d : (void *)f, 0, (size_t)(3 * n) * (d ? sizeof *d : sizeof *f));
-        return SPAR_OK;
-    }
+    const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
+    int64_t node = layout ? layout->node : 3, component = layout ? layout->component : 1;
+    int muted = (fluid->mute & SPARI_MUTE_HISTORY) != 0;
     for (int64_t i = 0; i < 3 * n; i++) {
-        double x = (1 - theta) * h->past[0][i] + theta * h->after[i];
+        double x = muted ? 0 : (1 - theta) * h->past[0][i] + theta * h->after[i];
+        int64_t at = i / 3 * node + i % 3 * component;
         if (d) {
-            d[i] = x;
+            d[at] = x;
         } else {
-            f[i] = (float)x;
+            f[at] = (float)x;
         }
     }
     return SPAR_OK;
@@ -76,7 +76,7 @@ static void keep_forces(spar_fluid *fluid, spari_source force) {
         return;
     }
     for (int64_t i = 0; i < 3 * h->n; i++) {
-        h->after[i] = force.d ? force.d[i] : (double)force.f[i];
+        h->after[i] = spari_source_at(force, i / 3, (int)(i % 3));
     }
     if (fluid->member->session->phase == SPARI_IDLE) {
         memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
@@ -113,15 +113,15 @@ static void write_audit(spar_fluid *fluid, const spari_audit *in, int64_t n) {
 
 /* Names the first number of the host's that is none. */
 static int check_source(const spar_fluid *fluid, const char *caller, const char *what, spari_source x, int64_t n) {
-    for (int64_t i = 0; i < 3 * n && x.f; i++) {
-        double value = x.f[i];
+    for (int64_t i = 0; i < 3 * n && (x.d || x.f); i++) {
+        double value = spari_source_at(x, i / 3, (int)(i % 3));
         if (!isfinite(value)) {
             return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                       "%s %lld, component %d, is %g; give finite numbers", what, (long long)(i / 3),
                                       (int)(i % 3), value);
         }
     }
-    return x.d ? spari_fluid_check_values(fluid, caller, what, x.d, n, 3) : SPAR_OK;
+    return SPAR_OK;
 }
 
 /* The load of the nodes in load_new from sums that depend on no order. Returns the least |Q|^2. */
@@ -259,14 +259,16 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
 int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    const spari_source f = {.d = force}, m = {.d = moment};
+    const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
+    const spari_source f = {.d = force, .layout = layout}, m = {.d = moment, .layout = layout};
     return push_forces(fluid, f, m, __func__);
 }
 
 int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    const spari_source f = {.f = force}, m = {.f = moment};
+    const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
+    const spari_source f = {.f = force, .layout = layout}, m = {.f = moment, .layout = layout};
     return push_forces(fluid, f, m, __func__);
 }
 
@@ -315,7 +317,9 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
                         "loads over parts of a step have no sums over several ranks that are reproducible; push once a "
                         "step (spar_fluid_push_forces), or switch spar_session_set_reproducible off");
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
-    int room = spari_parts_add(fluid, s->n, theta, force, moments ? moment : NULL);
+    const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
+    const spari_source f = {.d = force, .layout = layout}, m = {.d = moments ? moment : NULL, .layout = layout};
+    int room = spari_parts_add(fluid, s->n, theta, f, m);
     SPARI_FLUID_REQUIRE(fluid, room == SPAR_OK, room, "no memory for loads over parts of a step");
     return push_parts(fluid, s, theta, __func__);
 }

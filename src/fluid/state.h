@@ -52,6 +52,7 @@ struct spar_fluid {
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */
     int mute;   /* trial runs: SPARI_MUTE_* that are left out */
     spari_node_set set[2];
+    spari_layout layout[2]; /* of the host's triples at either set; node 0: packed */
     int64_t pushes;
     int refused; /* status of the last push of this step */
     char *why;   /* its message; NULL: not refused, or no memory for it */
@@ -95,6 +96,8 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
 /* Of one state's tile: places and what of velocities and accelerations is there become the part the nodes take. The set
    has weights. */
 void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
+/* NULL: packed. */
+const spari_layout *spari_fluid_layout(const spar_fluid *fluid, int which);
 int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller);
 /* Finite numbers x [n][width]. */
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
@@ -126,9 +129,9 @@ void spari_history_free(spari_history *history);
 /* Room for the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
 int spari_parts_prepare(spar_fluid *fluid);
 void spari_parts_free(spari_parts *parts);
-/* A part that ends at theta, on n force nodes; moment NULL: none. In the sums to come only. SPAR_ERR_MEMORY without a
+/* A part that ends at theta, on n force nodes; no moment: none. In the sums to come only. SPAR_ERR_MEMORY without a
    message. */
-int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, const double *force, const double *moment);
+int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, spari_source force, spari_source moment);
 /* Of these sums the means over [0, theta] (at_end 0), or the ends there of the lines of least squares, into `value`. */
 void spari_parts_see(spari_parts *parts, double theta, int at_end);
 /* The sums to come are those that hold. */

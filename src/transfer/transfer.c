@@ -318,9 +318,22 @@ double spari_carry(const spari_nodes *s, const double *c, double *x, double *v) 
     return m.square;
 }
 
-/* Triples of the host's [n][3] as rows in storage order, and back. */
+/* Rows of a tile from where a layout says: component by component, each of which may be an array of its own. */
+static void fetch_at(const spari_nodes *s, int64_t first, int count, spari_source x, double (*f)[SPARI_ROW]) {
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < count; i++) {
+            f[k][i] = spari_source_at(x, spari_nodes_node(s, first + i), k);
+        }
+    }
+}
+
+/* Triples of the host's as rows in storage order, and back. */
 static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
                        double (*f)[SPARI_ROW]) {
+    if (x.layout) {
+        fetch_at(s, first, count, x, f);
+        return;
+    }
     if (x.d && !s->place) {
         kernel->load(x.d + 3 * first, count, f);
         return;
@@ -356,6 +369,22 @@ void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPA
     for (int i = 0; i < count; i++) {
         float t[3] = {(float)row[0][i], (float)row[1][i], (float)row[2][i]};
         memcpy(x + 3 * spari_nodes_node(s, first + i), t, sizeof t);
+    }
+}
+
+void spari_tile_store_at(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
+                         double *d, float *f) {
+    int count = spari_tile_count(s, first);
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < count; i++) {
+            ptrdiff_t at = (ptrdiff_t)(spari_nodes_node(s, first + i) * layout->node + k * layout->component);
+            if (d) {
+                memcpy(d + at, &row[k][i], sizeof *d);
+            } else {
+                float single = (float)row[k][i];
+                memcpy(f + at, &single, sizeof single);
+            }
+        }
     }
 }
 

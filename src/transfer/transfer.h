@@ -12,6 +12,7 @@
 #include "../math/bins.h"
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Nodes are handled in tiles whose buffers stay in the first-level cache; inside a tile they are stored element by
  * element. */
@@ -53,11 +54,30 @@ enum {
     SPARI_ROWS = 19
 };
 
-/* Triples of the host, [n][3]: one of the two, or neither. */
+/* Where the host keeps component i of node j: at number j * node + i * component of its array. */
+typedef struct spari_layout {
+    int64_t node, component;
+} spari_layout;
+
+/* Triples of the host: one of the two, or neither. */
 typedef struct spari_source {
     const double *d;
     const float *f;
+    const spari_layout *layout; /* NULL: [n][3] */
 } spari_source;
+
+/* One number of them; the host's array may lie anywhere. */
+static inline double spari_source_at(spari_source x, int64_t node, int i) {
+    ptrdiff_t at = (ptrdiff_t)(x.layout ? node * x.layout->node + i * x.layout->component : 3 * node + i);
+    double d;
+    float f;
+    if (x.d) {
+        memcpy(&d, x.d + at, sizeof d);
+        return d;
+    }
+    memcpy(&f, x.f + at, sizeof f);
+    return f;
+}
 
 /* Sums the loads leave behind for the audit: fluid-side totals. */
 typedef struct spari_audit {
@@ -105,6 +125,9 @@ double spari_carry(const spari_nodes *nodes, const double *c, double *x, double 
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
 void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
 void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], float *x);
+/* The same to where a layout says, one of the two. */
+void spari_tile_store_at(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
+                         double *d, float *f);
 
 /* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
    quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */

@@ -121,6 +121,8 @@ program test_bindings
   call refused(spar_fluid_pull_force_places(none, 1.0_c_double), 'spar_fluid_pull_force_places')
   call refused(spar_fluid_get_places(none, 0_c_int), 'spar_fluid_get_places')
   call refused(spar_fluid_get_forces(none), 'spar_fluid_get_forces')
+  call refused(spar_fluid_set_layout(none, 0_c_int, 3_c_int64_t, 1_c_int64_t), 'spar_fluid_set_layout')
+  call refused(spar_fluid_get_layout(none, 0_c_int), 'spar_fluid_get_layout')
   call refused(spar_fluid_set_projection(none, 0_c_int, 0.0_c_double), 'spar_fluid_set_projection')
   call refused(spar_fluid_set_interpolation(none, 0_c_int), 'spar_fluid_set_interpolation')
   call refused(spar_fluid_map(none), 'spar_fluid_map')

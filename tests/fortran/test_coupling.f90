@@ -126,6 +126,7 @@ program test_coupling
 
   call free_body()
   call turned_point()
+  call moved_mesh()
   call oscillator()
   call failing_fluid()
   call logging()
@@ -267,6 +268,70 @@ contains
     ! arms (0,2,0) and (-1,0,5): (0,2,0) x (1,0,0) = (0,0,-2); (-1,0,5) x (0,0,1) = (0,1,0); and the moments 7 f
     call check(all(abs(load(:,1) - [1, 0, 1, 7, 1, 5]) < 1e-13_c_double), 'loads in a turned state')
   end subroutine turned_point
+
+  ! A point that moves by 2 along y at 4 m/s, and the nodes of a mesh around it that take all, half and none of it: faded
+  ! from 1 to 3 m (half way 1/2), or given. Arrays x(n,3) by component.
+  subroutine moved_mesh()
+    type(spar_session) :: session
+    type(spar_member) :: point
+    type(spar_fluid) :: fluid
+    real(c_double) :: q(7,1), v(6,1), x(3,3), xdot(3,3), w(3), f(3,3), total(3)
+    integer(c_int64_t) :: node, component
+    integer(c_int) :: stat, kind
+
+    call session%create()
+    call point%create_point(session, 'point', origin, unit)
+    call point%set_effects(SPAR_EFFECT_DEFAULT + SPAR_EFFECT_FLUID_HISTORY)
+    call point%commit()
+    call fluid%create(point, 'mesh')
+    x = reshape([1, 0, 0, 0, 0, 2, 0, 3, 0] * 1.0_c_double, [3, 3])
+    call fluid%set_motion_nodes(x)
+    call fluid%set_force_nodes(x)
+    call fluid%fade_motion(1.0_c_double, 3.0_c_double)
+    call fluid%map()
+    call fluid%get_motion_weights(w)
+    call check(all(abs(w - [1.0_c_double, 0.5_c_double, 0.0_c_double]) < 1e-15_c_double), 'weights by distance')
+    call fluid%fade_motion(1.0_c_double, 3.0_c_double, distance=[2, 0, 2] * 1.0_c_double, held=[0, 1, 0])
+    call fluid%get_motion_weights(w)
+    call check(all(abs(w - [0.5_c_double, 0.0_c_double, 0.5_c_double]) < 1e-15_c_double), 'held nodes stay')
+    call fluid%set_motion_weights(w(1:2), stat=stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'two weights for three nodes')
+    call fluid%set_motion_weights([1.0_c_double, 0.5_c_double, 0.0_c_double])
+    call fluid%get_kind(SPAR_NODES_MOTION, kind)
+    call check(kind == SPAR_KIND_WEIGHTS, 'nodes with weights')
+    call fluid%set_layout(SPAR_NODES_MOTION, 1_c_int64_t, 3_c_int64_t)
+    call fluid%set_layout(SPAR_NODES_FORCE, 1_c_int64_t, 3_c_int64_t)
+    call fluid%get_layout(SPAR_NODES_MOTION, node, component)
+    call check(node == 1 .and. component == 3, 'arrays by component')
+    q(:,1) = [0, 2, 0, 1, 0, 0, 0]
+    v(:,1) = [0, 4, 0, 0, 0, 0]
+    call session%step_begin(0.1_c_double)
+    call point%set_motion(q, v)
+    call session%step_solve()
+    call fluid%pull_motion(1.0_c_double, x, xdot)
+    call check(all(abs(x(:,2) - [2, 1, 3]) < 1e-15_c_double) .and. all(abs(x(:,1) - [1, 0, 0]) < 1e-15_c_double), &
+        'places of a mesh, by component')
+    call check(all(abs(xdot(:,2) - [4, 2, 0]) < 1e-15_c_double), 'its velocities')
+    call fluid%pull_motion(1.0_c_double, x(:,1:2), stat=stat)
+    call check(stat == SPAR_ERR_ARGUMENT, 'an array that is shorter than its layout')
+    f = 0
+    f(:,3) = [1, 2, 4]
+    call fluid%push_forces(f)
+    call fluid%get_total(force=total)
+    call check(all(abs(total - [0, 0, 7]) < 1e-14_c_double), 'forces by component')
+    call fluid%pull_force_places(1.0_c_double, x)
+    call check(all(abs(x(:,2) - [2, 2, 5]) < 1e-15_c_double), 'force nodes have no weights')
+    call fluid%get_places(SPAR_NODES_FORCE, x, foot=xdot)
+    call check(all(abs(x(2,:) - [2, 2, 5]) < 1e-15_c_double) .and. all(abs(xdot(2,:) - 2) < 1e-15_c_double), &
+        'getters are packed')
+    call fluid%get_forces(x)
+    call check(all(abs(x(3,:) - [1, 2, 4]) < 1e-15_c_double), 'forces as kept')
+    call session%step_reject()
+    call fluid%set_motion_weights()
+    call fluid%set_motion_sections([-1, 1] * 1.0_c_double)
+    call fluid%get_kind(SPAR_NODES_MOTION, kind)
+    call check(kind == SPAR_KIND_SECTIONS, 'motion nodes as sections')
+  end subroutine moved_mesh
 
   subroutine check_and_accept(session)
     type(spar_session), intent(inout) :: session

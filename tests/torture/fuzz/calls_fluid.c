@@ -107,6 +107,28 @@ void do_spar_fluid_fade_motion(call *c) {
     RUN(c, spar_fluid_fade_motion(f->f, within, beyond, n, distance, hold && length(n) <= 64 ? held : NULL));
 }
 
+/* By component, in records, packed; or any, which mostly overlap. */
+void do_spar_fluid_set_layout(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1), kind = below(c, 4);
+    int64_t n = fluid_count(f, which == 1 ? SPAR_NODES_FORCE : SPAR_NODES_MOTION), node, component;
+    if (kind == 0) {
+        node = arg_count(c, 1, 1), component = arg_count(c, n + 1, n + 3);
+    } else if (kind == 1) {
+        node = arg_count(c, 3, 8), component = arg_count(c, 1, 2);
+    } else {
+        node = arg_count(c, kind, 3), component = arg_count(c, 1, kind);
+    }
+    RUN(c, spar_fluid_set_layout(f->f, which, node, component));
+}
+
+void do_spar_fluid_get_layout(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int which = arg_int(c, 0, 1);
+    int64_t *node = arg_out(c, (int64_t)sizeof *node, 1), *component = arg_out(c, (int64_t)sizeof *component, 1);
+    RUN(c, spar_fluid_get_layout(f->f, which, node, component));
+}
+
 void do_spar_fluid_set_projection(call *c) {
     live_fluid *f = arg_fluid(c);
     int method = arg_int(c, SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY);
@@ -206,8 +228,8 @@ static double arg_theta(call *c) {
 
 void do_spar_fluid_pull_motion(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
-    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n);
+    int64_t room = fluid_room(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, room), *v = OUT_OR_NULL(c, room);
     RUN(c, spar_fluid_pull_motion(f->f, theta, x, v));
 }
 
@@ -217,33 +239,33 @@ static float *out_floats(call *c, int64_t n) {
 
 void do_spar_fluid_pull_motion_f32(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    int64_t room = fluid_room(f, SPAR_NODES_MOTION);
     double theta = arg_theta(c);
-    float *x = out_floats(c, 3 * n), *v = out_floats(c, 3 * n);
+    float *x = out_floats(c, room), *v = out_floats(c, room);
     RUN(c, spar_fluid_pull_motion_f32(f->f, theta, x, v));
 }
 
 void do_spar_fluid_pull_sections(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
-    double theta = arg_theta(c), *q = OUT_OR_NULL(c, 4 * n), *omega = OUT_OR_NULL(c, 3 * n),
-           *accel = OUT_OR_NULL(c, 3 * n);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *q = OUT_OR_NULL(c, 4 * n), *omega = OUT_OR_NULL(c, room),
+           *accel = OUT_OR_NULL(c, room);
     RUN(c, spar_fluid_pull_sections(f->f, theta, q, omega, accel));
 }
 
 void do_spar_fluid_pull_sections_f32(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
     double theta = arg_theta(c);
-    float *q = out_floats(c, 4 * n), *omega = out_floats(c, 3 * n), *accel = out_floats(c, 3 * n);
+    float *q = out_floats(c, 4 * n), *omega = out_floats(c, room), *accel = out_floats(c, room);
     RUN(c, spar_fluid_pull_sections_f32(f->f, theta, q, omega, accel));
 }
 
 void do_spar_fluid_pull_poses(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION);
-    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n), *v = OUT_OR_NULL(c, 3 * n),
-           *omega = OUT_OR_NULL(c, 3 * n), *accel = OUT_OR_NULL(c, 3 * n), *alpha = OUT_OR_NULL(c, 3 * n);
+    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, room), *q = OUT_OR_NULL(c, 4 * n), *v = OUT_OR_NULL(c, room),
+           *omega = OUT_OR_NULL(c, room), *accel = OUT_OR_NULL(c, room), *alpha = OUT_OR_NULL(c, room);
     RUN(c, spar_fluid_pull_poses(f->f, theta, x, q, v, omega, accel, alpha));
 }
 
@@ -270,8 +292,8 @@ void do_spar_fluid_check_matrices(call *c) {
 
 void do_spar_fluid_pull_force_places(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
-    double theta = arg_theta(c), *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n);
+    int64_t n = fluid_count(f, SPAR_NODES_FORCE), room = fluid_room(f, SPAR_NODES_FORCE);
+    double theta = arg_theta(c), *x = OUT_OR_NULL(c, room), *v = OUT_OR_NULL(c, room), *q = OUT_OR_NULL(c, 4 * n);
     RUN(c, spar_fluid_pull_force_places(f->f, theta, x, v, q));
 }
 
@@ -292,14 +314,14 @@ void do_spar_fluid_get_forces(call *c) {
 
 void do_spar_fluid_pull_forces(call *c) {
     live_fluid *f = arg_fluid(c);
-    double theta = arg_theta(c), *force = OUT(c, 3 * fluid_count(f, SPAR_NODES_FORCE));
+    double theta = arg_theta(c), *force = OUT(c, fluid_room(f, SPAR_NODES_FORCE));
     RUN(c, spar_fluid_pull_forces(f->f, theta, force));
 }
 
 void do_spar_fluid_pull_forces_f32(call *c) {
     live_fluid *f = arg_fluid(c);
     double theta = arg_theta(c);
-    float *force = arg_out(c, 3 * fluid_count(f, SPAR_NODES_FORCE) * (int64_t)sizeof(float), 0);
+    float *force = arg_out(c, fluid_room(f, SPAR_NODES_FORCE) * (int64_t)sizeof(float), 0);
     RUN(c, spar_fluid_pull_forces_f32(f->f, theta, force));
 }
 
@@ -307,22 +329,22 @@ void do_spar_fluid_pull_forces_f32(call *c) {
 
 void do_spar_fluid_push_forces(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
-    double *force = arg_reals(c, 3 * n, -1, 1), *moment = arg_reals_or_null(c, 3 * n, -0.1, 0.1);
+    int64_t room = fluid_room(f, SPAR_NODES_FORCE);
+    double *force = arg_reals(c, room, -1, 1), *moment = arg_reals_or_null(c, room, -0.1, 0.1);
     RUN(c, spar_fluid_push_forces(f->f, force, moment));
 }
 
 void do_spar_fluid_push_forces_at(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
-    double theta = arg_theta(c), *force = arg_reals(c, 3 * n, -1, 1), *moment = arg_reals_or_null(c, 3 * n, -0.1, 0.1);
+    int64_t room = fluid_room(f, SPAR_NODES_FORCE);
+    double theta = arg_theta(c), *force = arg_reals(c, room, -1, 1), *moment = arg_reals_or_null(c, room, -0.1, 0.1);
     RUN(c, spar_fluid_push_forces_at(f->f, theta, force, moment));
 }
 
 void do_spar_fluid_push_forces_f32(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_FORCE);
-    float *force = arg_floats(c, 3 * n, -1, 1, 0), *moment = arg_floats(c, 3 * n, -0.1, 0.1, 1);
+    int64_t room = fluid_room(f, SPAR_NODES_FORCE);
+    float *force = arg_floats(c, room, -1, 1, 0), *moment = arg_floats(c, room, -0.1, 0.1, 1);
     RUN(c, spar_fluid_push_forces_f32(f->f, force, moment));
 }
 

@@ -138,6 +138,8 @@ enum {
     CALL(spar_fluid_pull_force_places, 60, FUZZ_PURE)                                                                  \
     CALL(spar_fluid_get_places, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_get_forces, 30, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_set_layout, 50, FUZZ_CHANGES)                                                                      \
+    CALL(spar_fluid_get_layout, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_projection, 50, FUZZ_CHANGES)                                                                  \
     CALL(spar_fluid_set_interpolation, 50, FUZZ_CHANGES)                                                               \
     CALL(spar_fluid_map, 140, FUZZ_CHANGES)                                                                            \
@@ -378,6 +380,8 @@ const char *arg_path(call *c, const char *ending);
 double arg_dt(call *c);
 int64_t nodes_of(const live_member *m);
 int64_t fluid_count(const live_fluid *f, int which);
+/* Numbers of its arrays of triples, as they are laid out. */
+int64_t fluid_room(const live_fluid *f, int which);
 
 /* ---- the host's callbacks ---- */
 

@@ -15,15 +15,17 @@ static int exchange(world *w, int session) {
         if (!f->f || f->session != session) {
             continue;
         }
-        int64_t n = fluid_count(f, SPAR_NODES_MOTION), m = fluid_count(f, SPAR_NODES_FORCE);
-        if (n > 64 || m > 64) {
+        int64_t n = fluid_count(f, SPAR_NODES_MOTION), m = fluid_count(f, SPAR_NODES_FORCE), at[2], to[2];
+        if (fluid_room(f, SPAR_NODES_MOTION) > 3 * 64 || fluid_room(f, SPAR_NODES_FORCE) > 3 * 64) {
             continue;
         }
-        double x[3 * 64] = {0}, v[3 * 64] = {0}, force[3 * 64];
+        (void)spar_fluid_get_layout(f->f, SPAR_NODES_MOTION, &at[0], &at[1]);
+        (void)spar_fluid_get_layout(f->f, SPAR_NODES_FORCE, &to[0], &to[1]);
+        double x[3 * 64] = {0}, v[3 * 64] = {0}, force[3 * 64] = {0};
         int status = spar_fluid_pull_motion(f->f, 1, x, v);
         for (int64_t k = 0; k < 3 * m; k++) {
-            double u = n > 0 ? v[k % (3 * n)] : 0;
-            force[k] = 0.1 + (fabs(u) < 10 ? -0.05 * u : 0);
+            double u = n > 0 ? v[k / 3 % n * at[0] + k % 3 * at[1]] : 0;
+            force[k / 3 * to[0] + k % 3 * to[1]] = 0.1 + (fabs(u) < 10 ? -0.05 * u : 0);
         }
         w->failures += status != SPAR_OK;
         if (status == SPAR_OK) {

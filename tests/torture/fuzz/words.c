@@ -463,3 +463,12 @@ int64_t fluid_count(const live_fluid *f, int which) {
     which = which == SPAR_NODES_FORCE ? SPAR_NODES_FORCE : SPAR_NODES_MOTION;
     return f->f && spar_fluid_get_count(f->f, which, &n) == SPAR_OK ? n : 0;
 }
+
+int64_t fluid_room(const live_fluid *f, int which) {
+    int64_t n = fluid_count(f, which), node = 3, component = 1;
+    which = which == SPAR_NODES_FORCE ? SPAR_NODES_FORCE : SPAR_NODES_MOTION;
+    if (n > 0) {
+        (void)spar_fluid_get_layout(f->f, which, &node, &component);
+    }
+    return n > 0 ? (n - 1) * node + 2 * component + 1 : 0;
+}

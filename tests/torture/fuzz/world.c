@@ -76,7 +76,7 @@ static void see_fluid(const live_fluid *f, uint64_t *h, uint64_t *of_last_push) 
             add(h, seen_index, (size_t)n * sizeof *seen_index);
         }
         if (status == SPAR_OK && which == SPAR_NODES_MOTION) {
-            add_seen(h, spar_fluid_pull_motion(f->f, 1, seen, seen + 3 * n), 6 * n);
+            add_seen(h, spar_fluid_get_places(f->f, which, seen, seen + 3 * n, NULL, NULL), 6 * n);
         }
     }
     add_seen(of_last_push, spar_fluid_get_audit(f->f, 8, seen), 8);
@@ -350,7 +350,7 @@ static void unload(world *w, int session) {
     static const double zero[6 * 64];
     for (int i = 0; i < FLUIDS; i++) {
         live_fluid *f = w->fluid + i;
-        if (f->f && f->session == session && fluid_count(f, SPAR_NODES_FORCE) <= 64) {
+        if (f->f && f->session == session && fluid_room(f, SPAR_NODES_FORCE) <= 3 * 64) {
             unload_fluid(f, zero);
         }
     }

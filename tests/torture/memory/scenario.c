@@ -504,6 +504,8 @@ static void act_fluids(void) {
     CALL(spar_fluid_set_motion_sections, sections, 5, xi, NULL);
     CALL(spar_fluid_map, sections);
     CALL(spar_fluid_get_kind, sections, SPAR_NODES_FORCE, flags);
+    CALL(spar_fluid_set_layout, sections, SPAR_NODES_FORCE, 3, 1);
+    CALL(spar_fluid_get_layout, sections, SPAR_NODES_FORCE, &count, NULL);
     CALL(spar_fluid_get_count, f, SPAR_NODES_FORCE, &count);
     CALL(spar_fluid_get_flag_count, f, SPAR_NODES_FORCE, SPAR_MAP_END, &count);
     CALL(spar_fluid_get_map, f, SPAR_NODES_MOTION, out, w, flags);
