@@ -270,12 +270,16 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
         const double *phi = d->phi + P * k, *in = a + 6 * first_node(d, from, e);
         double *back = out + 6 * first_node(d, to, e), turn[4], at[6] = {0}, force[6];
         turn_at(m, e, phi, turn);
-        for (int i = 0; i < 6 * P; i++) {
-            at[i % 6] += phi[i / 6] * in[i];
+        for (int l = 0; l < P; l++) {
+            for (int i = 0; i < 6; i++) {
+                at[i] += phi[l] * in[6 * l + i];
+            }
         }
         times_point(turn, d->mass + 36 * k, at, force);
-        for (int i = 0; i < 6 * P; i++) {
-            back[i] += factor * phi[i / 6] * force[i % 6];
+        for (int l = 0; l < P; l++) {
+            for (int i = 0; i < 6; i++) {
+                back[6 * l + i] += factor * phi[l] * force[i];
+            }
         }
         for (int i = 0; i < 6; i++) {
             largest = fmax(largest, fabs(force[i]));
@@ -290,6 +294,15 @@ static void turn_columns(const double X[36], const double *T, double out[36]) {
         const double *row = X + 6 * (i / 6) + 3;
         int j = i % 6 - 3;
         out[i] = T && j >= 0 ? row[0] * T[j] + row[1] * T[3 + j] + row[2] * T[6 + j] : X[i];
+    }
+}
+
+/* to, 6x6 in rows of `row`, += f X */
+static void add_section_block(double f, const double X[36], int64_t row, double *to) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            to[row * i + j] += f * X[6 * i + j];
+        }
     }
 }
 
@@ -309,9 +322,7 @@ void spari_added_tangent(const spar_member *m, int e, double cm, const double *t
             turn_columns(X, tinv ? tinv + 9 * (first + j) : NULL, XT);
             for (int l = 0; l < P; l++) {
                 double f = cm * phi[l] * phi[j], *to = S + row * 6 * l + 6 * j;
-                for (int i = 0; i < 36; i++) {
-                    to[row * (i / 6) + i % 6] += f * XT[i];
-                }
+                add_section_block(f, XT, row, to);
             }
         }
     }

@@ -117,7 +117,7 @@ typedef struct setting {
     int poses, accelerations;    /* pulled */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
-    int unaudited, account;
+    int unaudited, account, guess;
     int reproducible;      /* if GIVEN */
     int aero;              /* blades with sections */
     int aero_effects;      /* if GIVEN */
@@ -190,6 +190,9 @@ static void make_beam(scene *s) {
     }
     if (s->is.account) {
         MUST(spar_member_set_effects(*b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    }
+    if (s->is.guess) {
+        MUST(spar_member_set_added_mass(*b, 1, eta, mass));
     }
     s->described = heap;
     MUST(spar_member_commit(*b));
@@ -394,6 +397,7 @@ static const effect effects[] = {
      {.effects = GIVEN | SPAR_EFFECT_INERTIA}},
     {"large rotation", "interpolate", TRADE, {0}, {.effects = ALL & ~SPAR_EFFECT_LARGE_ROTATION}, {0}},
     {"work account", "spari_work_step", NEVER, {.account = 1}, {0}, {0}},
+    {"known added mass", "spari_added_times", NEVER, {.guess = 1}, {0}, {0}},
     {"fluid moment",
      "",
      NEVER,
