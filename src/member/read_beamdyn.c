@@ -324,5 +324,5 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
     status = status == SPAR_OK ? describe_blade(beam, r, &b) : status;
     blade_free(&b);
     free(r);
-    return status;
+    return spari_named(beam->session, __func__, status);
 }
