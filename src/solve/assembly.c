@@ -136,11 +136,23 @@ static int kept_serves(const spari_assembly *a) {
 /* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
    contracts by about as much. */
 static const double SLOW_TIED = 0.5, longest_tied = 0.5, near_tied = 0.01;
-enum { TIED_PATIENCE = 8 }; /* more than of one member: the factored system above takes iterations of its own */
+enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
+
+/* What is left of the tangents for the next solution (see tied.h) after one of so many iterations; took: of those that
+   it was found with, 0: it formed them. New ones take about ten iterations to form and serve for many solutions, so
+   that they are made when they would spare more than one iteration. */
+static int tangents_after(int iterations, int took) {
+    int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
+    if (took == 0) {
+        return iterations;
+    }
+    return iterations <= patience ? took : 0;
+}
 
 /* One attempt from the predicted states, as alpha.c's for one member. NULL, or what went wrong. */
 static const char *attempt_all(spari_assembly *a, effort how, double s, double dt, int *iterations) {
     double last = 0, longest = how.full ? longest_tied : INFINITY;
+    int took = a->factored;
     a->factored = how.kept && kept_serves(a);
     a->standing = 0; /* what a solution begins with is not to depend on those before it */
     int fresh = !a->factored;
@@ -171,7 +183,7 @@ static const char *attempt_all(spari_assembly *a, effort how, double s, double d
         double left = last > 0 && theta < 1 && !how.full ? theta / (1 - theta) * correction : correction;
         int stuck = theta > 0.5 && correction < 1e-11;
         if (left <= tolerance(a) || (noise <= 16 * DBL_EPSILON * scale && correction < 1e-11) || stuck) {
-            a->factored = a->factored && (fresh || it <= TIED_PATIENCE);
+            a->factored = tangents_after(it, fresh ? 0 : took);
             return NULL;
         }
         /* a far correction may lead to another way of closing a loop */

@@ -2,6 +2,8 @@
 #include "assembly.h"
 #include "tied.h"
 
+#include <limits.h>
+#include <math.h>
 #include <string.h>
 
 enum { RELATIVE = sizeof(spari_relative) / sizeof(double), DRIVEN = sizeof(spari_driven) / sizeof(double) };
@@ -70,11 +72,12 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
 }
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
-    return count >= KEPT_HEAD && state[1] == a->limbs && count == (state[0] == 0 ? KEPT_HEAD : kept_size(a));
+    return count >= KEPT_HEAD && state[1] == a->limbs && state[0] >= 0 && state[0] < INT_MAX &&
+           state[0] == floor(state[0]) && count == (state[0] == 0 ? KEPT_HEAD : kept_size(a));
 }
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
-    a->factored = state && state[0] != 0;
+    a->factored = state ? (int)state[0] : 0;
     state = state ? state + KEPT_HEAD : NULL;
     for (int i = 0; i < a->limbs && a->factored; i++) {
         spari_condensed *c = a->limb[i].solver->condensed;

@@ -43,7 +43,8 @@ struct spari_assembly {
     int limbs, links;
     spari_limb *limb;
     spari_link *link; /* on every rank; what follows is the owner's */
-    int n, band, factored;
+    int n, band;
+    int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
     int standing;     /* the system below is factored, for the tangents there are and this cv, */
     double cv, moved; /* and the parts' way since; only within a solution */
     double scale;     /* of the constraints' rows */
