@@ -94,6 +94,9 @@ int spar_step_begin(spar_session *session, double dt) {
         for (spar_member *m = s->members; m; m = m->next) {
             spari_session_take_loads(s, m, m->load_history[0]);
             memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+            if (m->work) {
+                spari_work_begin(m);
+            }
         }
     }
     int order = s->past > 0 ? s->past : 0;

@@ -14,6 +14,7 @@
 struct spari_work {
     double sum[SPAR_WORK_COUNT];
     double reaction[6]; /* at t^n, of a driven root */
+    int reaction_lacks; /* 1: it was found before the fluids' loads at t = 0 were known */
     double *fluid;      /* [nodes][6] fluid loads at t^n */
     double *load;       /* [nodes][6] scratch */
     double *room;       /* for the reaction */
@@ -85,6 +86,10 @@ void spari_work_step(spar_member *m) {
     }
     if (m->root == SPAR_ROOT_DRIVEN) {
         spari_member_reaction_in(m, w->room, reaction);
+        if (w->reaction_lacks) { /* that of the first step's end stands for it: of second order in dt, once */
+            memcpy(w->reaction, reaction, sizeof reaction);
+            w->reaction_lacks = 0;
+        }
         increment(m, 0, d);
         w->sum[SPAR_WORK_ROOT] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
@@ -198,8 +203,17 @@ void spari_work_restart(spar_member *m) {
         }
     }
     memset(w->sum, 0, sizeof w->sum);
+    w->reaction_lacks = 0;
     memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
     spari_member_reaction_in(m, w->room, w->reaction);
+}
+
+void spari_work_begin(spar_member *m) {
+    spari_work *w = m->work;
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        w->reaction_lacks = w->reaction_lacks || w->fluid[i] != m->load_history[0][i];
+        w->fluid[i] = m->load_history[0][i];
+    }
 }
 
 int spari_work_create(spar_member *m) {

@@ -14,6 +14,8 @@ void spari_work_step(spar_member *member);
 void spari_work_of_joint(spar_joint *joint);
 /* The motion has been set anew: the account starts at zero, and those of its joints. */
 void spari_work_restart(spar_member *member);
+/* Before the first step: the fluids' loads at t = 0, which come after the motion there was set. */
+void spari_work_begin(spar_member *member);
 void spari_work_free(spari_work *work);
 /* The member has been made anew: the account of what it was goes on, if there is one. */
 void spari_work_carry(const spar_member *from, spar_member *member);
