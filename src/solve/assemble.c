@@ -12,46 +12,10 @@
 
 /* Whether a member's motion is unknown in an assembly. */
 static int is_part(const spar_member *m) {
-    return m && m->row->solver;
+    return m && m->row->limb;
 }
 
 /* ---- one assembly ---- */
-
-/* The nodes of a member that joints hold, in increasing order; how many. */
-static int ends_of(const spar_member *m, int *node) {
-    int n = 0;
-    for (const spar_joint *j = m->session->joints; j; j = j->next) {
-        for (int side = 0; side < 2; side++) {
-            if (j->member[side] != m) {
-                continue;
-            }
-            int at = 0;
-            while (at < n && node[at] < j->unique[side]) {
-                at++;
-            }
-            if (at < n && node[at] == j->unique[side]) {
-                continue;
-            }
-            memmove(node + at + 1, node + at, (size_t)(n - at) * sizeof *node);
-            node[at] = j->unique[side];
-            n++;
-        }
-    }
-    return n;
-}
-
-static int condense(const spar_member *m, spari_solver *solver) {
-    int count = 0;
-    for (const spar_joint *j = m->session->joints; j; j = j->next) {
-        count += (j->member[0] == m) + (j->member[1] == m);
-    }
-    int *node = spari_zalloc(count + 1, sizeof *node);
-    int ends = node ? ends_of(m, node) : 0;
-    spari_condensed_free(solver->condensed);
-    solver->condensed = node ? spari_condensed_create(ends, node, 6 * solver->n) : NULL;
-    free(node);
-    return solver->condensed ? SPAR_OK : SPAR_ERR_MEMORY;
-}
 
 static void assembly_free(spari_assembly *a) {
     spari_tied_free(a);
@@ -140,8 +104,8 @@ static int make_system(spari_assembly *a) {
         return SPAR_OK;
     }
     for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].solver = a->limb[i].member->row->solver(a->limb[i].member);
-        SPARI_TRY(condense(a->limb[i].member, a->limb[i].solver));
+        a->limb[i].row = a->limb[i].member->row->limb;
+        SPARI_TRY(a->limb[i].row->make(a->limb + i));
     }
     spari_tied_place(a);
     for (int i = 0; i < a->links; i++) {
@@ -252,7 +216,7 @@ static int check_members(const spar_joint *j) {
         const spar_member *m = j->member[side];
         SPARI_REQUIRE(j->session, !m || m->committed, SPAR_ERR_STATE,
                       "joint '%s': member '%s' is not committed; call spar_member_commit first", j->name, m->name);
-        SPARI_REQUIRE(j->session, !m || m->row->solver || !m->row->solved, SPAR_ERR_UNSUPPORTED,
+        SPARI_REQUIRE(j->session, !m || m->row->limb || !m->row->solved, SPAR_ERR_UNSUPPORTED,
                       "joint '%s': '%s' is linear or modal; joints tie rigid bodies and rigid or exact beams in this "
                       "release",
                       j->name, m->name);

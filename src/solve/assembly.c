@@ -2,15 +2,11 @@
 #include "assembly.h"
 
 #include "../base/scene.h"
-#include "../math/rotation.h"
-#include "../member/applied.h"
-#include "alpha.h"
-#include "arms.h"
-#include "drive.h"
 #include "fidelity.h"
 #include "tied.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,13 +21,7 @@ typedef struct effort {
 
 static void predict(spari_assembly *a, spari_guess stays) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        double *x = p->solver->increment;
-        if (p->scheme.still) {
-            spari_alpha_carry(p->solver, p->member, &p->scheme, &p->root, p->turn, &p->ends, x);
-        } else {
-            spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->ends, x);
-        }
+        a->limb[i].row->predict(a->limb + i, stays);
     }
     for (int i = 0; i < a->links; i++) {
         a->link[i].joint->after = a->link[i].begin;
@@ -43,11 +33,7 @@ static void predict(spari_assembly *a, spari_guess stays) {
 static double balance(spari_assembly *a, double s, double dt, double *noise) {
     double scale = 0;
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        spari_solver *solver = p->solver;
-        spari_alpha_impose_root(p->member, &p->root, &p->ends, solver->increment);
-        scale += spari_alpha_balance(p->solver, p->member, &p->scheme, &p->ends.seen, solver->r);
-        spari_alpha_operators(solver, &p->scheme, &p->ends, solver->increment);
+        scale += a->limb[i].row->balance(a->limb + i);
     }
     for (int i = 0; i < a->links; i++) {
         spari_link_find(a->link + i, s, dt, 1);
@@ -55,19 +41,16 @@ static double balance(spari_assembly *a, double s, double dt, double *noise) {
     spari_links_add(a);
     *noise = 0;
     for (int i = 0; i < a->limbs; i++) {
-        const spari_solver *solver = a->limb[i].solver;
-        for (int k = 0; k < 6 * solver->n; k++) {
-            *noise = fmax(*noise, fabs(solver->r[k]));
-            scale += 0 * solver->r[k];
-        }
+        double left = a->limb[i].row->noise(a->limb + i);
+        *noise = fmax(*noise, left);
+        scale += 0 * left;
     }
     return scale;
 }
 
 static int form(spari_assembly *a) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        if (spari_alpha_tangent(p->solver, p->member, &p->scheme, &p->ends.seen)) {
+        if (a->limb[i].row->tangent(a->limb + i)) {
             return 1;
         }
     }
@@ -75,35 +58,15 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
-/* Corrections into every solver's dx and the links' `correction`, from the residuals and the gaps. */
-static int solve(spari_assembly *a, double cv) {
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
-        spari_alpha_turn_back(p->solver, p->ends.seen.q, p->solver->r, p->solver->dx);
-    }
-    if (spari_tied_solve(a, cv)) {
-        return 1;
-    }
-    for (int i = 0; i < a->limbs; i++) {
-        spari_alpha_turn_forth(a->limb[i].solver, a->limb[i].solver->dx);
-    }
-    return 0;
-}
-
 /* Takes the corrections off, all shortened alike; their size before. */
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
     for (int i = 0; i < a->limbs; i++) {
-        largest = fmax(largest, spari_alpha_size(a->limb[i].solver, a->limb[i].solver->dx));
+        largest = fmax(largest, a->limb[i].row->change(a->limb + i));
     }
     double cut = largest > longest ? longest / largest : 1;
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        for (int k = 0; k < 6 * s->n && cut < 1; k++) {
-            s->dx[k] *= cut;
-        }
-        (void)spari_alpha_correct(p->solver, p->member, &p->scheme, &p->ends, INFINITY, s->increment, s->dx);
+        a->limb[i].row->correct(a->limb + i, cut);
     }
     for (int i = 0; i < a->links; i++) {
         for (int k = 0; k < 6; k++) {
@@ -117,18 +80,15 @@ static double tolerance(const spari_assembly *a) {
     const spar_session *s = a->session;
     double size = 0;
     for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
-        size = fmax(size, spari_alpha_size(p->solver, p->solver->increment) + p->ends.carried);
+        size = fmax(size, a->limb[i].row->way(a->limb + i));
     }
     return s->newton_atol + s->newton_rtol * size;
 }
 
 static int kept_serves(const spari_assembly *a) {
-    const spari_scheme *c = &a->limb[0].scheme;
     int kept = a->factored;
     for (int i = 0; i < a->limbs; i++) {
-        const spari_solver *s = a->limb[i].solver;
-        kept = kept && s->factored && spari_alpha_close(c->cm, s->kept_cm) && spari_alpha_close(c->cv, s->kept_cv);
+        kept = kept && a->limb[i].row->serves(a->limb + i);
     }
     return kept;
 }
@@ -170,15 +130,12 @@ static const char *attempt_all(spari_assembly *a, effort how, double s, double d
             return "found a singular tangent";
         }
         a->factored = 1;
-        if (solve(a, a->limb[0].scheme.cv)) {
+        if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
             return "found a singular tangent";
         }
         double correction = correct(a, longest);
         a->moved += correction;
         a->standing = a->standing && a->moved < near_tied;
-        for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].solver->newton++;
-        }
         double theta = last > 0 ? correction / last : 0;
         double left = last > 0 && theta < 1 && !how.full ? theta / (1 - theta) * correction : correction;
         int stuck = theta > 0.5 && correction < 1e-11;
@@ -218,24 +175,13 @@ static int project(spari_assembly *a, double s, double dt) {
             return 0;
         }
         for (int i = 0; i < a->limbs; i++) {
-            spari_solver *solver = a->limb[i].solver;
-            memset(solver->r, 0, (size_t)(6 * solver->n) * sizeof *solver->r);
+            a->limb[i].row->clear(a->limb + i);
         }
-        if (solve(a, a->limb[0].scheme.cv)) {
+        if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
             return 1;
         }
         for (int i = 0; i < a->limbs; i++) {
-            spari_limb *p = a->limb + i;
-            spari_solver *solver = p->solver;
-            for (int k = 0; k < 6 * solver->n; k += 3) {
-                if (p->ends.root) {
-                    spari_rotate_back(p->ends.root->q + 3, solver->dx + k, solver->dx + k);
-                }
-                for (int m = k; m < k + 3; m++) {
-                    p->ends.to.v[m] -= solver->dx[m];
-                }
-            }
-            spari_root_show(p->solver, p->member, &p->ends);
+            a->limb[i].row->shift_rates(a->limb + i);
         }
     }
     return 0;
@@ -272,8 +218,7 @@ enum { START_REFINEMENTS = 3 };
 /* What is left of the balance at t^0, and of the constraints' accelerations. */
 static void start_residual(spari_assembly *a, double cm) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        spari_alpha_unbalance(s, a->limb[i].member, s->begin.a, s->r);
+        a->limb[i].row->unbalance(a->limb + i);
     }
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
@@ -287,17 +232,6 @@ static void start_residual(spari_assembly *a, double cm) {
         }
     }
     spari_links_add(a);
-}
-
-static void forget_start(spari_limb *p) {
-    spari_solver *s = p->solver;
-    int end = spari_member_held(p->member);
-    if (p->member->root != SPAR_ROOT_DRIVEN) {
-        memset(s->begin.a, 0, (size_t)end * sizeof(double));
-        memset(s->begin.v, 0, (size_t)end * sizeof(double));
-    }
-    p->state = &s->begin;
-    p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
 }
 
 /* A driven motion begins as the members do; later it is where it was driven to. */
@@ -318,9 +252,7 @@ static int start_all(spari_assembly *a) {
     double cm = a->limb[0].scheme.cm;
     int singular = 0;
     for (int i = 0; i < a->limbs && !singular; i++) {
-        spari_solver *s = a->limb[i].solver;
-        forget_start(a->limb + i);
-        singular = spari_solver_factor(s, a->limb[i].member, s->begin.q, NULL, NULL, 0, cm, 0, NULL);
+        singular = a->limb[i].row->start(a->limb + i);
     }
     for (int i = 0; i < a->links; i++) {
         spari_link_find(a->link + i, 0, 0, 1);
@@ -330,12 +262,9 @@ static int start_all(spari_assembly *a) {
     singular = singular || project(a, 0, 0);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
         start_residual(a, cm);
-        singular = solve(a, 0);
+        singular = spari_tied_solve(a, 0);
         for (int i = 0; i < a->limbs && !singular; i++) {
-            spari_solver *s = a->limb[i].solver;
-            for (int n = 0; n < 6 * s->n; n++) {
-                s->begin.a[n] -= cm * s->dx[n];
-            }
+            a->limb[i].row->correct_start(a->limb + i);
         }
         for (int i = 0; i < a->links; i++) {
             for (int n = 0; n < 6; n++) {
@@ -349,16 +278,7 @@ static int start_all(spari_assembly *a) {
                   "mass or rotary inertia to every direction in which they can move freely",
                   a->link[0].joint->name);
     for (int i = 0; i < a->limbs; i++) {
-        const spar_member *m = a->limb[i].member;
-        spari_solver *s = a->limb[i].solver;
-        const double *acceleration = s->begin.a;
-        if (s->own[0].q) {
-            const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
-            spari_root_look_from(s, m, &root, &s->begin, &s->own[0]);
-            acceleration = s->own[0].a;
-        }
-        memcpy(s->begin.b, acceleration, (size_t)(6 * s->n) * sizeof *s->begin.b);
-        s->steps.started = 1;
+        a->limb[i].row->end_start(a->limb + i);
     }
     for (int i = 0; i < a->links; i++) {
         spari_joint_balance(a->link[i].joint);
@@ -368,59 +288,20 @@ static int start_all(spari_assembly *a) {
 
 /* ---- the step ---- */
 
-static void swap_ends(spari_state *a, spari_state *b) {
-    spari_state t = *a;
-    *a = *b;
-    *b = t;
-}
-
-static void begin_substep(spari_limb *p, int k, int substeps, double dt, double ratio) {
-    const spar_member *m = p->member;
-    spari_solver *s = p->solver;
-    double f = (double)k / substeps, back[4];
-    swap_ends(&s->from, &s->to);
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->steps.load[i] = (1 - f) * s->steps.load0[i] + f * s->steps.load1[i];
-    }
-    spari_scheme_begin_added(m, f, s->steps.load);
-    if (s->arms) {
-        spari_arms_at(s->arms, f);
-    }
-    p->root = spari_drive_at(m, f, dt);
-    p->turn[0] = 1;
-    memset(p->turn + 1, 0, 3 * sizeof *p->turn);
-    if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_conj(p->before.q + 3, back);
-        spari_quat_mul(p->root.q + 3, back, p->turn);
-    }
-    p->ends = spari_root_ends(s, m, &p->scheme, &p->root, k == 1 ? ratio : 1, &s->from, &s->to);
-    p->state = &p->ends.seen;
-}
-
-static void end_substep(spari_limb *p, double *power) {
-    spar_member *m = p->member;
-    p->before = p->root;
-    m->dissipated_step += 0.5 * p->scheme.h * (*power + p->solver->power);
-    *power = p->solver->power;
-}
-
 /* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
    which are off them by dt^2: with velocities put onto them the accelerations, and so the joints' loads, would be of
    first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
  */
 static int publish_all(spari_assembly *a, double dt) {
-    int singular = 0, moves = !a->limb[0].scheme.still;
+    int moves = !a->limb[0].scheme.still;
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        memcpy(s->best, a->limb[i].ends.to.v, (size_t)(6 * s->n) * sizeof *s->best);
+        a->limb[i].row->keep_rates(a->limb + i, 0);
     }
-    singular = moves && project(a, 1, dt);
+    int singular = moves && project(a, 1, dt);
     for (int i = 0; i < a->limbs; i++) {
         spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
         p->member->row->publish(p->member);
-        memcpy(p->ends.to.v, s->best, (size_t)(6 * s->n) * sizeof *s->best);
-        spari_root_show(p->solver, p->member, &p->ends);
+        p->row->keep_rates(p, 1);
     }
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
                   "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take a "
@@ -453,29 +334,18 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
     }
     int A = a->session->substeps, started = 1;
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        p->member->row->take_loads(p->member);
-        p->scheme = spari_scheme_of(p->member, s->body->D != NULL, dt / A);
-        started = started && s->steps.started;
+        started = a->limb[i].row->take(a->limb + i, dt / A) && started;
     }
     begin_links(a);
     if (!started && !a->limb[0].scheme.still) {
         SPARI_TRY(start_all(a));
     }
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-        p->before = p->member->drive[0];
-        s->steps.h_solved = p->scheme.h;
-        p->member->dissipated_step = 0;
-        p->power = s->power_begin;
+        a->limb[i].row->begin(a->limb + i);
     }
     for (int k = 1; k <= A; k++) {
         for (int i = 0; i < a->limbs; i++) {
-            spari_limb *p = a->limb + i;
-            begin_substep(p, k, A, dt, spari_scheme_ratio(p->solver->steps.h_begin, p->scheme.h));
+            a->limb[i].row->part(a->limb + i, k, A, dt);
         }
         for (int i = 0; i < a->links; i++) {
             spari_joint_drive_at(a->link[i].joint, (double)k / A, dt, &a->link[i].drive);
@@ -486,7 +356,7 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
             return status;
         }
         for (int i = 0; i < a->limbs; i++) {
-            end_substep(a->limb + i, &a->limb[i].power);
+            a->limb[i].row->end(a->limb + i);
         }
     }
     return publish_all(a, dt);

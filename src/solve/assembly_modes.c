@@ -90,7 +90,7 @@ static int gather_parts(tied_modes *t, const spar_member *first) {
         for (const spar_joint *j = s->joints; j; j = j->next) {
             for (int side = 0; side < 2; side++) {
                 const spar_member *other = j->member[1 - side];
-                if (j->member[side] == t->part[i].member && other && other->row->solver && !modal_part_of(t, other)) {
+                if (j->member[side] == t->part[i].member && other && other->row->limb && !modal_part_of(t, other)) {
                     SPARI_TRY(add_modal_part(t, other));
                 }
             }

@@ -49,7 +49,7 @@ enum { KEPT_HEAD = 2, TURNING = 144 };
 static int64_t kept_size(const spari_assembly *a) {
     int64_t n = KEPT_HEAD + (int64_t)TURNING * a->links;
     for (int i = 0; i < a->limbs; i++) {
-        n += spari_condensed_state_size(a->limb[i].solver->condensed);
+        n += spari_condensed_state_size(a->limb[i].condensed);
     }
     return n;
 }
@@ -63,8 +63,8 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     state[1] = a->limbs;
     state += KEPT_HEAD;
     for (int i = 0; i < a->limbs && a->factored; i++) {
-        spari_condensed_save(a->limb[i].solver->condensed, state);
-        state += spari_condensed_state_size(a->limb[i].solver->condensed);
+        spari_condensed_save(a->limb[i].condensed, state);
+        state += spari_condensed_state_size(a->limb[i].condensed);
     }
     for (int i = 0; i < a->links && a->factored; i++, state += TURNING) {
         memcpy(state, a->link[i].turning, sizeof a->link[i].turning);
@@ -80,7 +80,7 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored = state ? (int)state[0] : 0;
     state = state ? state + KEPT_HEAD : NULL;
     for (int i = 0; i < a->limbs && a->factored; i++) {
-        spari_condensed *c = a->limb[i].solver->condensed;
+        spari_condensed *c = a->limb[i].condensed;
         spari_condensed_load(c, spari_member_held(a->limb[i].member), state);
         state += spari_condensed_state_size(c);
     }

@@ -3,14 +3,10 @@
 #include "assembly.h"
 
 #include "../base/scene.h"
-#include "../math/rotation.h"
-#include "../member/applied.h"
-#include "alpha.h"
-#include "arms.h"
-#include "fidelity.h"
 #include "tied.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,20 +19,7 @@ static const double loose = 1e-13;
 static double balance_at_rest(spari_assembly *a, double f, double *noise) {
     double scale = 0;
     for (int i = 0; i < a->limbs; i++) {
-        spar_member *m = a->limb[i].member;
-        spari_solver *s = a->limb[i].solver;
-        scale = fmax(scale, spari_body_residual(s->body, s->to.q, NULL, NULL, f, s->r, NULL));
-        for (int k = 0; k < 6 * s->n; k++) {
-            s->r[k] -= f * s->steps.load[k];
-            scale = fmax(scale, fabs(f * s->steps.load[k]));
-        }
-        if (spari_solver_has_applied(s, m)) {
-            scale = fmax(scale, spari_applied_residual(m, s->to.q, f, s->r));
-        }
-        if (s->arms) {
-            spari_arms_at(s->arms, f);
-            spari_arms_residual(s->arms, s->to.q + 3, s->r + 3);
-        }
+        scale = fmax(scale, a->limb[i].row->balance_rest(a->limb + i, f));
     }
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
@@ -51,11 +34,9 @@ static double balance_at_rest(spari_assembly *a, double f, double *noise) {
     spari_links_add(a);
     *noise = 0;
     for (int i = 0; i < a->limbs; i++) {
-        const spari_solver *s = a->limb[i].solver;
-        for (int k = 0; k < 6 * s->n; k++) {
-            *noise = fmax(*noise, fabs(s->r[k]));
-            scale += 0 * s->r[k];
-        }
+        double left = a->limb[i].row->noise(a->limb + i);
+        *noise = fmax(*noise, left);
+        scale += 0 * left;
     }
     return scale;
 }
@@ -63,12 +44,9 @@ static double balance_at_rest(spari_assembly *a, double f, double *noise) {
 /* Corrections of all parts at rest; 0, or 1 where something is not held. */
 static int solve_at_rest(spari_assembly *a, double f) {
     for (int i = 0; i < a->limbs; i++) {
-        spar_member *m = a->limb[i].member;
-        spari_solver *s = a->limb[i].solver;
-        if (spari_solver_factor(s, m, s->to.q, NULL, NULL, f, 0, 0, NULL)) {
+        if (a->limb[i].row->tangent_rest(a->limb + i, f)) {
             return 1;
         }
-        spari_alpha_turn_back(s, s->to.q, s->r, s->dx);
     }
     spari_tied_keep(a);
     return spari_tied_solve(a, 0);
@@ -78,12 +56,11 @@ static int solve_at_rest(spari_assembly *a, double f) {
 static double shift_parts(spari_assembly *a, double longest, double *cut) {
     double largest = 0;
     for (int i = 0; i < a->limbs; i++) {
-        largest = fmax(largest, spari_alpha_size(a->limb[i].solver, a->limb[i].solver->dx));
+        largest = fmax(largest, a->limb[i].row->change(a->limb + i));
     }
     *cut = largest > longest ? longest / largest : 1;
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        spari_static_shift(s->n, *cut, s->dx, s->to.q);
+        a->limb[i].row->shift(a->limb + i, *cut);
     }
     for (int i = 0; i < a->links; i++) {
         for (int k = 0; k < 6; k++) {
@@ -138,8 +115,7 @@ static int find_rest_at(spari_assembly *a, double f, int *weak) {
 /* The states and multipliers of the last point found. */
 static void keep_point(spari_assembly *a, int back) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, (size_t)(7 * s->n) * sizeof(double));
+        a->limb[i].row->keep_places(a->limb + i, back);
     }
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
@@ -150,15 +126,7 @@ static void keep_point(spari_assembly *a, int back) {
 /* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
 static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        p->member->row->take_rest(p->member, fluid(p->member));
-        if (!onward) {
-            memcpy(s->to.q, s->begin.q, (size_t)(7 * s->n) * sizeof *s->to.q);
-        }
-        memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof *s->to.v);
-        p->state = &s->to;
-        p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+        a->limb[i].row->rest(a->limb + i, fluid(a->limb[i].member), onward);
     }
     for (int i = 0; i < a->links && !onward; i++) {
         a->link[i].joint->after = a->link[i].joint->now;
@@ -191,8 +159,7 @@ static double follow_loads(spari_assembly *a, int load_steps, char *text, int si
 /* Nothing has been found: all is as it was. */
 static int refuse_rest(spari_assembly *a, double done, const char *text) {
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof(double));
+        a->limb[i].row->leave_rest(a->limb + i);
     }
     spari_assembly_leave(a);
     return spari_fail(a->session, SPAR_ERR_NUMERIC,
@@ -224,16 +191,11 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
         done = follow_loads(a, load_steps, text, sizeof text);
     }
     a->factored = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].solver->factored = 0;
-    }
     if (done < 1) {
         return refuse_rest(a, done, text);
     }
     for (int i = 0; i < a->limbs; i++) {
-        spari_solver *s = a->limb[i].solver;
-        memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof(double));
-        a->limb[i].member->row->publish(a->limb[i].member);
+        a->limb[i].row->end_rest(a->limb + i);
     }
     for (int i = 0; i < a->links; i++) {
         memset(a->link[i].joint->after.rate, 0, sizeof a->link[i].joint->after.rate);

@@ -3,6 +3,7 @@
 #include "../member/beam.h"
 #include "eigen.h"
 #include "fidelity.h"
+#include "limb.h"
 #include "reaction.h"
 #include "scheme.h"
 #include "solver.h"
@@ -173,6 +174,7 @@ const spari_fidelity spari_fidelity_exact = {
     .unknowns = exact_unknowns,
     .problem = exact_problem,
     .shape = exact_shape,
+    .limb = &spari_limb_nodes,
     .solver = exact_solver,
     .take_loads = exact_take_loads,
     .take_rest = exact_take_rest,

@@ -60,9 +60,10 @@ typedef struct spari_fidelity {
     int (*problem)(const spar_member *m, double *K, double *M);
     void (*shape)(const spar_member *m, const double *x, double *room, double *nodes);
 
-    /* Of members that joints tie to others, and that are solved with them (assembly.h): the solver of the body, on its
-       owner; what goes into it before a step, and before equilibrium under dead and `fluid` loads; what it has found,
-       into m->after. NULL: joints cannot tie it. */
+    /* Of members that joints tie to others, and that are solved with them (assembly.h): how (limb.h; NULL: joints
+       cannot tie it); what it has found, into m->after; of those whose unknowns are nodes' the solver of the body, on
+       its owner, and what goes into it before a step, and before equilibrium under dead and `fluid` loads. */
+    const struct spari_limb_row *limb;
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
     void (*take_rest)(spar_member *m, const double *fluid);

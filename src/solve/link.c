@@ -75,11 +75,11 @@ void spari_links_add(spari_assembly *a) {
         for (int side = 0; side < 2; side++) {
             spari_limb *p = l->limb[side];
             for (int k = 0; k < 6 && p; k++) {
-                p->solver->r[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+                p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
             }
         }
     }
     for (int i = 0; i < a->limbs; i++) {
-        memset(a->limb[i].solver->r, 0, (size_t)spari_member_held(a->limb[i].member) * sizeof(double));
+        memset(a->limb[i].force, 0, (size_t)spari_member_held(a->limb[i].member) * sizeof(double));
     }
 }

@@ -7,6 +7,7 @@
 #include "carried.h"
 #include "eigen.h"
 #include "fidelity.h"
+#include "limb.h"
 #include "reaction.h"
 #include "turn.h"
 
@@ -298,6 +299,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .unknowns = rigid_unknowns,
     .problem = rigid_problem,
     .shape = rigid_shape,
+    .limb = &spari_limb_nodes,
     .solver = solver_of,
     .take_loads = rigid_take_loads,
     .take_rest = rigid_take_rest,

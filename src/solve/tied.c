@@ -21,24 +21,14 @@ static int unknown_of_link(const spari_link *l, int k) {
     if (!l->limb[side]) {
         return -1;
     }
-    const spari_condensed *c = l->limb[side]->solver->condensed;
+    const spari_condensed *c = l->limb[side]->condensed;
     int own = 6 * l->joint->unique[side] + k % 6;
     return own < c->fixed ? -1 : l->at[side] + k % 6;
 }
 
-/* How the node at unknown `unique` of a part has turned since its tangent was formed; NULL: its axes stand. */
-static const double *turn_of(const spari_limb *p, int unique) {
-    return p->solver->body->linear[0] ? NULL : p->solver->turn + 4 * unique;
-}
-
 static const double *turn_of_side(const spari_link *l, int side) {
-    return l->limb[side] ? turn_of(l->limb[side], l->joint->unique[side]) : NULL;
-}
-
-static void turn_three(const double *turn, double x[3]) {
-    if (turn) {
-        spari_rotate(turn, x, x);
-    }
+    const spari_limb *p = l->limb[side];
+    return p ? p->row->turn(p, l->joint->unique[side]) : NULL;
 }
 
 /* K [3][3] of row stride `stride` := R(row) K R(column)^T */
@@ -91,7 +81,7 @@ static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
 }
 
 static void add_part(spari_assembly *a, const spari_limb *p) {
-    const spari_condensed *c = p->solver->condensed;
+    const spari_condensed *c = p->condensed;
     int m = 6 * c->ends;
     for (int i = 0; i < m; i += 3) {
         for (int j = 0; j < m; j += 3) {
@@ -99,7 +89,7 @@ static void add_part(spari_assembly *a, const spari_limb *p) {
             for (int k = 0; k < 9; k++) {
                 K[k] = c->K[m * (i + k / 3) + j + k % 3];
             }
-            turn_block(turn_of(p, c->node[i / 6]), turn_of(p, c->node[j / 6]), 3, K);
+            turn_block(p->row->turn(p, c->node[i / 6]), p->row->turn(p, c->node[j / 6]), 3, K);
             for (int k = 0; k < 9; k++) {
                 *entry_at(a, p->at + i + k / 3, p->at + j + k % 3) += K[k];
             }
@@ -163,6 +153,13 @@ static int factor_system(spari_assembly *a) {
 
 int spari_tied_solve(spari_assembly *a, double cv) {
     size_t band = (size_t)a->band;
+    /* first: it says how the parts have turned, which the system goes by */
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->row->reduce(p, a->x + p->at)) {
+            return 1;
+        }
+    }
     if (!a->standing || fabs(a->cv - cv) > 0) {
         a->standing = 0;
         fill_system(a, cv);
@@ -170,19 +167,6 @@ int spari_tied_solve(spari_assembly *a, double cv) {
             return 1;
         }
         a->standing = 1, a->cv = cv, a->moved = 0;
-    }
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        if (spari_condensed_reduce(s->condensed, s->linear, s->dx)) {
-            return 1;
-        }
-        for (int e = 0; e < s->condensed->ends; e++) {
-            double *x = a->x + p->at + 6 * e;
-            memcpy(x, s->dx + 6 * s->condensed->node[e], 6 * sizeof *x);
-            turn_three(turn_of(p, s->condensed->node[e]), x);
-            turn_three(turn_of(p, s->condensed->node[e]), x + 3);
-        }
     }
     for (int i = 0; i < a->links; i++) {
         const spari_link *l = a->link + i;
@@ -198,19 +182,8 @@ int spari_tied_solve(spari_assembly *a, double cv) {
         return 1;
     }
     for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
-        spari_solver *s = p->solver;
-        for (int e = 0; e < s->condensed->ends; e++) {
-            double back[4], *x = a->x + p->at + 6 * e;
-            const double *turn = turn_of(p, s->condensed->node[e]);
-            if (turn) {
-                spari_quat_conj(turn, back);
-                turn_three(back, x);
-                turn_three(back, x + 3);
-            }
-            memcpy(s->dx + 6 * s->condensed->node[e], x, 6 * sizeof *x);
-        }
-        spari_condensed_expand(s->condensed, s->dx);
+        spari_limb *p = a->limb + i;
+        p->row->expand(p, a->x + p->at);
     }
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
@@ -249,7 +222,7 @@ static int free_motion(spari_assembly *a) {
     a->standing = 0;
     fill_system(a, 0);
     for (int i = 0; i < a->limbs; i++) {
-        for (int k = 0; k < 6 * a->limb[i].solver->condensed->ends; k++) {
+        for (int k = 0; k < 6 * a->limb[i].condensed->ends; k++) {
             *entry_at(a, a->limb[i].at + k, a->limb[i].at + k) += 1e-12 * a->scale;
         }
     }
@@ -282,7 +255,7 @@ void spari_tied_name_free(spari_assembly *a, char *text, int size) {
     }
     for (int i = 0; i < a->limbs; i++) {
         const spari_limb *p = a->limb + i;
-        for (int k = 0; k < 6 * p->solver->condensed->ends; k++) {
+        for (int k = 0; k < 6 * p->condensed->ends; k++) {
             double x = fabs(a->x[p->at + k]) * (k % 6 < 3 ? 1 : spari_member_length(p->member));
             if (x > farthest) {
                 farthest = x;
@@ -314,7 +287,7 @@ static void reach(int *band, int i, int j) {
 static int bandwidth(const spari_assembly *a) {
     int band = 1;
     for (int i = 0; i < a->limbs; i++) {
-        reach(&band, 0, 6 * a->limb[i].solver->condensed->ends - 1);
+        reach(&band, 0, 6 * a->limb[i].condensed->ends - 1);
     }
     for (int i = 0; i < a->links; i++) {
         const spari_link *l = a->link + i;
@@ -352,7 +325,7 @@ static int place_of_end(const spari_link *l, int side) {
     if (!p) {
         return -1;
     }
-    const spari_condensed *c = p->solver->condensed;
+    const spari_condensed *c = p->condensed;
     int e = 0;
     while (c->node[e] != l->joint->unique[side]) {
         e++;
@@ -366,7 +339,7 @@ void spari_tied_place(spari_assembly *a) {
     for (int i = 0; i < a->limbs; i++) {
         spari_limb *p = a->limb + i;
         p->at = a->n;
-        a->n += 6 * p->solver->condensed->ends;
+        a->n += 6 * p->condensed->ends;
         for (int k = 0; k < a->links; k++) {
             spari_link *l = a->link + k;
             for (int m = 0; m < 6 && is_placed(l, p); m++) {

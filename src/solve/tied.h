@@ -3,24 +3,10 @@
 #define SPARI_TIED_H
 
 #include "../member/joint.h"
-#include "root.h"
+#include "limb.h"
 
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_vector.h>
-
-/* A member of an assembly that is solved for, and its substep. */
-typedef struct spari_limb {
-    spar_member *member;
-    spari_solver *solver;     /* of its body; NULL: another rank solves it */
-    int at;                   /* where the unknowns of its ends begin in the system */
-    const spari_state *state; /* the motion that the links see */
-    spari_scheme scheme;
-    spari_ends ends;
-    spari_pose root, before; /* a driven root at the substep's ends */
-    double turn[4], power;
-    int moved, owner_before; /* while it is made: the rank that had it, and what that kept of it */
-    void *solution_before;
-} spari_limb;
 
 /* A joint of an assembly, as it stands in the system. */
 typedef struct spari_link {
@@ -71,9 +57,9 @@ double spari_tied_weakest(const spari_assembly *a);
 void spari_tied_name_free(spari_assembly *a, char *text, int size);
 /* Keeps what the links' loads add to the tangent, with the parts' tangents as they have just been formed. */
 void spari_tied_keep(spari_assembly *a);
-/* Of the parts' forces in the axes of their tangents, in the solvers' dx, and the links' gaps: dx and `correction` that
-   take both away. The constraints are those of the links as they stand; the parts' tangents, kept, go along with their
-   nodes. cv: as for the tangents. 0 or 1. */
+/* Of the parts' forces and the links' gaps: the parts' corrections and `correction` that take both away. The
+   constraints are those of the links as they stand; the parts' tangents, kept, go along with their nodes. cv: as for
+   the tangents. 0 or 1. */
 int spari_tied_solve(spari_assembly *a, double cv);
 /* Takes out of the joints' holds what others say already, with a word to the log; the links' B are those of the
    reference. 0, or SPAR_ERR_MEMORY. */
