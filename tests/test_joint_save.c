@@ -6,6 +6,7 @@
 
 enum { MEMBERS = 4, JOINTS = 5, NODES = 8 };
 
+static int kind = SPAR_FIDELITY_EXACT; /* of the wing; one below exact is welded to the ground by its free root */
 static const double rest[4] = {1, 0, 0, 0}, step = 0.03;
 static const char file[] = "test_joint_save.spar";
 
@@ -38,11 +39,17 @@ static void create(scene *c, int way) {
     scene_diagonal(K, 4e4, 4e4, 4e4, 800, 600, 600);
     scene_diagonal(M, 1, 1, 1, 0.02, 0.01, 0.01);
     c->member[0] = scene_beam(s, "wing", 2, NODES / 2, 4, K, M);
+    OK(s, spar_member_set_fidelity(c->member[0], kind, 20));
+    OK(s, spar_member_set_root(c->member[0], kind == SPAR_FIDELITY_EXACT ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE));
     OK(s, spar_member_commit(c->member[0]));
     c->member[1] = body_at(s, "flap", tip);
     c->member[2] = body_at(s, "rotor", hub);
     c->member[3] = body_at(s, "mass", end);
     spring[28] = 40;
+    if (kind != SPAR_FIDELITY_EXACT) {
+        spar_joint *foot = NULL;
+        OK(s, spar_joint_create(s, "foot", c->member[0], 0, NULL, 0, 0, &foot));
+    }
     OK(s, spar_joint_create(s, way == OTHER_NAME ? "flap" : "hinge", c->member[1], 0, c->member[0],
                             way == OTHER_NODE ? 5 : 7, way == OTHER_MASK ? SPAR_FREE_RY | SPAR_FREE_RX : SPAR_FREE_RY,
                             &c->joint[0]));
@@ -191,6 +198,16 @@ static void test_after_rest(void **state) {
     remove(file);
 }
 
+/* The same of wings that are linear or modal, whose root is tied and so is their tip. */
+static void test_lower_fidelities(void **state) {
+    for (kind = SPAR_FIDELITY_LINEAR; kind <= SPAR_FIDELITY_MODAL; kind++) {
+        test_resume(state);
+        test_within_a_step(state);
+        test_after_rest(state);
+    }
+    kind = SPAR_FIDELITY_EXACT;
+}
+
 /* Joints described otherwise: refused, with the name, and all is as it was. */
 static void test_of_another_session(void **state) {
     (void)state;
@@ -222,6 +239,7 @@ static void test_of_another_session(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_resume), cmocka_unit_test(test_within_a_step),
-                                       cmocka_unit_test(test_after_rest), cmocka_unit_test(test_of_another_session)};
+                                       cmocka_unit_test(test_after_rest), cmocka_unit_test(test_lower_fidelities),
+                                       cmocka_unit_test(test_of_another_session)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

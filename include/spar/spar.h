@@ -440,10 +440,15 @@ SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
                  of second order in the deformation (shortening of a bent beam; moments of loads on displaced arms),
                  stiffening by other loads. One factorisation as long as dt and the root's turning speed, in its own
                  axes, do not change. Free or pinned root: linear about the reference, LARGE_ROTATION is off; nothing
-                 holds such a beam for solve_static
+                 holds such a beam for solve_static. Where joints tie it the root may be free or pinned and turn as far
+                 as it likes: the deformation is linear as seen from the root's node, wherever that goes, whatever
+                 LARGE_ROTATION says; of the stiffening that along the line counts, by the member's own inertia
      modal       as linear, with the lowest `modes` modes of the beam with its root held; of a free or pinned beam those
                  it has so, of which the first 6 or 3 move it as a rigid body. Initial deformation is brought to the
-                 nearest one that the modes have
+                 nearest one that the modes have. Where joints tie it: the 6 or 3 rigid motions of its root, and modes
+                 with the root and all other tied nodes held; each of these other nodes brings six shapes of its own, in
+                 which it moves and the rest follows statically (Craig and Bampton), beside the `modes`; more modes than
+                 the other nodes leave are not taken
    Beams only, before commit. Local. At commit SPAR_ERR_ARGUMENT: more modes than the nodes have, or fewer than those 6
    or 3; SPAR_ERR_STATE: linear or modal, free or pinned, with INERTIA off; SPAR_ERR_NUMERIC: fewer modes with mass. */
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
@@ -549,8 +554,8 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    loads at element ends, with Gauss quadrature of P - 1 points in a straight element, the forces (turned to global
    axes) at those points balance the loads to rounding too. Of a linear or modal member, or one with LARGE_ROTATION off,
    strains are those of linear theory, as in its strain energy: of the displacement and rotation vector seen from the
-   root where that is fixed or driven, else from the reference; of a rigid or prescribed one 0. SPAR_ERR_UNSUPPORTED:
-   force of a beam without sections. */
+   root where that is fixed or driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0.
+   SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* Energies of a member, J. */
@@ -624,11 +629,12 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    Members that joints tie are solved together, as one system, on one rank (spar_member_set_owner); members without
    joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
    is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
-   In this release joints tie rigid bodies, rigid and exact beams, points, prescribed beams and external members (these
-   move as they are told, and spar_member_get_loads adds what joints put on them); linear and modal members answer
-   SPAR_ERR_UNSUPPORTED with joints. In a trial, and with advice in force, a beam may have other nodes: its joints stay
-   where they are, at ends of elements; a beam held within an element keeps its nodes. spar_member_solve_static solves
-   for all that a member is tied to; where nothing holds an assembly, the message names the motion that is free. */
+   Joints tie rigid bodies, beams of any fidelity (spar_member_set_fidelity says what a linear or modal one is there),
+   points and external members (points, external members and prescribed beams move as they are told, and
+   spar_member_get_loads adds what joints put on them). In a trial, and with advice in force, a beam may have other
+   nodes: its joints stay where they are, at ends of elements; a beam held within an element keeps its nodes.
+   spar_member_solve_static solves for all that a member is tied to; where nothing holds an assembly, the message names
+   the motion that is free. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied

@@ -50,7 +50,7 @@ void spari_applied_free(spari_applied *a) {
 
 /* Nodal quaternions of an element in one hemisphere; those of a member that is linear stay at the reference. */
 static void element_field(const spar_member *m, const double *q, double z[][4]) {
-    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->floats;
     for (int l = 0; l < m->per_element; l++) {
         const double unit[4] = {1, 0, 0, 0}, *ql = linear ? unit : q + 7 * l + 3;
         double sign = l > 0 && spari_quat_dot(ql, z[l - 1]) < 0 ? -1 : 1;

@@ -48,6 +48,7 @@ struct spar_member {
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* how it moves (solve/fidelity.h); after commit */
     spari_view seen;                  /* likewise */
+    int floats;                       /* seen linear, from a root that is not given: joints tie it */
     int motion_given;                 /* set_motion was called in the step under way */
     int drive_given;                  /* drive_root was called for the step under way or next */
 

@@ -415,7 +415,8 @@ int spar_session_save(const spar_session *session, const char *path) {
     int status = check_call(s, __func__, path);
     status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = put_own(&own, s, __func__);
+    status = spari_members_retie(s);
+    status = status == SPAR_OK ? put_own(&own, s, __func__) : status;
     status = agree(s, status == SPAR_OK && own.failed ? no_memory_for_state(s) : status);
     if (status == SPAR_OK) {
         status = gather_images(s, &own, &all, &first);

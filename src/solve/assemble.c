@@ -216,10 +216,6 @@ static int check_members(const spar_joint *j) {
         const spar_member *m = j->member[side];
         SPARI_REQUIRE(j->session, !m || m->committed, SPAR_ERR_STATE,
                       "joint '%s': member '%s' is not committed; call spar_member_commit first", j->name, m->name);
-        SPARI_REQUIRE(j->session, !m || m->row->limb || !m->row->solved, SPAR_ERR_UNSUPPORTED,
-                      "joint '%s': '%s' is linear or modal; joints tie rigid bodies and rigid or exact beams in this "
-                      "release",
-                      j->name, m->name);
     }
     SPARI_REQUIRE(j->session, j->member[0] != j->member[1] || !j->member[0]->row->whole, SPAR_ERR_ARGUMENT,
                   "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
@@ -232,8 +228,9 @@ static int check_members(const spar_joint *j) {
     return SPAR_OK;
 }
 
-/* A beam that one body carries is held there: a rigid arm leads to the node. */
-static void lead_to_bodies(spar_joint *j) {
+/* A beam that one body carries is held there: a rigid arm leads to the node. Of others the limb knows the nodes that
+   joints tie, in its own order. */
+static void lead_to_limbs(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
         if (is_part(m) && m->row->whole) {
@@ -242,6 +239,9 @@ static void lead_to_bodies(spar_joint *j) {
             for (int k = 0; k < 3; k++) {
                 j->tie.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
             }
+        }
+        if (is_part(m) && m->row->end_of) {
+            j->unique[side] = m->row->end_of(m, j->unique[side]);
         }
     }
 }
@@ -263,11 +263,25 @@ static int gather_all(spar_session *s) {
     return SPAR_OK;
 }
 
+int spari_members_retie(spar_session *s) {
+    for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
+        if (m->committed && m->row->retie) {
+            int status = m->row->retie(m);
+            SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
+            SPARI_TRY(status);
+        }
+    }
+    return SPAR_OK;
+}
+
 int spari_joints_place(spar_session *s) {
     for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
         SPARI_TRY(check_members(j));
+    }
+    SPARI_TRY(spari_members_retie(s));
+    for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
         SPARI_TRY(spari_joint_place(j));
-        lead_to_bodies(j);
+        lead_to_limbs(j);
     }
     return SPAR_OK;
 }

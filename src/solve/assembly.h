@@ -13,6 +13,9 @@
    Before the first step, collective where there are joints; where they are made already it does nothing. call: in whose
    name. */
 int spari_assemblies_make(spar_session *session, const char *call);
+/* What is solved for members that joints tie, made for the joints that there are where it depends on them; where that
+   is done it does nothing. Local; a status and a message. */
+int spari_members_retie(spar_session *session);
 /* Where joints are in the reference, as far as that comes before; local. A status and a message. */
 int spari_joints_place(spar_session *session);
 void spari_assemblies_free(spar_session *session);

@@ -64,6 +64,10 @@ typedef struct spari_fidelity {
        cannot tie it); what it has found, into m->after; of those whose unknowns are nodes' the solver of the body, on
        its owner, and what goes into it before a step, and before equilibrium under dead and `fluid` loads. */
     const struct spari_limb_row *limb;
+    /* every rank: joints have come or changed, m->solution is made anew for them if it depends on them; the node of the
+       limb's that a node of the unknowns is. NULL: it does not; the same */
+    int (*retie)(spar_member *m);
+    int (*end_of)(const spar_member *m, int node);
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
     void (*take_rest)(spar_member *m, const double *fluid);

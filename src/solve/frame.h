@@ -12,6 +12,10 @@
    small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads and
    of the root's acceleration.
 
+   Where joints tie the member (carriage.h) the frame goes with its root whatever holds that: the root's motion is
+   unknown too, and the six equations of force and moment of the whole go with it. There the root's angular acceleration
+   adds E(alpha) x.
+
    The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
    the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
    root, with fewer those of the beam that is free, or pinned, there. */
@@ -34,6 +38,7 @@ typedef struct spari_frame_state {
 typedef struct spari_frame {
     int nodes;                                      /* unique nodes */
     int held;                                       /* of the root's six unknowns, the first that stay zero */
+    struct spari_carriage *carriage;                /* joints tie it; NULL: they do not */
     int elements, block, overlap;                   /* of the matrices */
     int n;                                          /* unknowns, the root's six first */
     int64_t size;                                   /* doubles of one matrix: elements * block * block */
@@ -42,6 +47,8 @@ typedef struct spari_frame {
     double *A;                                      /* the guess of the fluid's added mass, likewise */
     double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
     double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
+    double *S[SPARI_TURNS];                         /* the stretch's stiffness, where it is not in N */
+    double *E[3];                                   /* of the root's angular acceleration, where it is unknown */
     double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
     double omega[3];                                /* what the three sums below were formed for */
     int combined;
@@ -93,8 +100,25 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
 void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
                         double cm, double *S, int *singular);
 
-/* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the lowest
-   modes; those that are free are orthonormal in the norm of the mass. arm [nodes][3] from the root. */
+/* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
+void spari_frame_combine(spari_frame *f, const double omega[3]);
+/* Motion of a node of the unknowns of which the deformation is x, its rates xd and xdd. */
+void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
+                      const double xdd[6], double q[7], double v[6], double a[6]);
+/* The state's motion into m->after. */
+void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state *s);
+/* x [6 nodes] := those of the unknowns y; or y itself, where they are the same. */
+const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
+/* out [n] := nodal loads x [6 nodes], in the frame's axes, on the unknowns. */
+void spari_frame_gather(const spari_frame *f, const double *x, double *out);
+double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
+/* Where a driven root jumps: the state loses the jump. */
+void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                           const spari_frame_state *to);
+
+/* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the shapes of
+   tied nodes, then the lowest modes; those that are free are orthonormal in the norm of the mass, tied nodes' and where
+   those are the rigid ones apart. arm [nodes][3] from the root. */
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols);
 /* The matrices and vectors of the nodes become those of the basis. 1: no memory. */
 int spari_frame_project(spari_frame *f, int cols);

@@ -1,5 +1,5 @@
 /* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
-#include "frame.h"
+#include "carriage.h"
 
 #include "../base/blas.h"
 #include "../base/scene.h"
@@ -117,6 +117,27 @@ static void turn_matrices(const spari_frame *f, const setup *w, const double ome
     }
 }
 
+/* What an angular acceleration adds: d(u-ddot) = alpha x u, and the sections' inertia, turned. */
+static void euler_matrices(const spari_frame *f, const setup *w, const double alpha[3], double *E) {
+    int m = w->m;
+    int64_t mm = (int64_t)m * m;
+    double A[9];
+    spari_skew(alpha, A);
+    memset(w->v, 0, (size_t)(6 * f->nodes) * sizeof *w->v);
+    for (int i = 0; i < f->nodes; i++) {
+        spari_cross(alpha, w->arm + 3 * i, w->a + 6 * i);
+        memcpy(w->a + 6 * i + 3, alpha, 3 * sizeof *alpha);
+    }
+    for (int e = 0; e < w->body->elements; e++) {
+        double *S = w->S[0];
+        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
+        for (int64_t i = 0; i < mm; i++) {
+            E[mm * e + i] = S[i] - f->K[mm * e + i];
+        }
+        times_nodes(m, f->M + mm * e, A, NULL, E + mm * e);
+    }
+}
+
 /* K, D, M: at rest and unloaded the tangent is K + cv D + cm M. */
 static void rest_matrices(const spari_frame *f, const setup *w) {
     int64_t mm = (int64_t)w->m * w->m;
@@ -185,8 +206,20 @@ static void polarise(spari_frame *f) {
     }
 }
 
-/* The stretch s_k = -K^-1 f_k of every product of turns, its stiffness S_k into N, and S_k s_l / 2 into what is counted
-   twice. */
+/* Of a frame that goes with an unknown root: of nodal forces x what is along the line. */
+static void keep_along_line(const spari_frame *f, double *x) {
+    for (int i = 0; i < f->nodes && f->S[0]; i++) {
+        const double *axis = f->carriage->axis + 3 * i;
+        double along = spari_dot(axis, x + 6 * i);
+        for (int k = 0; k < 3; k++) {
+            x[6 * i + k] = along * axis[k];
+            x[6 * i + 3 + k] = 0;
+        }
+    }
+}
+
+/* The stretch s_k = -K^-1 f_k of every product of turns, its stiffness S_k into N, or for itself, and S_k s_l / 2 into
+   what is counted twice. */
 static int stretch_terms(spari_frame *f, const setup *w) {
     int singular = 0, n6 = 6 * f->nodes;
     double *S = spari_zalloc(f->size + SPARI_TURNS * (int64_t)n6, sizeof *S), *s = S + f->size;
@@ -197,12 +230,13 @@ static int stretch_terms(spari_frame *f, const setup *w) {
     for (int k = 0; k < SPARI_TURNS && !singular; k++) {
         double *x = s + (int64_t)k * n6;
         cblas_daxpy(n6, -1, f->f[k], 1, x, 1);
+        keep_along_line(f, x);
         memset(x, 0, 6 * sizeof *x);
         singular = spari_linear_solve(f->linear, x);
     }
     for (int k = 0; k < SPARI_TURNS && !singular; k++) {
         stretch_matrices(f, w, s + (int64_t)k * n6, S);
-        cblas_daxpy((int)f->size, 1, S, 1, f->N[k], 1);
+        cblas_daxpy((int)f->size, 1, S, 1, f->S[k] ? f->S[k] : f->N[k], 1);
         for (int l = 0; l < SPARI_TURNS; l++) { /* those of two kinds come from both */
             spari_frame_add_times(f, S, s + (int64_t)l * n6, 0.5, f->twice[spari_frame_pair_of(k, l)]);
         }
@@ -220,6 +254,9 @@ static int turn_terms(spari_frame *f, const setup *w) {
         turn_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
         rigid_motion(f, w->arm, omega, w->v, w->a);
         spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
+        if (k < 3 && f->E[k]) {
+            euler_matrices(f, w, omega, f->E[k]);
+        }
     }
     polarise(f);
     return stretch_terms(f, w);

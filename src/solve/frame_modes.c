@@ -5,6 +5,7 @@
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "../member/pose.h"
+#include "carriage.h"
 #include "eigen.h"
 
 #include <float.h>
@@ -42,15 +43,15 @@ static void image_of(const spari_frame *f, int cols, int k, double *x, double *i
     spari_frame_add_times(f, f->M, x, 1, image);
 }
 
-/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `held` on before them; a
-   second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
-static int orthonormalise(spari_frame *f, int cols, int from, int end, double *work) {
+/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `first` on before them;
+   a second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
+static int orthonormalise(spari_frame *f, int cols, int first, int from, int end, double *work) {
     int n = 6 * f->nodes;
     double *x = work, *image = work + n;
     for (int k = from; k < end; k++) {
         for (int pass = 0; pass < 2; pass++) {
             image_of(f, cols, k, x, image);
-            for (int j = f->held; j < k; j++) {
+            for (int j = first; j < k; j++) {
                 cblas_daxpy(n, -cblas_ddot(n, f->basis + j, cols, image, 1), f->basis + j, cols, f->basis + k, cols);
             }
         }
@@ -64,15 +65,46 @@ static int orthonormalise(spari_frame *f, int cols, int from, int end, double *w
     return 0;
 }
 
-/* The lowest modes seen from the root, as columns from 6 on: K z = lambda (M - M R R^T M) z over the nodes beside it,
-   where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
-   deformation. Beams that nothing holds have a singular K, but not here: rigid motions are columns of their own.
-   Solved for 1 / lambda, in which the low modes keep their digits. */
-static int elastic_columns(spari_frame *f, int cols, double *work) {
+static int is_tied(const spari_frame *f, int node) {
+    int found = 0;
+    for (int e = 0; f->carriage && e < f->carriage->ends; e++) {
+        found = found || f->carriage->node[e] == node;
+    }
+    return found;
+}
+
+/* Takes rows and columns of tied nodes out of K and M over the nodes beside the root; how many are left. NULL: no
+   memory. */
+static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **M) {
+    gsl_matrix **both[2] = {K, M};
+    size_t all = (size_t)(6 * f->nodes - 6), n = all - (f->carriage ? (size_t)(6 * f->carriage->ends) : 0);
+    for (int side = 0; side < 2 && n < all; side++) {
+        gsl_matrix *from = *both[side], *to = n > 0 ? gsl_matrix_alloc(n, n) : NULL;
+        size_t r = 0;
+        for (int i = 6; i < 6 * f->nodes && to; i++) {
+            size_t c = 0;
+            for (int j = 6; j < 6 * f->nodes && !is_tied(f, i / 6); j++) {
+                if (!is_tied(f, j / 6)) {
+                    gsl_matrix_set(to, r, c++, gsl_matrix_get(from, (size_t)(i - 6), (size_t)(j - 6)));
+                }
+            }
+            r += !is_tied(f, i / 6);
+        }
+        gsl_matrix_free(from);
+        *both[side] = to;
+    }
+    return n;
+}
+
+/* The lowest modes seen from the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes beside
+   it, where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
+   deformation. Nodes that joints tie are held too. Beams that nothing holds have a singular K, but not here: rigid
+   motions are columns of their own. Solved for 1 / lambda, in which the low modes keep their digits. */
+static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
     size_t n = (size_t)(6 * f->nodes - 6);
-    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = gsl_matrix_alloc(n, n);
-    gsl_vector *mu = gsl_vector_alloc(n);
-    int status = K && M && z && mu ? SPAR_OK : SPAR_ERR_MEMORY;
+    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = NULL;
+    gsl_vector *mu = NULL;
+    int status = K && M ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         double *x = work, *image = work + 6 * f->nodes;
         assemble_dense(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
@@ -82,15 +114,17 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
             gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
             gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
         }
-        status = spari_eigen(M, K, mu, z);
+        n = leave_out_tied(f, &K, &M);
+        z = gsl_matrix_alloc(n, n);
+        mu = gsl_vector_alloc(n);
+        status = K && M && z && mu ? spari_eigen(M, K, mu, z) : SPAR_ERR_MEMORY;
     }
-    if (status == SPAR_OK) {
-        for (int k = 6; k < cols; k++) {
-            int massive = gsl_vector_get(mu, (size_t)(k - 6)) > DBL_EPSILON * gsl_vector_get(mu, 0);
-            status = massive ? status : SPAR_ERR_NUMERIC;
-            for (size_t i = 0; i < n; i++) {
-                f->basis[(6 + i) * (size_t)cols + (size_t)k] = gsl_matrix_get(z, i, (size_t)(k - 6));
-            }
+    for (int k = first; k < cols && status == SPAR_OK; k++) {
+        size_t mode = (size_t)(k - first), at = 0;
+        int massive = gsl_vector_get(mu, mode) > DBL_EPSILON * gsl_vector_get(mu, 0);
+        status = massive ? status : SPAR_ERR_NUMERIC;
+        for (int i = 6; i < 6 * f->nodes; i++) {
+            f->basis[(size_t)i * (size_t)cols + (size_t)k] = is_tied(f, i / 6) ? 0 : gsl_matrix_get(z, at++, mode);
         }
     }
     gsl_matrix_free(K);
@@ -100,15 +134,52 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
     return status;
 }
 
+/* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
+static int tied_columns(spari_frame *f, int cols, double *work) {
+    int ends = f->carriage ? f->carriage->ends : 0, n = 6 * f->nodes;
+    double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
+    if (!column) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_linear_zero(f->linear);
+    for (int e = 0; e < f->elements && ends > 0; e++) {
+        spari_linear_add(f->linear, e, f->K + (int64_t)f->block * f->block * e);
+    }
+    for (int k = 0; k < 6 * ends; k++) {
+        spari_linear_read(f->linear, 6 * f->carriage->node[k / 6] + k % 6, work, column + (int64_t)n * k);
+    }
+    for (int i = 0; i < n && ends > 0; i++) {
+        if (i < 6 || is_tied(f, i / 6)) {
+            spari_linear_fix(f->linear, i);
+        }
+    }
+    int singular = ends > 0 && spari_linear_factor(f->linear);
+    for (int k = 0; k < 6 * ends && !singular; k++) {
+        double *x = column + (int64_t)n * k;
+        for (int i = 0; i < n; i++) {
+            x[i] = i < 6 || is_tied(f, i / 6) ? 0 : -x[i];
+        }
+        singular = spari_linear_solve(f->linear, x);
+        x[6 * f->carriage->node[k / 6] + k % 6] = 1;
+        cblas_dcopy(n, x, 1, f->basis + 6 + k, cols);
+    }
+    free(column);
+    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
+    int first = f->carriage ? 6 + 6 * f->carriage->ends : 6, alone = f->carriage ? first : f->held;
     f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
     int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         rigid_columns(f, arm, cols);
-        status = orthonormalise(f, cols, f->held, 6, work) ? SPAR_ERR_NUMERIC : elastic_columns(f, cols, work);
+        status = orthonormalise(f, cols, f->held, f->held, 6, work) ? SPAR_ERR_NUMERIC : tied_columns(f, cols, work);
     }
-    if (status == SPAR_OK && orthonormalise(f, cols, 6, cols, work)) {
+    if (status == SPAR_OK && cols > first) {
+        status = elastic_columns(f, cols, first, work);
+    }
+    if (status == SPAR_OK && orthonormalise(f, cols, alone, first, cols, work)) {
         status = SPAR_ERR_NUMERIC;
     }
     free(work);
@@ -148,12 +219,14 @@ static void no_strain(const spari_frame *f, double *X) {
 
 int spari_frame_project(spari_frame *f, int cols) {
     int bad = 0;
-    double **all[4 + SPARI_TURNS + 3] = {&f->K, &f->M, &f->D, &f->A};
+    double **all[4 + 2 * SPARI_TURNS + 6] = {&f->K, &f->M, &f->D, &f->A};
     for (int k = 0; k < SPARI_TURNS; k++) {
         all[4 + k] = &f->N[k];
+        all[10 + SPARI_TURNS + k] = &f->S[k];
     }
     for (int k = 0; k < 3; k++) {
         all[4 + SPARI_TURNS + k] = &f->G[k];
+        all[7 + SPARI_TURNS + k] = &f->E[k];
     }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
@@ -185,21 +258,27 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
     const spari_pose pose = spari_member_pose(m, &m->after);
     double omega[3];
     spari_rotate_back(pose.q + 3, pose.v + 3, omega);
-    assemble_dense(f, f->K, 1, f->held, K);
-    assemble_dense(f, f->M, 1, f->held, M);
+    int held = spari_member_held(m);
+    assemble_dense(f, f->K, 1, held, K);
+    assemble_dense(f, f->M, 1, held, M);
     for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
-        assemble_dense(f, f->N[k], omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]], f->held, K);
+        double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+        assemble_dense(f, f->N[k], c, held, K);
+        if (f->S[k]) {
+            assemble_dense(f, f->S[k], c, held, K);
+        }
     }
 }
 
 void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
     const spari_pose pose = spari_member_pose(m, &m->after);
+    int held = spari_member_held(m);
     memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
     if (f->basis) {
-        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - f->held, 1, f->basis + f->held, f->n,
-                               x, 1, 0, nodes, 1));
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - held, 1, f->basis + held, f->n, x, 1,
+                               0, nodes, 1));
     } else {
-        memcpy(nodes + f->held, x, (size_t)(f->n - f->held) * sizeof *nodes);
+        memcpy(nodes + held, x, (size_t)(f->n - held) * sizeof *nodes);
     }
     for (int i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate(pose.q + 3, nodes + i, nodes + i);

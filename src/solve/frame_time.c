@@ -8,6 +8,7 @@
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/pose.h"
+#include "carriage.h"
 #include "drive.h"
 #include "turn.h"
 
@@ -39,7 +40,7 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
     }
     /* modal: the nearest in the norm of the mass, Phi^T M x; M of the nodes is gone, but the body has it as forces of
      * accelerations at the reference */
-    const double *in[2] = {x, xd};
+    double *in[2] = {x, xd};
     double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
            *force = zero + 6 * (int64_t)f->nodes;
     memset(still, 0, (size_t)(13 * f->nodes) * sizeof *still);
@@ -47,81 +48,86 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
         still[7 * i + 3] = 1;
     }
     for (int k = 0; k < 2; k++) {
+        int first = f->carriage ? spari_carriage_split(f, in[k], out[k]) : f->held;
         spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
-        SPARI_BLAS(
-            cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, force, 1, 0, out[k], 1));
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n - first, 1, f->basis + first, f->n, force,
+                               1, 0, out[k] + first, 1));
         memset(out[k], 0, (size_t)f->held * sizeof *y);
     }
 }
 
-/* The nodes' motion q, v, a [unique] of a state; rotations of the nodes follow their rotation vectors exactly, second
- * derivatives to first order. */
-static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
-                     double *a) {
-    int64_t n6 = 6 * (int64_t)f->nodes;
-    const double *x[3] = {s->y, s->v, s->a};
-    for (int k = 0; k < 3 && f->basis; k++) {
-        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, (int)n6, f->n, 1, f->basis, f->n, x[k], 1, 0,
-                               f->nodal + k * n6, 1));
-        x[k] = f->nodal + k * n6;
-    }
-    const spari_pose *root = &s->root;
-    double omega[3], alpha[3];
+/* Rotations of the nodes follow their rotation vectors exactly, second derivatives to first order. */
+void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
+                      const double xdd[6], double q[7], double v[6], double a[6]) {
+    double omega[3], alpha[3], arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
-    for (int i = 0; i < f->nodes; i++) {
-        const double *w = x[0] + 6 * i, *wd = x[1] + 6 * i, *wdd = x[2] + 6 * i;
-        double arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
-        double *qn = q + 7 * i, *vn = v + 6 * i, *an = a + 6 * i;
-        spari_member_arm(m, i, arm);
-        for (int k = 0; k < 3; k++) {
-            d[k] = arm[k] + w[k];
-        }
-        spari_quat_exp(w + 3, p);
-        spari_quat_mul(root->q + 3, p, qn + 3);
-        spari_quat_normalise(qn + 3);
-        spari_tangent(w + 3, T);
-        matvec3(T, wd + 3, spin);
-        matvec3(T, wdd + 3, twice);
-        spari_cross(omega, d, c1);
-        for (int k = 0; k < 3; k++) {
-            vn[k] = c1[k] + wd[k];
-            vn[3 + k] = omega[k] + spin[k];
-            c1[k] += 2 * wd[k]; /* omega x (omega x d + 2 w') */
-        }
-        spari_cross(omega, c1, c2);
-        spari_cross(alpha, d, c3);
-        for (int k = 0; k < 3; k++) {
-            an[k] = c2[k] + c3[k] + wdd[k];
-        }
-        spari_cross(omega, spin, c1);
-        for (int k = 0; k < 3; k++) {
-            an[3 + k] = alpha[k] + twice[k] + c1[k];
-        }
-        spari_rotate(root->q + 3, d, d);
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate(root->q + 3, vn + k, vn + k);
-            spari_rotate(root->q + 3, an + k, an + k);
-        }
-        for (int k = 0; k < 3; k++) {
-            qn[k] = d[k] - arm[k] + root->q[k];
-            vn[k] += root->v[k];
-            an[k] += root->a[k];
-        }
+    spari_member_arm(m, node, arm);
+    for (int k = 0; k < 3; k++) {
+        d[k] = arm[k] + x[k];
+    }
+    spari_quat_exp(x + 3, p);
+    spari_quat_mul(root->q + 3, p, q + 3);
+    spari_quat_normalise(q + 3);
+    spari_tangent(x + 3, T);
+    matvec3(T, xd + 3, spin);
+    matvec3(T, xdd + 3, twice);
+    spari_cross(omega, d, c1);
+    for (int k = 0; k < 3; k++) {
+        v[k] = c1[k] + xd[k];
+        v[3 + k] = omega[k] + spin[k];
+        c1[k] += 2 * xd[k]; /* omega x (omega x d + 2 w') */
+    }
+    spari_cross(omega, c1, c2);
+    spari_cross(alpha, d, c3);
+    for (int k = 0; k < 3; k++) {
+        a[k] = c2[k] + c3[k] + xdd[k];
+    }
+    spari_cross(omega, spin, c1);
+    for (int k = 0; k < 3; k++) {
+        a[3 + k] = alpha[k] + twice[k] + c1[k];
+    }
+    spari_rotate(root->q + 3, d, d);
+    for (int k = 0; k < 6; k += 3) {
+        spari_rotate(root->q + 3, v + k, v + k);
+        spari_rotate(root->q + 3, a + k, a + k);
+    }
+    for (int k = 0; k < 3; k++) {
+        q[k] = d[k] - arm[k] + root->q[k];
+        v[k] += root->v[k];
+        a[k] += root->a[k];
     }
 }
 
-static void publish(spari_frame *f, spar_member *m, const spari_frame_state *s, spari_motion *to) {
+const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x) {
+    if (!f->basis) {
+        return y;
+    }
+    SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, y, 1, 0, x, 1));
+    return x;
+}
+
+/* The nodes' motion q, v, a [unique] of a state */
+static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
+                     double *a) {
+    int64_t n6 = 6 * (int64_t)f->nodes;
+    const double *x = spari_frame_nodal(f, s->y, f->nodal), *xd = spari_frame_nodal(f, s->v, f->nodal + n6),
+                 *xdd = spari_frame_nodal(f, s->a, f->nodal + 2 * n6);
+    for (int i = 0; i < f->nodes; i++) {
+        spari_frame_node(m, &s->root, i, x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
+    }
+}
+
+void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state *s) {
     int64_t n = f->nodes;
     double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
     to_nodes(f, m, s, q, v, a);
-    spari_member_publish(m, q, v, a, to);
+    spari_member_publish(m, q, v, a, &m->after);
 }
 
 /* ---- time ---- */
 
-/* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
-static void combine(spari_frame *f, const double omega[3]) {
+void spari_frame_combine(spari_frame *f, const double omega[3]) {
     double change[3] = {omega[0] - f->omega[0], omega[1] - f->omega[1], omega[2] - f->omega[2]};
     if (f->combined && spari_norm(change) <= 1e-13 * spari_norm(omega)) {
         return;
@@ -158,16 +164,20 @@ static void combine(spari_frame *f, const double omega[3]) {
     }
 }
 
-/* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
-static void turn_loads(const spari_frame *f, const double q[4], double *x, double *out) {
-    for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate_back(q, x + i, x + i);
-    }
+void spari_frame_gather(const spari_frame *f, const double *x, double *out) {
     if (f->basis) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n, 1, f->basis, f->n, x, 1, 0, out, 1));
     } else {
         memcpy(out, x, (size_t)f->n * sizeof *out);
     }
+}
+
+/* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
+static void turn_loads(const spari_frame *f, const double q[4], double *x, double *out) {
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(q, x + i, x + i);
+    }
+    spari_frame_gather(f, x, out);
 }
 
 /* What does not depend on the deformation: r = f + M (rigid acceleration - weight) - loads. Loads that follow depend on
@@ -267,14 +277,17 @@ static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const 
 
 /* Where the root jumps (hosts that give no accelerations, a sudden start) the nodes keep place and velocity: seen from
    it they lose the jump; modal ones to the nearest, in the norm of the mass. */
-static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
-                      const spari_frame_state *to) {
+void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                           const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
     spari_drive_jump(&from->root, &to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
         double *x = rows[s];
-        for (int k = 6; k < f->n && f->basis; k++) {
+        if (f->carriage && f->basis) {
+            spari_carriage_take(f, m, J, x);
+        }
+        for (int k = 6; k < f->n && f->basis && !f->carriage; k++) {
             x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
         }
         for (int i = 1; i < f->nodes && !f->basis; i++) {
@@ -340,11 +353,11 @@ static int solve_substep(spari_frame *f, const spar_member *m, const spari_schem
                          spari_frame_state *from, spari_frame_state *to) {
     double omega[3], last = 0;
     spari_rotate_back(to->root.q + 3, to->root.v + 3, omega);
-    combine(f, omega);
+    spari_frame_combine(f, omega);
     int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     f->factored = same;
     if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
-        take_jump(f, m, c->h, from, to);
+        spari_frame_take_jump(f, m, c->h, from, to);
     }
     if (leaps && leap(f, m, c, from)) {
         return 1;
@@ -395,7 +408,7 @@ static int start_frame(void *self, const spar_member *m, const spari_scheme *c) 
     double omega[3];
     int singular;
     spari_rotate_back(b->root.q + 3, b->root.v + 3, omega);
-    combine(f, omega);
+    spari_frame_combine(f, omega);
     spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, NULL, c->cm, f->element, &singular);
     f->factored = 0;
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
@@ -418,7 +431,7 @@ static void swap_states(spari_frame_state *a, spari_frame_state *b) {
     *b = t;
 }
 
-static double damped_power(spari_frame *f, const spari_frame_state *s) {
+double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s) {
     double power = 0;
     if (f->D) {
         memset(f->r, 0, (size_t)f->n * sizeof *f->r);
@@ -431,7 +444,7 @@ static double damped_power(spari_frame *f, const spari_frame_state *s) {
 static double begin_frame(void *self) {
     spari_frame *f = self;
     copy_state(f, &f->begin, &f->to);
-    return damped_power(f, &f->begin);
+    return spari_frame_damped_power(f, &f->begin);
 }
 
 static int substep_of_frame(void *self, const spar_member *m, const spari_scheme *c, const spari_part *part,
@@ -444,7 +457,7 @@ static int substep_of_frame(void *self, const spar_member *m, const spari_scheme
         f->factored = 0;
         return no_solution(m);
     }
-    *power = damped_power(f, &f->to);
+    *power = spari_frame_damped_power(f, &f->to);
     return SPAR_OK;
 }
 
@@ -452,7 +465,7 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     static const spari_integrand how = {start_frame, begin_frame, substep_of_frame};
     spari_scheme_loads(m, &f->steps);
     SPARI_TRY(spari_scheme_advance(&how, f, &f->steps, 6 * f->nodes, m, m->body->D != NULL, dt));
-    publish(f, m, &f->to, &m->after);
+    spari_frame_publish(f, m, &f->to);
     return SPAR_OK;
 }
 
@@ -482,12 +495,18 @@ int spari_frame_answer(spari_frame *f, const spar_member *m, const double *load,
 
 void spari_frame_accept(spari_frame *f) {
     swap_states(&f->begin, &f->to);
+    if (f->carriage) {
+        spari_solver_accept(f->carriage->root);
+    }
     f->steps.h_begin = f->steps.h_solved;
 }
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
     f->begin.root = spari_member_pose(m, &m->now);
-    if (m->root == SPAR_ROOT_DRIVEN) {
+    if (f->carriage) {
+        spari_carriage_restart(f, m);
+    }
+    if (m->root == SPAR_ROOT_DRIVEN || m->floats) {
         memcpy(f->begin.root.a, m->now.a, sizeof f->begin.root.a);
     }
     memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
@@ -518,7 +537,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
         memset(f->to.root.v, 0, sizeof f->to.root.v);
     }
     spari_rotate_back(f->to.root.q + 3, f->to.root.v + 3, omega);
-    combine(f, omega);
+    spari_frame_combine(f, omega);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
     int singular = factor_step(f, &c);
     f->factored = 0;
@@ -535,7 +554,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
         last = step;
     }
     if (!singular && !failed) {
-        publish(f, m, &f->to, &m->after);
+        spari_frame_publish(f, m, &f->to);
         failed = spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
                  spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
     }
@@ -550,7 +569,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
 enum { STATE_HEAD = 14, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
 int64_t spari_frame_state_size(const spari_frame *f) {
-    return STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n;
+    return STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n + (f->carriage ? spari_carriage_state_size(f, f->factored) : 0);
 }
 
 void spari_frame_save(const spari_frame *f, double *state) {
@@ -560,10 +579,17 @@ void spari_frame_save(const spari_frame *f, double *state) {
     memcpy(state, head, sizeof head);
     memcpy(state + STATE_HEAD, &f->begin.root, sizeof f->begin.root);
     memcpy(state + STATE_HEAD + STATE_ROOT, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
+    if (f->carriage) {
+        spari_carriage_save(f, state + STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n);
+    }
 }
 
 int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
-    return count == spari_frame_state_size(f) && state[0] == f->n;
+    int64_t own = STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n;
+    if (count < own || state[0] != f->n) {
+        return 0;
+    }
+    return f->carriage ? spari_carriage_is_state(f, state + own, count - own, state[1] != 0) : count == own;
 }
 
 /* The kept factors are those of the kept turn and coefficients, to the last bit. */
@@ -571,13 +597,17 @@ void spari_frame_load(spari_frame *f, const double *state) {
     spari_scheme c = {.cm = state[2], .cv = state[3]};
     f->factored = 0;
     f->combined = 0;
-    if (state[1] != 0) {
-        combine(f, state + 11);
+    if (f->carriage) {
+        f->factored = state[1] != 0;
+        f->kept_cm = c.cm, f->kept_cv = c.cv;
+        spari_carriage_load(f, state + STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n);
+    } else if (state[1] != 0) {
+        spari_frame_combine(f, state + 11);
         factor_step(f, &c);
     }
     f->combined = 0;
-    if (state[7] != 0) {
-        combine(f, state + 8);
+    if (state[7] != 0 && !f->carriage) {
+        spari_frame_combine(f, state + 8);
     }
     f->steps.h_begin = state[4], f->steps.h_solved = state[5];
     f->steps.started = state[6] != 0;
@@ -600,7 +630,7 @@ int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
     }
     from_nodes(f, m, &m->after, y, rate);
     energy[1] = half_form(f, f->K, y);
-    if (m->root != SPAR_ROOT_DRIVEN) { /* the frame stands: these are what the equations keep */
+    if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame stands: these are what the equations keep */
         energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;
         for (int k = 0; k < 3 && f->M; k++) {

@@ -251,6 +251,7 @@ static int build_body(spar_member *m) {
 int spari_member_build(spar_member *m) {
     m->row = spari_fidelity_of(m);
     m->seen = m->row->seen;
+    m->floats = 0;
     SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));

@@ -78,7 +78,8 @@ typedef struct spari_limb {
     spari_solver *solver; /* of its body, or of the root of its frame; NULL: another rank solves it */
     struct spari_frame *frame;
     spari_condensed *condensed; /* what remains of it at its ends */
-    double *force;              /* [nodes that links know][6]: what is left on them, global axes */
+    const int *end;             /* which of the nodes that links know its ends are */
+    double *force;              /* [those nodes][6]: what is left on them, global axes */
     int at;                     /* where the unknowns of its ends begin in the system */
     const spari_state *state;   /* the motion that the links see, of those nodes */
     spari_scheme scheme;

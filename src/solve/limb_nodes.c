@@ -53,6 +53,7 @@ static int make_nodes(spari_limb *p) {
     s->condensed = node ? spari_condensed_create(spari_limb_nodes_tied(p->member, node), node, 6 * s->n) : NULL;
     free(node);
     p->condensed = s->condensed;
+    p->end = s->condensed ? s->condensed->node : NULL;
     p->force = s->r;
     return s->condensed ? SPAR_OK : SPAR_ERR_MEMORY;
 }

@@ -69,7 +69,7 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
     double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n, *sum = r + 6 * n, *extra = sum + 6 * m->nodes;
     memset(load, 0, 6 * sizeof *load);
     memset(room, 0, (size_t)spari_reaction_of_whole_room(m) * sizeof *room);
-    int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN;
+    int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
     if (m->body) {
         for (int64_t i = 0; i < n; i++) {
             q[7 * i + 3] = 1;

@@ -89,7 +89,7 @@ static void add_part(spari_assembly *a, const spari_limb *p) {
             for (int k = 0; k < 9; k++) {
                 K[k] = c->K[m * (i + k / 3) + j + k % 3];
             }
-            turn_block(p->row->turn(p, c->node[i / 6]), p->row->turn(p, c->node[j / 6]), 3, K);
+            turn_block(p->row->turn(p, p->end[i / 6]), p->row->turn(p, p->end[j / 6]), 3, K);
             for (int k = 0; k < 9; k++) {
                 *entry_at(a, p->at + i + k / 3, p->at + j + k % 3) += K[k];
             }
@@ -325,9 +325,8 @@ static int place_of_end(const spari_link *l, int side) {
     if (!p) {
         return -1;
     }
-    const spari_condensed *c = p->condensed;
     int e = 0;
-    while (c->node[e] != l->joint->unique[side]) {
+    while (p->end[e] != l->joint->unique[side]) {
         e++;
     }
     return p->at + 6 * e;

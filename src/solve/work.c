@@ -32,7 +32,8 @@ void spari_work_free(spari_work *work) {
 /* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
  */
 static int turns_linearly(const spar_member *m) {
-    return !(m->effects & SPAR_EFFECT_LARGE_ROTATION) || (m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN);
+    return !m->floats && (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) ||
+                          (m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN));
 }
 
 /* Displacement and rotation vector of node i over the step */

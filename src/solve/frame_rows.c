@@ -4,7 +4,10 @@
 #include "../base/scene.h"
 #include "../member/added.h"
 #include "../member/beam.h"
+#include "../member/joint.h"
+#include "carriage.h"
 #include "fidelity.h"
+#include "limb.h"
 #include "reaction.h"
 
 #include <stdlib.h>
@@ -27,7 +30,7 @@ static int carve_states(spari_frame *f) {
 }
 
 static int allocate_matrices(spari_frame *f, const spar_member *m) {
-    int turns = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
+    int turns = (m->root == SPAR_ROOT_DRIVEN || m->floats) && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
     double **matrices[] = {&f->K, &f->M, &f->D, &f->A};
     const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL, m->added != NULL};
     for (int k = 0; k < 4; k++) {
@@ -36,10 +39,12 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
     for (int k = 0; k < SPARI_TURNS; k++) {
         ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
                                (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
+        ok = ok && (!turns || !m->floats || (f->S[k] = spari_zalloc(f->size, sizeof(double))));
         ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
     }
     for (int k = 0; k < 3; k++) {
         ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!turns || !m->floats || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
     }
     for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
         ok = ok && (!turns || (f->twice[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
@@ -79,12 +84,15 @@ static void frame_free(void *solution) {
     }
     for (int k = 0; k < SPARI_TURNS; k++) {
         free(f->N[k]);
+        free(f->S[k]);
         free(f->f[k]);
         free(f->rigid[k]);
     }
     for (int k = 0; k < 3; k++) {
         free(f->G[k]);
+        free(f->E[k]);
     }
+    spari_carriage_free(f->carriage);
     for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
         free(f->twice[k]);
     }
@@ -109,23 +117,33 @@ static double *arms_of(const spar_member *m) {
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
-    int cols = (int)m->modes + f->held;
+    int cols = (int)m->modes + spari_member_held(m);
+    if (f->carriage) {
+        int most = 6 * (f->nodes - 1 - f->carriage->ends);
+        cols = 6 + 6 * f->carriage->ends + (cols - 6 < most ? cols - 6 : most);
+    }
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && f->A) {
         for (int e = 0; e < f->elements; e++) {
             spari_added_tangent(m, e, 1, NULL, f->A + (int64_t)f->block * f->block * e);
         }
     }
+    if (status == SPAR_OK && f->carriage) {
+        status = spari_carriage_keep_pushes(f);
+    }
     if (status == SPAR_OK && m->modes > 0) {
         status = spari_frame_fill_basis(f, arm, cols);
         status = status == SPAR_OK && spari_frame_project(f, cols) ? SPAR_ERR_MEMORY : status;
     }
     free(arm);
-    return status == SPAR_OK && allocate_work(f) ? SPAR_ERR_MEMORY : status;
+    status = status == SPAR_OK && allocate_work(f) ? SPAR_ERR_MEMORY : status;
+    return status == SPAR_OK && f->carriage ? spari_carriage_finish(f, m) : status;
 }
 
 static int frame_create(spar_member *m) {
-    SPARI_REQUIRE(m->session, spari_member_root_is_given(m) || (m->effects & SPAR_EFFECT_INERTIA), SPAR_ERR_STATE,
+    m->floats = spari_member_is_tied(m) && !spari_member_root_is_given(m);
+    SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_given(m) || (m->effects & SPAR_EFFECT_INERTIA),
+                  SPAR_ERR_STATE,
                   "member '%s' is linear without inertia and nothing holds it: fix or drive its root, or leave INERTIA "
                   "on",
                   m->name);
@@ -133,11 +151,12 @@ static int frame_create(spar_member *m) {
     if (!f) {
         return SPAR_ERR_MEMORY;
     }
-    f->held = spari_member_held(m);
+    f->held = m->floats ? 6 : spari_member_held(m);
     f->nodes = m->body->unique;
     f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
-    int status = fill_frame(f, m);
+    int status = spari_member_is_tied(m) ? spari_carriage_create(f, m) : SPAR_OK;
+    status = status == SPAR_OK ? fill_frame(f, m) : status;
     f->factors = 0; /* those of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
                   "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than asked "
@@ -193,7 +212,7 @@ static int frame_energy(const spar_member *m, double energy[4]) {
 
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return f->n - f->held;
+    return f->n - spari_member_held(m);
 }
 
 static int frame_problem(const spar_member *m, double *K, double *M) {
@@ -237,6 +256,38 @@ static void frame_load(spar_member *m, const double *state) {
     spari_frame_load(m->solution, state);
 }
 
+/* Joints have come, or have changed: it is made anew for them. */
+static int frame_retie(spar_member *m) {
+    const spari_frame *f = m->solution;
+    int had = f->carriage != NULL;
+    if (!had && !spari_member_is_tied(m)) {
+        return SPAR_OK;
+    }
+    void *before = m->solution;
+    m->solution = NULL;
+    int floated = m->floats, status = frame_create(m);
+    if (status != SPAR_OK) {
+        frame_free(m->solution);
+        m->solution = before;
+        m->floats = floated;
+        return status;
+    }
+    frame_free(before);
+    if (spari_fidelity_is_here(m)) {
+        frame_restart(m);
+    }
+    return SPAR_OK;
+}
+
+static int frame_end_of(const spar_member *m, int node) {
+    return spari_carriage_end_of(m->solution, node);
+}
+
+static void frame_publish(spar_member *m) {
+    spari_frame *f = m->solution;
+    spari_frame_publish(f, m, &f->to);
+}
+
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
@@ -244,7 +295,8 @@ static void frame_load(spar_member *m, const double *state) {
     .accept = frame_accept, .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, \
     .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
     .shape = frame_shape, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,              \
-    .load = frame_load
+    .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of,                       \
+    .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

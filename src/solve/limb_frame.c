@@ -1,0 +1,451 @@
+/* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
+   one node, and the deformation as generalised-alpha has it of vectors. See limb.h and carriage.h. */
+#include "../base/blas.h"
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "alpha.h"
+#include "carriage.h"
+#include "drive.h"
+#include "fidelity.h"
+#include "limb.h"
+
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <string.h>
+
+static int make_frame(spari_limb *p) {
+    p->frame = p->member->solution;
+    spari_carriage *c = p->frame->carriage;
+    p->solver = c->root;
+    p->condensed = c->condensed;
+    p->end = c->order;
+    p->force = c->force;
+    return SPAR_OK;
+}
+
+static const double *turn_of_frame(const spari_limb *p, int node) {
+    (void)node; /* all go with the root */
+    return p->solver->turn;
+}
+
+static spari_rates deformation_rates(const spari_frame_state *s) {
+    return (spari_rates){s->v + 6, s->a + 6, s->b + 6};
+}
+
+/* The root of the state and what links see of it. */
+static void see_from_root(spari_limb *p, const spari_state *root, spari_frame_state *s) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    s->root = spari_pose_of(root->q, root->v, root->a);
+    memcpy(c->seen.q, root->q, 7 * sizeof(double));
+    memcpy(c->seen.v, root->v, 6 * sizeof(double));
+    memcpy(c->seen.a, root->a, 6 * sizeof(double));
+    for (int e = 1; e <= c->ends; e++) {
+        int at = spari_carriage_at(f, e);
+        spari_frame_node(p->member, &s->root, c->node[e - 1], s->y + at, s->v + at, s->a + at, c->seen.q + 7 * e,
+                         c->seen.v + 6 * e, c->seen.a + 6 * e);
+    }
+    p->state = &c->seen;
+}
+
+static void look_at_end_of_step(spari_limb *p) {
+    see_from_root(p, &p->ends.seen, &p->frame->to);
+}
+
+/* What the forces r leave on the ends, in global axes. */
+static void show_forces(spari_limb *p, const spari_frame_state *s) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    for (int e = 0; e <= c->ends; e++) {
+        memcpy(c->force + 6 * e, f->r + spari_carriage_at(f, e), 6 * sizeof(double));
+    }
+    spari_carriage_push(f, p->member, s->y, c->force);
+    for (int k = 0; k < 6 * (1 + c->ends); k += 3) {
+        spari_rotate(s->root.q + 3, c->force + k, c->force + k);
+    }
+}
+
+/* ---- a step ---- */
+
+static int take_frame(spari_limb *p, double h) {
+    spari_frame *f = p->frame;
+    spari_scheme_loads(p->member, &f->steps);
+    p->scheme = spari_scheme_of(p->member, f->D != NULL, h);
+    return f->steps.started;
+}
+
+static void copy_to(spari_frame *f) {
+    spari_solver *s = f->carriage->root;
+    memcpy(f->to.y, f->begin.y, (size_t)(4 * f->n) * sizeof *f->to.y);
+    f->to.root = f->begin.root;
+    memcpy(s->to.q, s->begin.q, 25 * sizeof *s->to.q);
+}
+
+static void begin_frame_limb(spari_limb *p) {
+    spari_frame *f = p->frame;
+    copy_to(f);
+    p->before = p->member->drive[0];
+    f->steps.h_solved = p->solver->steps.h_solved = p->scheme.h;
+    p->member->dissipated_step = 0;
+    p->power = spari_frame_damped_power(f, &f->begin);
+}
+
+static void part_of_frame(spari_limb *p, int k, int substeps, double dt) {
+    const spar_member *m = p->member;
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    double u = (double)k / substeps, back[4], ratio = k == 1 ? spari_scheme_ratio(f->steps.h_begin, p->scheme.h) : 1;
+    const spari_state t = s->from;
+    const spari_frame_state y = f->from;
+    s->from = s->to, s->to = t;
+    f->from = f->to, f->to = y;
+    for (int i = 0; i < 6 * f->nodes; i++) {
+        f->steps.load[i] = (1 - u) * f->steps.load0[i] + u * f->steps.load1[i];
+    }
+    spari_scheme_begin_added(m, u, f->steps.load);
+    p->root = spari_drive_at(m, u, dt);
+    p->turn[0] = 1;
+    memset(p->turn + 1, 0, 3 * sizeof *p->turn);
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        spari_quat_conj(p->before.q + 3, back);
+        spari_quat_mul(p->root.q + 3, back, p->turn);
+    }
+    p->ends = spari_root_ends(s, m, &p->scheme, &p->root, ratio, &s->from, &s->to);
+    spari_scheme_stretch(ratio, f->n, f->from.a, f->from.b);
+    if (m->root == SPAR_ROOT_DRIVEN && !p->scheme.still) {
+        f->to.root = p->root;
+        spari_frame_take_jump(f, m, p->scheme.h, &f->from, &f->to);
+    }
+    spari_carriage_turn(f, &f->from, p->scheme.h);
+    p->state = &f->carriage->seen;
+}
+
+static void end_frame_limb(spari_limb *p) {
+    double power = spari_frame_damped_power(p->frame, &p->frame->to);
+    p->before = p->root;
+    p->member->dissipated_step += 0.5 * p->scheme.h * (p->power + power);
+    p->power = power;
+}
+
+static void keep_rates_of_frame(spari_limb *p, int back) {
+    spari_frame *f = p->frame;
+    double *kept = f->carriage->kept, *root = p->ends.to.v, *v = f->to.v;
+    memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
+    memcpy(back ? v : kept, back ? kept : v, (size_t)f->n * sizeof *v);
+    if (back) {
+        spari_root_show(p->solver, p->member, &p->ends);
+        look_at_end_of_step(p);
+    }
+}
+
+/* ---- an iteration ---- */
+
+static void predict_frame(spari_limb *p, spari_guess stays) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    double *x = f->dx + 6;
+    int n = f->n - 6;
+    if (p->scheme.still) {
+        spari_alpha_carry(s, p->member, &p->scheme, &p->root, p->turn, &p->ends, s->increment);
+        memset(x, 0, (size_t)n * sizeof *x);
+        memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
+    } else {
+        spari_alpha_predict(s, p->member, &p->scheme, stays, &p->ends, s->increment);
+        spari_scheme_predict(&p->scheme, stays, n, deformation_rates(&f->from), x, deformation_rates(&f->to));
+    }
+    for (int k = 6; k < f->n; k++) {
+        f->to.y[k] = f->from.y[k] + f->dx[k];
+    }
+    look_at_end_of_step(p);
+}
+
+static double balance_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_alpha_impose_root(p->member, &p->root, &p->ends, p->solver->increment);
+    look_at_end_of_step(p);
+    double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
+    spari_alpha_operators(p->solver, &p->scheme, &p->ends, p->solver->increment);
+    show_forces(p, &f->to);
+    return scale;
+}
+
+static double noise_of_frame(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    const spari_condensed *d = p->condensed;
+    double most = 0, poison = 0;
+    for (int i = 6; i < f->n; i++) {
+        int at_end = 0;
+        for (int e = 1; e < d->ends; e++) {
+            at_end = at_end || i / 6 == d->node[e];
+        }
+        most = fmax(most, at_end ? 0 : fabs(f->r[i]));
+        poison += 0 * f->r[i];
+    }
+    for (int k = 0; k < 6 * d->ends; k++) {
+        most = fmax(most, fabs(p->force[k]));
+        poison += 0 * p->force[k];
+    }
+    return most + poison;
+}
+
+static int tangent_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
+}
+
+static int frame_serves(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    return f->factored && spari_alpha_close(p->scheme.cm, f->kept_cm) && spari_alpha_close(p->scheme.cv, f->kept_cv);
+}
+
+static int reduce_frame(spari_limb *p, double *x) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    const double *y = f->to.y, *root = p->state->q + 3;
+    double back[4];
+    int M = 6 * p->condensed->ends;
+    spari_quat_conj(s->kept_q, back);
+    spari_quat_mul(root, back, s->turn);
+    memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+    if (spari_condensed_reduce(p->condensed, f->linear, f->dx)) {
+        return 1;
+    }
+    for (int k = 0; k < M; k++) { /* what the rest of the member puts on the ends */
+        int u = 6 * p->condensed->node[k / 6] + k % 6;
+        x[k] = u < p->condensed->fixed ? 0 : f->dx[u] - f->r[u];
+    }
+    spari_carriage_push(f, p->member, y, x);
+    for (int k = 0; k < M; k += 3) {
+        spari_rotate(root, x + k, x + k);
+    }
+    for (int k = 0; k < M; k++) {
+        x[k] = k < p->condensed->fixed ? 0 : x[k] + p->force[k];
+    }
+    return 0;
+}
+
+static void expand_frame(spari_limb *p, double *x) {
+    spari_frame *f = p->frame;
+    int M = 6 * p->condensed->ends;
+    memcpy(p->solver->dx, x, 6 * sizeof *x);
+    for (int k = 0; k < M; k += 3) {
+        spari_rotate_back(p->state->q + 3, x + k, x + k);
+    }
+    spari_carriage_see(f, p->member, f->to.y, x);
+    for (int k = 0; k < M; k++) {
+        f->dx[6 * p->condensed->node[k / 6] + k % 6] = x[k];
+    }
+    spari_condensed_expand(p->condensed, f->dx);
+    f->solves++;
+}
+
+/* The largest motion of a node, by the member's length, and turn, of unknowns x. */
+static double size_of_deformation(const spari_limb *p, const double *x) {
+    const spari_frame *f = p->frame;
+    double largest = 0, *own = f->carriage->x;
+    double *y = f->nodal;
+    memcpy(y, x, (size_t)f->n * sizeof *y);
+    memset(y, 0, 6 * sizeof *y);
+    const double *w = spari_frame_nodal(f, y, own);
+    for (int i = 0; i < f->nodes; i++) {
+        largest = fmax(largest, fmax(spari_norm(w + 6 * i) / p->solver->body->length, spari_norm(w + 6 * i + 3)));
+    }
+    return largest;
+}
+
+static double change_of_frame(const spari_limb *p) {
+    return fmax(spari_alpha_size(p->solver, p->solver->dx), size_of_deformation(p, p->frame->dx));
+}
+
+static void correct_frame(spari_limb *p, double cut) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    for (int k = 0; k < 6 && cut < 1; k++) {
+        s->dx[k] *= cut;
+    }
+    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->ends, INFINITY, s->increment, s->dx);
+    spari_scheme_correct(&p->scheme, cut, f->n - 6, f->dx + 6, f->to.y + 6, deformation_rates(&f->to));
+    look_at_end_of_step(p);
+}
+
+static double way_of_frame(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    double *step = f->increment;
+    for (int k = 0; k < f->n; k++) {
+        step[k] = f->to.y[k] - f->from.y[k];
+    }
+    return fmax(spari_alpha_size(p->solver, p->solver->increment) + p->ends.carried, size_of_deformation(p, step));
+}
+
+static void clear_frame(spari_limb *p) {
+    memset(p->frame->r, 0, (size_t)p->frame->n * sizeof(double));
+    memset(p->force, 0, (size_t)(6 * p->condensed->ends) * sizeof(double));
+}
+
+static void shift_rates_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    double *dx = p->solver->dx;
+    for (int k = 0; k < 6; k += 3) {
+        if (p->ends.root) {
+            spari_rotate_back(p->ends.root->q + 3, dx + k, dx + k);
+        }
+        for (int m = k; m < k + 3; m++) {
+            p->ends.to.v[m] -= dx[m];
+        }
+    }
+    for (int k = 6; k < f->n; k++) {
+        f->to.v[k] -= f->dx[k];
+    }
+    spari_root_show(p->solver, p->member, &p->ends);
+    look_at_end_of_step(p);
+}
+
+/* ---- the start ---- */
+
+static int start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    int end = spari_member_held(p->member);
+    if (p->member->root != SPAR_ROOT_DRIVEN) {
+        memset(s->begin.a, 0, (size_t)end * sizeof(double));
+        memset(s->begin.v, 0, (size_t)end * sizeof(double));
+    }
+    copy_to(f); /* the rates are shifted at the end, which is the beginning */
+    p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
+    memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
+    look_at_end_of_step(p);
+    spari_carriage_turn(f, &f->to, 0);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    clear_frame(p);
+    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, 0, unit, f->r);
+}
+
+static void unbalance_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    look_at_end_of_step(p);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    show_forces(p, &f->to);
+}
+
+static void correct_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    for (int k = 0; k < 6; k++) {
+        s->begin.a[k] -= p->scheme.cm * s->dx[k];
+    }
+    for (int k = 6; k < f->n; k++) {
+        f->to.a[k] -= p->scheme.cm * f->dx[k];
+    }
+    look_at_end_of_step(p);
+}
+
+static void end_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    const double *acceleration = s->begin.a;
+    if (s->own[0].q) {
+        const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
+        spari_root_look_from(s, p->member, &root, &s->begin, &s->own[0]);
+        acceleration = s->own[0].a;
+    }
+    memcpy(s->begin.b, acceleration, 6 * sizeof *s->begin.b);
+    memcpy(f->to.b, f->to.a, (size_t)f->n * sizeof *f->to.b);
+    memcpy(f->begin.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
+    f->begin.root = f->to.root;
+    f->factored = 0;
+    f->steps.started = s->steps.started = 1;
+}
+
+/* ---- at rest ---- */
+
+static void rest_frame(spari_limb *p, const double *fluid, int onward) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    spari_member_gather(p->member, p->member->dead, f->steps.load);
+    spari_member_gather(p->member, fluid, f->steps.load1);
+    cblas_daxpy(6 * f->nodes, 1, f->steps.load1, 1, f->steps.load, 1);
+    if (!onward) {
+        memcpy(s->to.q, s->begin.q, 7 * sizeof *s->to.q);
+        memcpy(f->to.y, f->begin.y, (size_t)f->n * sizeof *f->to.y);
+    }
+    memset(s->to.v, 0, 18 * sizeof *s->to.v);
+    memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *f->to.v);
+    p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+    look_at_end_of_step(p);
+}
+
+static double balance_frame_at_rest(spari_limb *p, double factor) {
+    spari_frame *f = p->frame;
+    double scale = spari_carriage_forces(f, p->member, &f->to, 1, factor, f->r);
+    show_forces(p, &f->to);
+    return scale;
+}
+
+static int tangent_of_frame_at_rest(spari_limb *p, double factor) {
+    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    (void)factor; /* that of the forces at rest */
+    return spari_carriage_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
+}
+
+static void shift_frame(spari_limb *p, double cut) {
+    spari_frame *f = p->frame;
+    spari_static_shift(1, cut, p->solver->dx, p->solver->to.q);
+    for (int k = 6; k < f->n; k++) {
+        f->to.y[k] -= cut * f->dx[k];
+    }
+    look_at_end_of_step(p);
+}
+
+static void keep_places_of_frame(spari_limb *p, int back) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    double *kept = f->carriage->kept + f->n, *y = f->to.y;
+    memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, 7 * sizeof *y);
+    memcpy(back ? y : kept, back ? kept : y, (size_t)f->n * sizeof *y);
+    look_at_end_of_step(p);
+}
+
+static void leave_rest_of_frame(spari_limb *p) {
+    copy_to(p->frame);
+    p->frame->factored = 0;
+}
+
+static void end_rest_of_frame(spari_limb *p) {
+    keep_places_of_frame(p, 1);
+    p->frame->factored = 0;
+    p->member->row->publish(p->member);
+}
+
+const spari_limb_row spari_limb_frame = {
+    .make = make_frame,
+    .take = take_frame,
+    .begin = begin_frame_limb,
+    .part = part_of_frame,
+    .end = end_frame_limb,
+    .keep_rates = keep_rates_of_frame,
+    .predict = predict_frame,
+    .balance = balance_frame,
+    .noise = noise_of_frame,
+    .tangent = tangent_of_frame,
+    .serves = frame_serves,
+    .reduce = reduce_frame,
+    .expand = expand_frame,
+    .change = change_of_frame,
+    .correct = correct_frame,
+    .way = way_of_frame,
+    .clear = clear_frame,
+    .shift_rates = shift_rates_of_frame,
+    .start = start_of_frame,
+    .unbalance = unbalance_frame,
+    .correct_start = correct_start_of_frame,
+    .end_start = end_start_of_frame,
+    .rest = rest_frame,
+    .balance_rest = balance_frame_at_rest,
+    .tangent_rest = tangent_of_frame_at_rest,
+    .shift = shift_frame,
+    .keep_places = keep_places_of_frame,
+    .leave_rest = leave_rest_of_frame,
+    .end_rest = end_rest_of_frame,
+    .turn = turn_of_frame,
+};
