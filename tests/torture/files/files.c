@@ -753,7 +753,7 @@ static void cut_series(void) {
         start("index cut off after", (long)n, 0);
         put("cut.pvd", bytes, n);
         int status = series("cut.pvd");
-        if (status != SPAR_ERR_IO || !strstr(spar_session_message(NULL), "no index")) {
+        if (status != SPAR_ERR_IO || !strstr(spar_session_message(NULL), "not an index")) {
             fail_case("answers otherwise", status, spar_session_message(NULL));
         }
         if (get("cut.pvd", &after) != n || memcmp(bytes, after, n) != 0) {
