@@ -130,7 +130,8 @@ static void test_resultants(void **state) {
             for (int l = 0; l < 5; l++) {
                 for (int c = 0; c < 3; c++) {
                     int node = 5 * e + l;
-                    place[c] += b->body->weight[k] * b->body->phi[5 * k + l] * (x[3 * node + c] + q[7 * node + c]);
+                    place[c] += b->body->weight[b->body->slot[e] + k - b->body->first[e]] * b->body->phi[5 * k + l] *
+                                (x[3 * node + c] + q[7 * node + c]);
                 }
             }
         }

@@ -1,6 +1,6 @@
 /* The discretised member: forces against the energy they come from, the tangent against finite differences of the
    forces, invariance under rigid motion. Oracles: central differences (error h^2 + eps/h, so 1e-7 of the largest entry
-   at h = 1e-5) and exact identities (1e-12). */
+   at h = 1e-5), exact identities (1e-12), and for points side by side the same points one by one (1e-13). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,9 +10,12 @@
 #include "math/basis.h"
 #include "math/rotation.h"
 #include "member/body.h"
+#include "member/point.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+static int lanes; /* of the bodies made next; 0: what the processor has */
 
 static double uniform(void) {
     return 2.0 * rand() / RAND_MAX - 1.0;
@@ -37,37 +40,41 @@ static void random_spd(int n, double *a) {
 /* elements of Jacobian 1.1 on the x axis (straight), or with random tangents at the points, random section properties
  */
 static spari_body *random_body(int elements, int P, int points, int damped, int straight) {
-    spari_body *b = spari_body_create(elements, P, elements * points, 1, damped, 1);
+    int counts[8];
+    for (int e = 0; e < elements; e++) {
+        counts[e] = points;
+    }
+    spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1);
     double x[24], bary[24], gx[24], gw[24];
     spari_gll(P, x, NULL, bary);
     assert_int_equal(spari_gauss(points, gx, gw), 0);
+    b->lanes = lanes;
     b->length = 2.0 * elements;
     b->gravity[0] = 0.3, b->gravity[1] = -1.2, b->gravity[2] = -9.0;
-    for (int e = 0; e <= elements; e++) {
-        b->first[e] = e * points;
-    }
     for (int k = 0; k < elements * points; k++) {
-        double bend = straight ? 0 : 0.3, t[3] = {1, bend * uniform(), bend * uniform()}, n = spari_norm(t), c[9];
+        double bend = straight ? 0 : 0.3, t[3] = {1, bend * uniform(), bend * uniform()}, n = spari_norm(t), c[36];
+        int slot = b->slot[k / points] + k % points;
         for (int i = 0; i < 3; i++) {
-            b->tangent[3 * k + i] = t[i] / n;
+            t[i] /= n;
         }
-        b->weight[k] = gw[k % points] * 1.1;
+        spari_slot_put(b->tangent, 3, slot, t);
+        b->weight[slot] = gw[k % points] * 1.1;
         spari_lagrange(P, x, bary, gx[k % points], b->phi + k * P, b->dphi + k * P);
         for (int l = 0; l < P; l++) {
             b->dphi[k * P + l] /= 1.1;
         }
-        random_spd(6, b->C + 36 * k);
+        random_spd(6, c);
+        spari_slot_put(b->C, 36, slot, c);
         if (damped) {
-            random_spd(6, b->D + 36 * k);
+            random_spd(6, c);
+            spari_slot_put(b->D, 36, slot, c);
         }
-        double *m = b->mass + 10 * k;
-        m[0] = 2 + uniform();
-        for (int i = 0; i < 3; i++) {
-            m[1 + i] = 0.4 * uniform();
-        }
+        double m[10] = {2 + uniform(), 0.4 * uniform(), 0.4 * uniform(), 0.4 * uniform()};
         random_spd(3, c);
         m[4] = c[0], m[5] = c[1], m[6] = c[2], m[7] = c[4], m[8] = c[5], m[9] = c[8];
+        spari_slot_put(b->mass, 10, slot, m);
     }
+    spari_body_complete(b);
     return b;
 }
 
@@ -263,12 +270,167 @@ static void test_power_balance(void **unused) {
     spari_body_free(b);
 }
 
+/* ---- points side by side ---- */
+
+/* The fields of one point, a block of which only the first lane is used, by plain sums over the nodes. */
+static void plain_fields(const spari_body *b, int k, const double *z, double *f) {
+    int P = b->per_element;
+    memset(f, 0, sizeof(double) * SPARI_LANES * POINT_ROWS);
+    for (int l = 0; l < P; l++) {
+        for (int i = 0; i < ROW; i++) {
+            f[SPARI_LANES * i] += b->phi[k * P + l] * z[ROW * l + i];
+        }
+        for (int i = 0; i < UDD; i++) {
+            f[SPARI_LANES * (DU + i)] += b->dphi[k * P + l] * z[ROW * l + i];
+        }
+    }
+}
+
+/* What the point gives back, value and slope of 7 each. Returns the size of its forces. */
+static double plain_point(const spari_body *b, int64_t slot, const spari_regime *how, const double *f, double *value,
+                          double *slope, double *power) {
+    point_one s = {0};
+    double w = b->weight[slot], size = 0;
+    const double *mass = b->mass ? SPARI_BLOCK(b->mass, 10, slot) : NULL;
+    memset(value, 0, 7 * sizeof *value);
+    memset(slope, 0, 7 * sizeof *slope);
+    fields_one(how->moving, f, &s);
+    if (b->C) {
+        strain_one(SPARI_BLOCK(b->tangent, 3, slot), SPARI_BLOCK(b->C, 36, slot),
+                   how->damped ? SPARI_BLOCK(b->D, 36, slot) : NULL, &s);
+        elastic_forces_one(&s, value, slope);
+        *power += how->damped ? w * s.damped : 0;
+        size = spari_norm(s.s) + spari_norm(s.s + 3) / b->length;
+    }
+    if (how->shown != SPARI_MASSLESS) {
+        point_inertia_one n;
+        double force[3];
+        if (how->shown == SPARI_ACCELERATED) {
+            inertia_forces_one(mass, b->gyroscopic, how, &s, &n);
+        } else {
+            weight_forces_one(mass, how, &s, &n);
+        }
+        mass_forces_one(mass, &s, &n, force, value);
+        size = fmax(size, w * (spari_norm(force) + spari_norm(n.mb) / b->length));
+    }
+    return size;
+}
+
+/* spari_body_residual point by point. */
+static double plain_residual(const spari_body *b, const state *s, const double *v, const double *a, double factor,
+                             double *r, double *power) {
+    const spari_regime how = spari_point_regime(b, v, a, factor);
+    int P = b->per_element;
+    double z[ROW * 24], f[SPARI_LANES * POINT_ROWS], value[7], slope[7], scale = 0;
+    memset(r, 0, sizeof *r * 6 * (size_t)b->unique);
+    *power = 0;
+    for (int e = 0; e < b->elements; e++) {
+        double g[24][7] = {{0}};
+        spari_point_gather(b, e, s->q, v, a, z);
+        for (int k = b->first[e]; k < b->first[e + 1]; k++) {
+            int64_t slot = b->slot[e] + k - b->first[e];
+            plain_fields(b, k, z, f);
+            scale = fmax(scale, plain_point(b, slot, &how, f, value, slope, power));
+            for (int l = 0; l < P; l++) {
+                for (int i = 0; i < 7; i++) {
+                    g[l][i] += b->weight[slot] * (b->phi[k * P + l] * value[i] + b->dphi[k * P + l] * slope[i]);
+                }
+            }
+        }
+        for (int l = 0; l < P; l++) {
+            double c[4], p[4], *rl = r + 6 * (e * (P - 1) + l);
+            spari_quat_conj(z + ROW * l + Q, c);
+            spari_quat_mul(g[l] + 3, c, p);
+            for (int i = 0; i < 3; i++) {
+                rl[i] += g[l][i];
+                rl[3 + i] += 0.5 * p[1 + i];
+            }
+        }
+    }
+    return scale;
+}
+
+/* One body in every regime: forces, power and the size of forces to 1e-13 of the largest. */
+static void check_lanes(spari_body *b) {
+    state s;
+    double r[192], exact[192], power, plain_power;
+    random_state(b->unique, 0.6, &s);
+    for (int regime = 0; regime < 6; regime++) {
+        const double *v = regime > 1 ? s.v : NULL, *a = regime > 3 ? s.a : NULL, factor = regime % 2 ? 0.7 : 0;
+        double big = 0, scale = spari_body_residual(b, s.q, v, a, factor, r, &power);
+        double plain_scale = plain_residual(b, &s, v, a, factor, exact, &plain_power);
+        for (int i = 0; i < 6 * b->unique; i++) {
+            big = fmax(big, fabs(exact[i]));
+        }
+        for (int i = 0; i < 6 * b->unique; i++) {
+            assert_true(fabs(r[i] - exact[i]) <= 1e-13 * fmax(big, plain_scale));
+        }
+        assert_true(fabs(scale - plain_scale) <= 1e-13 * plain_scale);
+        assert_true(fabs(power - plain_power) <= 1e-13 * plain_power);
+    }
+}
+
+/* Every width against the points one by one: 1 to 19 points an element, so whole vectors and what remains of them;
+   2 to 9 nodes; without damping, without gyroscopic forces, without mass, without stiffness. */
+static void test_lanes(void **unused) {
+    (void)unused;
+    for (lanes = 2; lanes <= SPARI_LANES; lanes *= 2) {
+        for (int points = 1; points < 20; points++) {
+            spari_body *b = random_body(1 + points % 2, 2 + points % 8, points, points % 3 > 0, 0);
+            double *C = b->C, *D = b->D, *mass = b->mass;
+            b->gyroscopic = points % 5 > 0;
+            check_lanes(b);
+            b->mass = NULL;
+            check_lanes(b);
+            b->mass = mass, b->C = b->D = NULL;
+            check_lanes(b);
+            b->C = C, b->D = D;
+            spari_body_free(b);
+        }
+    }
+    lanes = 0;
+}
+
+/* Slots left over in an element's last block do not count: energies are sums over the points alone, and a body that
+   is not finite in one element has finite forces in the others. */
+static void test_left_over_slots(void **unused) {
+    (void)unused;
+    for (lanes = 2; lanes <= SPARI_LANES; lanes *= 2) {
+        spari_body *b = random_body(3, 3, 3, 1, 0);
+        state s;
+        double r[192];
+        random_state(b->unique, 0.6, &s);
+        s.q[0] = NAN;
+        spari_body_residual(b, s.q, s.v, s.a, 1, r, NULL);
+        assert_true(isnan(r[0]));
+        for (int i = 6 * 3; i < 6 * b->unique; i++) {
+            assert_true(isfinite(r[i]));
+        }
+        spari_body_free(b);
+    }
+    lanes = 0;
+}
+
+/* All the rest at every width. */
+static void test_other_widths(void **unused) {
+    for (lanes = 2; lanes < SPARI_LANES; lanes *= 2) {
+        test_tangent(unused);
+        test_forces_are_the_gradient_of_the_energy(unused);
+        test_frame_indifference(unused);
+        test_power_balance(unused);
+    }
+    lanes = 0;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tangent),
         cmocka_unit_test(test_forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(test_frame_indifference),
         cmocka_unit_test(test_power_balance),
+        cmocka_unit_test(test_lanes),
+        cmocka_unit_test(test_left_over_slots),
+        cmocka_unit_test(test_other_widths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

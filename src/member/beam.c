@@ -505,88 +505,105 @@ static void reference_frame(const spar_member *member, const framing *f, const d
     spari_quat_matrix(q, R);
 }
 
-static void fill_point(const spar_member *member, spari_body *b, int k, int e, double xi, double w, const double R[9],
+/* Point i of element e. */
+static void fill_point(const spar_member *member, spari_body *b, int e, int i, double xi, double w, const double R[9],
                        const double *gll, const double *bary, const double *mu) {
     const spari_beam *beam = member->beam;
-    int P = b->per_element;
+    int P = b->per_element, k = b->first[e] + i, slot = b->slot[e] + i;
     line_point p;
-    double eta = 0.5 * (1 + spari_member_xi(member, e, xi)), section[36];
+    double eta = 0.5 * (1 + spari_member_xi(member, e, xi)), section[36], turned[36];
     line_at(P, gll, bary, member->xr + 3 * (int64_t)e * P, xi, &p);
     spari_lagrange(P, gll, bary, xi, b->phi + (int64_t)k * P, b->dphi + (int64_t)k * P);
     for (int l = 0; l < P; l++) {
         b->dphi[(int64_t)k * P + l] /= p.jacobian;
     }
-    b->weight[k] = w * p.jacobian;
-    memcpy(b->tangent + 3 * (int64_t)k, p.t, sizeof p.t);
+    b->weight[slot] = w * p.jacobian;
+    spari_slot_put(b->tangent, 3, slot, p.t);
     memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
-    b->length += b->weight[k];
+    b->length += b->weight[slot];
     spari_beam_section_at(beam, beam->stiffness, eta, section);
-    spari_beam_turn_section(R, section, b->C + 36 * (int64_t)k);
-    for (int i = 0; i < 6; i++) {
-        b->stiffest = fmax(b->stiffest, section[7 * i]);
+    spari_beam_turn_section(R, section, turned);
+    spari_slot_put(b->C, 36, slot, turned);
+    for (int j = 0; j < 6; j++) {
+        b->stiffest = fmax(b->stiffest, section[7 * j]);
     }
     if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite whatever the coupling, mu_i C_ii on the diagonal */
-        for (int i = 0; i < 6; i++) {
-            for (int j = 0; j < 6; j++) {
-                section[6 * i + j] *= sqrt(mu[i] * mu[j]);
-            }
+        for (int j = 0; j < 36; j++) {
+            section[j] *= sqrt(mu[j / 6] * mu[j % 6]);
         }
-        spari_beam_turn_section(R, section, b->D + 36 * (int64_t)k);
+        spari_beam_turn_section(R, section, turned);
+        spari_slot_put(b->D, 36, slot, turned);
     }
     if (b->mass) {
-        double *m = b->mass + 10 * (int64_t)k;
+        double mass[10];
         spari_beam_section_at(beam, beam->mass, eta, section);
-        spari_mass_place(R, section, m);
+        spari_mass_place(R, section, mass);
+        spari_slot_put(b->mass, 10, slot, mass);
     }
 }
 
-int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body) {
-    const spari_beam *beam = member->beam;
-    int E = member->elements, P = member->per_element, points = 0, most = 0;
-    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
-    spari_gll(P, gll, NULL, bary);
+/* Quadrature points of each element, points[elements], and the most of one. */
+static int count_points(const spar_member *member, int *points, int *most) {
+    int E = member->elements, P = member->per_element;
     for (int e = 0; e < E; e++) {
-        int n = element_points(beam, E, e, P, NULL, NULL);
-        SPARI_REQUIRE(member->session, n >= P - 1, SPAR_ERR_ARGUMENT,
+        points[e] = element_points(member->beam, E, e, P, NULL, NULL);
+        SPARI_REQUIRE(member->session, points[e] >= P - 1, SPAR_ERR_ARGUMENT,
                       "member '%s': element %d has %d quadrature points for %d nodes, its stiffness would be singular; "
                       "ask for at least %d",
-                      member->name, e, n, P, P - 1);
-        points += n;
-        most = n > most ? n : most;
+                      member->name, e, points[e], P, P - 1);
+        *most = points[e] > *most ? points[e] : *most;
     }
-    massive = massive || (beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
-    spari_body *b = spari_body_create(E, P, points, 1, mu != NULL, massive);
+    return SPAR_OK;
+}
+
+/* All points of a body, `most` in an element. */
+static int fill_body(const spar_member *member, int most, const double mu[6], spari_body *b) {
+    int E = member->elements, P = member->per_element, status = SPAR_OK;
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     double *xi = spari_zalloc(most, sizeof *xi), *w = spari_zalloc(most, sizeof *w),
-           *x = spari_zalloc(3 * member->nodes, sizeof *x);
-    double *q = spari_zalloc(4 * member->nodes, sizeof *q);
+           *x = spari_zalloc(3 * member->nodes, sizeof *x), *q = spari_zalloc(4 * member->nodes, sizeof *q);
     framing f = {0, NULL};
-    int status = b && xi && w && x && q ? SPAR_OK : no_memory_for(member, "its quadrature points");
-    if (status == SPAR_OK && !beam->node_q) {
+    status = xi && w && x && q ? SPAR_OK : no_memory_for(member, "its quadrature points");
+    spari_gll(P, gll, NULL, bary);
+    if (status == SPAR_OK && !member->beam->node_q) {
         status = own_nodes(member, gll, bary, x, q);
         status = status == SPAR_OK ? make_framing(member, gll, bary, x, &f) : status;
     }
-    for (int e = 0, k = 0; e < E && status == SPAR_OK; e++) {
-        int n = element_points(beam, E, e, P, xi, w);
+    for (int e = 0; e < E && status == SPAR_OK; e++) {
+        int n = element_points(member->beam, E, e, P, xi, w);
         if (n < 0) {
             status = no_memory_for(member, "its quadrature");
             break;
         }
-        for (int i = 0; i < n; i++, k++) {
+        for (int i = 0; i < n; i++) {
             double R[9];
             reference_frame(member, &f, gll, bary, x, e, xi[i], R);
-            fill_point(member, b, k, e, xi[i], w[i], R, gll, bary, mu);
+            fill_point(member, b, e, i, xi[i], w[i], R, gll, bary, mu);
         }
-        b->first[e + 1] = k;
     }
     free(xi);
     free(w);
     free(x);
     free(q);
     free(f.y);
+    return status;
+}
+
+int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body) {
+    int *points = spari_zalloc(member->elements, sizeof *points), most = 0;
+    int status = points ? count_points(member, points, &most) : no_memory_for(member, "its quadrature points");
+    spari_body *b = NULL;
+    if (status == SPAR_OK) {
+        massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
+        b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
+        status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
+    }
+    free(points);
     if (status != SPAR_OK) {
         spari_body_free(b);
         return status;
     }
+    spari_body_complete(b);
     *body = b;
     return SPAR_OK;
 }

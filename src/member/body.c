@@ -6,26 +6,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive) {
+/* An element's points, and the slots they take. Returns the most points of an element. */
+static int number_points(spari_body *body, const int *points) {
+    int most = 0;
+    for (int e = 0; e < body->elements; e++) {
+        body->first[e + 1] = body->first[e] + points[e];
+        body->slot[e + 1] = body->slot[e] + (points[e] + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
+        most = points[e] > most ? points[e] : most;
+    }
+    return most;
+}
+
+spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive) {
     spari_body *body = spari_zalloc(1, sizeof *body);
     if (!body) {
         return NULL;
     }
-    int64_t P = per_element, n = points;
+    int64_t P = per_element;
     body->elements = elements;
     body->per_element = per_element;
     body->unique = elements * (per_element - 1) + 1;
     body->gyroscopic = 1;
     int ok = (body->first = spari_zalloc(elements + 1, sizeof *body->first)) != NULL;
-    ok = ok && (body->phi = spari_zalloc(n * P, sizeof *body->phi));
-    ok = ok && (body->dphi = spari_zalloc(n * P, sizeof *body->dphi));
-    ok = ok && (body->weight = spari_zalloc(n, sizeof *body->weight));
-    ok = ok && (body->tangent = spari_zalloc(n * 3, sizeof *body->tangent));
+    ok = ok && (body->slot = spari_zalloc(elements + 1, sizeof *body->slot));
+    int most = ok ? number_points(body, points) : 0;
+    int64_t n = ok ? body->first[elements] : 0, slots = ok ? body->slot[elements] : 0;
+    /* whole vectors are read from the last row of phi too */
+    ok = ok && (body->phi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->phi));
+    ok = ok && (body->dphi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->dphi));
     ok = ok && (body->place = spari_zalloc(n * 3, sizeof *body->place));
-    ok = ok && (!elastic || (body->C = spari_zalloc(n * 36, sizeof *body->C)));
-    ok = ok && (!damped || (body->D = spari_zalloc(n * 36, sizeof *body->D)));
-    ok = ok && (!massive || (body->mass = spari_zalloc(n * 10, sizeof *body->mass)));
-    ok = ok && (body->scratch = spari_zalloc(spari_body_scratch(per_element, points), sizeof *body->scratch));
+    ok = ok && (body->shape = spari_zalloc(slots * P * 2, sizeof *body->shape));
+    ok = ok && (body->weight = spari_zalloc(slots, sizeof *body->weight));
+    ok = ok && (body->tangent = spari_zalloc(slots * 3, sizeof *body->tangent));
+    ok = ok && (!elastic || (body->C = spari_zalloc(slots * 36, sizeof *body->C)));
+    ok = ok && (!damped || (body->D = spari_zalloc(slots * 36, sizeof *body->D)));
+    ok = ok && (!massive || (body->mass = spari_zalloc(slots * 10, sizeof *body->mass)));
+    int64_t element = spari_body_scratch(per_element, most), nodes = 12 * (int64_t)body->unique;
+    ok = ok && (body->scratch = spari_zalloc(element > nodes ? element : nodes, sizeof *body->scratch));
     if (!ok) {
         spari_body_free(body);
         return NULL;
@@ -33,13 +50,46 @@ spari_body *spari_body_create(int elements, int per_element, int points, int ela
     return body;
 }
 
+/* Lane i of a block := lane j. */
+static void copy_lane(double *blocks, int rows, int64_t to, int64_t from) {
+    for (int i = 0; blocks && i < rows; i++) {
+        SPARI_BLOCK(blocks, rows, to)[SPARI_LANES * i] = SPARI_BLOCK(blocks, rows, from)[SPARI_LANES * i];
+    }
+}
+
+void spari_body_complete(spari_body *body) {
+    int P = body->per_element;
+    for (int e = 0; e < body->elements; e++) {
+        int n = body->first[e + 1] - body->first[e];
+        int64_t slot = body->slot[e];
+        for (int k = 0; k < n; k++) {
+            double *to = SPARI_BLOCK(body->shape, 2 * P, slot + k);
+            for (int l = 0; l < P; l++) {
+                int64_t at = (int64_t)(body->first[e] + k) * P + l;
+                to[SPARI_LANES * 2 * l] = body->phi[at];
+                to[SPARI_LANES * (2 * l + 1)] = body->dphi[at];
+            }
+        }
+        for (int64_t k = slot + n; k < body->slot[e + 1]; k++) {
+            copy_lane(body->shape, 2 * P, k, slot + n - 1);
+            copy_lane(body->tangent, 3, k, slot + n - 1);
+            copy_lane(body->C, 36, k, slot + n - 1);
+            copy_lane(body->D, 36, k, slot + n - 1);
+            copy_lane(body->mass, 10, k, slot + n - 1);
+            body->weight[k] = 0;
+        }
+    }
+}
+
 void spari_body_free(spari_body *body) {
     if (!body) {
         return;
     }
     free(body->first);
+    free(body->slot);
     free(body->phi);
     free(body->dphi);
+    free(body->shape);
     free(body->weight);
     free(body->tangent);
     free(body->place);

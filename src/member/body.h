@@ -11,17 +11,26 @@
 
 #include <stdint.h>
 
+/* Points are worked on side by side. Each has a slot: an element's points take the slots from a multiple of SPARI_LANES
+   on, and what is said of points lies in blocks of as many, row by row, [block][row][lane]. Slots that are left over
+   in an element's last block repeat its last point with weight 0. */
+enum { SPARI_LANES = 8 };
+#define SPARI_BLOCK(x, rows, slot) ((x) + (slot) / SPARI_LANES * SPARI_LANES * (rows) + (slot) % SPARI_LANES)
+
 typedef struct spari_body {
     int elements, per_element, unique;
     int *first;      /* [elements + 1] quadrature points of each element */
-    double *phi;     /* [points][P] */
+    int *slot;       /* [elements + 1] slot of each element's first point, and of the end */
+    double *phi;     /* [points][P], not in blocks */
     double *dphi;    /* [points][P], per arc length */
-    double *weight;  /* [points], quadrature weight times Jacobian */
-    double *tangent; /* [points][3] unit tangent of the reference line, global */
-    double *place;   /* [points][3] reference place */
-    double *C;       /* [points][36] stiffness in global axes at the reference; NULL: not elastic */
-    double *D;       /* [points][36] damping likewise; NULL: none */
-    double *mass;    /* [points][10]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
+    double *shape;   /* [blocks][P][2][lanes]: phi and dphi again, by spari_body_complete */
+    double *place;   /* [points][3] reference place, not in blocks */
+    double *weight;  /* [blocks][lanes], quadrature weight times Jacobian */
+    double *tangent; /* [blocks][3][lanes] unit tangent of the reference line, global */
+    double *C;       /* [blocks][36][lanes] stiffness in global axes at the reference; NULL: not elastic */
+    double *D;       /* [blocks][36][lanes] damping likewise; NULL: none */
+    double *mass;    /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
+    int lanes;       /* points worked on at once at most; 0: what the processor has (tests try all) */
     double gravity[3];
     int gyroscopic;
     double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
@@ -33,12 +42,26 @@ typedef struct spari_body {
     double *scratch;   /* work space of one element, and of 6 doubles a node at least */
 } spari_body;
 
-/* Doubles of a body's scratch. */
+/* Doubles of work space that an element with so many points takes. */
 int64_t spari_body_scratch(int per_element, int points);
-/* Sizes the arrays for `points` quadrature points over all elements; elastic, damped, massive say which properties
-   exist. Returns NULL when there is no memory. */
-spari_body *spari_body_create(int elements, int per_element, int points, int elastic, int damped, int massive);
+/* Sizes the arrays for points[elements] quadrature points; elastic, damped, massive say which properties exist.
+   Returns NULL when there is no memory. */
+spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive);
+/* To be called when phi, dphi and the properties of all points are given. */
+void spari_body_complete(spari_body *body);
 void spari_body_free(spari_body *body);
+
+/* Rows of one slot to and from contiguous numbers x[rows]. */
+static inline void spari_slot_put(double *blocks, int rows, int64_t slot, const double *x) {
+    for (int i = 0; i < rows; i++) {
+        SPARI_BLOCK(blocks, rows, slot)[SPARI_LANES * i] = x[i];
+    }
+}
+static inline void spari_slot_get(const double *blocks, int rows, int64_t slot, double *x) {
+    for (int i = 0; i < rows; i++) {
+        x[i] = SPARI_BLOCK(blocks, rows, slot)[SPARI_LANES * i];
+    }
+}
 
 /* Forces of the state q [unique][7], v [unique][6], a [unique][6] (v, a NULL: at rest):
    r [unique][6] = inertia + internal - gravity * factor, global axes. *power (NULL: not wanted): the power that damping

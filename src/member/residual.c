@@ -1,4 +1,5 @@
 /* Forces of a body, and its energy: sums over the quadrature points. docs/theory.md, "The beam". */
+#include "../math/basis.h"
 #include "linear_body.h"
 #include "point.h"
 
@@ -14,77 +15,43 @@ static void add_moment(const double g[4], const double q[4], double m[3]) {
     }
 }
 
-/* What the point gives back, times its weight: value (u, Q), slope (u', Q'). Returns the size of its forces. */
-static double point_forces(const spari_body *body, int k, const spari_regime *how, const double *f, double *back,
-                           double *power) {
-    spari_point s;
-    double *value = back, *slope = back + BACK, w = body->weight[k], scale = 0;
-    memset(back, 0, BACK_ROW * sizeof *back);
-    spari_point_fields(f, &s);
-    if (body->C) {
-        spari_point_strain(body, k, how->moving, &s);
-        spari_point_elastic_forces(&s, value, slope);
-        *power += body->D && how->moving ? w * s.damped : 0;
-        scale = spari_norm(s.s) + spari_norm(s.s + 3) / body->length;
-    }
-    if (how->accelerated || how->heavy) {
-        spari_point_inertia n;
-        double force[3], m4[4];
-        if (how->accelerated) {
-            spari_point_inertia_forces(body, k, how, &s, &n);
-        } else {
-            spari_point_weight(body, k, how, &s, &n);
-        }
-        for (int i = 0; i < 3; i++) {
-            force[i] = n.y[i] + body->mass[10 * (int64_t)k] * n.h[i];
-        }
-        spari_rotate(s.r, force, force);
-        quat_vec(s.r, n.mb, m4);
-        for (int i = 0; i < 3; i++) {
-            value[i] += force[i];
-        }
-        for (int i = 0; i < 4; i++) {
-            value[3 + i] += 2 * m4[i] / s.N;
-        }
-        double size = w * (spari_norm(force) + spari_norm(n.mb) / body->length);
-        scale = size > scale ? size : scale;
-    }
-    for (int i = 0; i < BACK_ROW; i++) {
-        back[i] *= w;
-    }
-    return scale;
-}
-
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                            double *r, double *power) {
     return body->linear[0] ? spari_linear_residual(body, q, v, a, factor, r, power)
                            : spari_body_exact_residual(body, q, v, a, factor, r, power);
 }
 
+/* Adds what the points of element e give back, g [BACK][SPARI_MAX_NODES], to the forces on its nodes. */
+static void add_element(const spari_body *body, int e, const double *g, const double *z, double *r) {
+    int P = body->per_element;
+    for (int l = 0; l < P; l++) {
+        double *rl = r + 6 * ((int64_t)e * (P - 1) + l), back[BACK];
+        for (int i = 0; i < BACK; i++) {
+            back[i] = g[SPARI_MAX_NODES * i + l];
+        }
+        for (int i = 0; i < 3; i++) {
+            rl[i] += back[i];
+        }
+        add_moment(back + 3, z + ROW * l + Q, rl + 3);
+    }
+}
+
 double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
                                  double factor, double *r, double *power) {
-    int P = body->per_element;
     const spari_regime how = spari_point_regime(body, v, a, factor);
-    double *z = body->scratch, *g = z + (int64_t)P * ROW, *f = g + (int64_t)P * BACK, scale = 0, damped = 0;
+    double *z = body->scratch, *g = z + (int64_t)body->per_element * ROW, *f = g + BACK * SPARI_MAX_NODES,
+           *back = f + SPARI_LANES * POINT_ROWS, scale = 0, damped = 0;
+    spari_tally tally = {{0}, {0}};
     memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
     for (int e = 0; e < body->elements; e++) {
-        int first = body->first[e], n = body->first[e + 1] - first;
-        double *back = f + (int64_t)n * POINT_ROW;
         spari_point_gather(body, e, q, v, a, z);
-        spari_point_interpolate(body, e, z, how.moving, f);
-        for (int k = 0; k < n; k++) {
-            double size =
-                point_forces(body, first + k, &how, f + (int64_t)POINT_ROW * k, back + (int64_t)BACK_ROW * k, &damped);
-            scale = size > scale ? size : scale;
-        }
-        spari_point_collect(body, e, back, g);
-        for (int l = 0; l < P; l++) {
-            double *rl = r + 6 * ((int64_t)e * (P - 1) + l);
-            for (int i = 0; i < 3; i++) {
-                rl[i] += g[BACK * l + i];
-            }
-            add_moment(g + BACK * l + 3, z + ROW * l + Q, rl + 3);
-        }
+        spari_lanes_forces(body, e, &how, z, f, back, &tally);
+        spari_lanes_collect(body, e, back, g);
+        add_element(body, e, g, z, r);
+    }
+    for (int i = 0; i < SPARI_LANES; i++) {
+        scale = tally.most[i] > scale ? tally.most[i] : scale;
+        damped += tally.power[i];
     }
     if (power) {
         *power = damped;
@@ -94,9 +61,37 @@ double spari_body_exact_residual(const spari_body *body, const double *q, const 
 
 /* ---- energy ---- */
 
+static void add_strain_energy(const spari_body *body, int64_t slot, double w, const double *D, point_one *s,
+                              double energy[4]) {
+    const double *C = SPARI_BLOCK(body->C, 36, slot);
+    double n[6];
+    strain_one(SPARI_BLOCK(body->tangent, 3, slot), C, D, s);
+    matrix6_times_one(C, s->e, n);
+    for (int i = 0; i < 6; i++) {
+        energy[1] += 0.5 * w * n[i] * s->e[i];
+    }
+    energy[3] += D ? w * s->damped : 0;
+}
+
+static void add_mass_energy(const spari_body *body, int64_t slot, double w, const point_one *s, double energy[4]) {
+    double mass[10], u[3], ud[3], vb[3], JW[3], x[3], offset[3];
+    spari_slot_get(body->mass, 10, slot, mass);
+    rows_one(3, s->f + SPARI_LANES * U, u);
+    rows_one(3, s->f + SPARI_LANES * UD, ud);
+    spari_rotate_back(s->r, ud, vb);
+    symmetric_times_one(SPARI_BLOCK(body->mass, 10, slot) + SPARI_LANES * 4, s->omega, JW);
+    spari_cross(s->omega, mass + 1, x);
+    spari_rotate(s->r, mass + 1, offset);
+    energy[0] += w * (0.5 * mass[0] * spari_dot(vb, vb) + spari_dot(vb, x) + 0.5 * spari_dot(JW, s->omega));
+    for (int i = 0; i < 3; i++) {
+        energy[2] -= w * body->gravity[i] * (mass[0] * u[i] + offset[i] - mass[1 + i]);
+    }
+}
+
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
-    int moving = v != NULL;
-    double *z = body->scratch, *f = z + (int64_t)body->per_element * (ROW + BACK);
+    int damped = body->C && body->D && v;
+    int wanted = SPARI_PLACES | (body->C ? SPARI_SLOPES : 0) | (damped ? SPARI_RATE_SLOPES : 0);
+    double *z = body->scratch, *f = z + (int64_t)body->per_element * ROW;
     memset(energy, 0, 4 * sizeof *energy);
     if (body->linear[0]) {
         spari_linear_energy(body, q, v, energy);
@@ -104,31 +99,17 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
     }
     for (int e = 0; e < body->elements; e++) {
         spari_point_gather(body, e, q, v, NULL, z);
-        spari_point_interpolate(body, e, z, moving, f);
-        for (int k = body->first[e]; k < body->first[e + 1]; k++) {
-            spari_point s;
-            double w = body->weight[k];
-            spari_point_fields(f + (int64_t)POINT_ROW * (k - body->first[e]), &s);
+        spari_lanes_interpolate(body, e, wanted, z, f);
+        for (int k = 0; k < body->first[e + 1] - body->first[e]; k++) {
+            int64_t slot = body->slot[e] + k;
+            double w = body->weight[slot];
+            point_one s;
+            fields_one(v != NULL, SPARI_BLOCK(f, POINT_ROWS, k), &s);
             if (body->C) {
-                double n[6];
-                spari_point_strain(body, k, moving, &s);
-                matrix6_times(body->C + 36 * (int64_t)k, s.e, n);
-                for (int i = 0; i < 6; i++) {
-                    energy[1] += 0.5 * w * n[i] * s.e[i];
-                    energy[3] += body->D && moving ? w * s.ed[i] * (s.s[i] - n[i]) : 0;
-                }
+                add_strain_energy(body, slot, w, damped ? SPARI_BLOCK(body->D, 36, slot) : NULL, &s, energy);
             }
             if (body->mass) {
-                const double *mass = body->mass + 10 * (int64_t)k;
-                double vb[3], JW[3], x[3], offset[3];
-                spari_rotate_back(s.r, s.f + UD, vb);
-                symmetric_times(mass + 4, s.omega, JW);
-                spari_cross(s.omega, mass + 1, x);
-                spari_rotate(s.r, mass + 1, offset);
-                energy[0] += w * (0.5 * mass[0] * spari_dot(vb, vb) + spari_dot(vb, x) + 0.5 * spari_dot(JW, s.omega));
-                for (int i = 0; i < 3; i++) {
-                    energy[2] -= w * body->gravity[i] * (mass[0] * s.f[U + i] + offset[i] - mass[1 + i]);
-                }
+                add_mass_energy(body, slot, w, &s, energy);
             }
         }
     }

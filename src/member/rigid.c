@@ -78,17 +78,17 @@ void spari_mass_place(const double R[9], const double M[36], double out[10]) {
 }
 
 int spari_rigid_build(spar_member *member, spari_body **body) {
-    double R[9];
-    spari_body *b = spari_body_create(1, 1, 1, 0, 0, 1);
+    double R[9], m[10];
+    spari_body *b = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1);
     if (!b) {
         return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for the rigid body", member->name);
     }
-    b->first[1] = 1;
     b->phi[0] = b->weight[0] = 1;
     spari_quat_matrix(member->qr, R);
-    spari_mass_place(R, member->mass, b->mass);
+    spari_mass_place(R, member->mass, m);
+    spari_slot_put(b->mass, 10, 0, m);
+    spari_body_complete(b);
     memcpy(b->place, member->xr, 3 * sizeof *b->place);
-    const double *m = b->mass;
     double gyration = m[0] > 0 ? sqrt((m[4] + m[7] + m[9]) / m[0]) : 0;
     b->length = gyration > 0 ? gyration : 1;
     *body = b;

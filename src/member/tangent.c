@@ -54,7 +54,7 @@ typedef struct point_matrices {
 enum { AT_Q = 3, AT_DU = 7, AT_DQ = 10 };
 
 /* J = d e / d y (6 x 14) */
-static void strain_gradient(const spari_point *s, double J[6][14]) {
+static void strain_gradient(const point_one *s, double J[6][14]) {
     double L[3][4], Lp[3][4], Tx[3][3], R[9];
     memset(J, 0, sizeof(double) * 6 * 14);
     body_spin(s->r, *L);
@@ -74,7 +74,7 @@ static void strain_gradient(const spari_point *s, double J[6][14]) {
 }
 
 /* G = d (e-dot) / d y at fixed rates (6 x 14) */
-static void strain_rate_gradient(const spari_point *s, const double J[6][14], double G[6][14]) {
+static void strain_rate_gradient(const point_one *s, const double J[6][14], double G[6][14]) {
     double L[3][4], Ld[3][4], Lz[3][4], Tx[3][3], Wx[3][3], tx[3][3];
     memset(G, 0, sizeof(double) * 6 * 14);
     body_spin(s->r, *L);
@@ -108,7 +108,7 @@ static void strain_rate_gradient(const spari_point *s, const double J[6][14], do
 }
 
 /* Second derivative of s . e(y) at fixed s, added to K. */
-static void add_geometric(const spari_point *s, double w, double *K) {
+static void add_geometric(const point_one *s, double w, double *K) {
     double L[3][4], Sx[3][3], R[9], RS[3][3], mixed[3][4] = {{0}};
     double in = 1 / s->N, in2 = in * in;
     body_spin(s->r, *L);
@@ -179,23 +179,26 @@ static void add_congruence(double w, const double J[6][14], const double *C, con
     }
 }
 
-static void add_elastic(const spari_body *body, int k, int moving, double w, const spari_point *s, point_matrices *m) {
-    double J[6][14];
+static void add_elastic(const spari_body *body, int64_t slot, int moving, double w, const point_one *s,
+                        point_matrices *m) {
+    double J[6][14], C[36];
     strain_gradient(s, J);
-    add_congruence(w, (const double(*)[14])J, body->C + 36 * (int64_t)k, (const double(*)[14])J, m->K);
+    spari_slot_get(body->C, 36, slot, C);
+    add_congruence(w, (const double(*)[14])J, C, (const double(*)[14])J, m->K);
     add_geometric(s, w, m->K);
     if (body->D) {
-        add_congruence(w, (const double(*)[14])J, body->D + 36 * (int64_t)k, (const double(*)[14])J, m->B);
+        spari_slot_get(body->D, 36, slot, C);
+        add_congruence(w, (const double(*)[14])J, C, (const double(*)[14])J, m->B);
         if (moving) {
             double G[6][14];
             strain_rate_gradient(s, (const double(*)[14])J, G);
-            add_congruence(w, (const double(*)[14])J, body->D + 36 * (int64_t)k, (const double(*)[14])G, m->K);
+            add_congruence(w, (const double(*)[14])J, C, (const double(*)[14])G, m->K);
         }
     }
 }
 
 /* K of the rows g_Q = 2 Q mb / N^2 of a moment mb in body axes that changes by mQ dQ. */
-static void add_moment_rows(double w, const spari_point *s, const double *L, const double *mQ, const double mb[3],
+static void add_moment_rows(double w, const point_one *s, const double *L, const double *mQ, const double mb[3],
                             double *K) {
     double Rm[4][4], rm[4], in = 1 / s->N;
     add_transposed_product(&K[14 * AT_Q + AT_Q], 14, 2 * w * in, L, mQ);
@@ -214,10 +217,10 @@ typedef struct spin_gradient {
     double L[12], rate_by_q[12], acceleration_by_q[12], acceleration_by_qd[12];
 } spin_gradient;
 
-static void differentiate_spin(const spari_point *s, const spari_point_inertia *n, spin_gradient *by) {
+static void differentiate_spin(const point_one *s, const point_inertia_one *n, spin_gradient *by) {
     double Ld[12], Ldd[12], rdd[4], in = 1 / s->N;
     for (int i = 0; i < 4; i++) {
-        rdd[i] = s->f[QDD + i] * in;
+        rdd[i] = s->f[SPARI_LANES * (QDD + i)] * in;
     }
     body_spin(s->r, by->L);
     body_spin(s->d, Ld);
@@ -243,7 +246,7 @@ typedef struct inertia_gradient {
 } inertia_gradient;
 
 /* R (W x (W x mc)) and W x J W, through W. */
-static void add_gyroscopic(const spari_point *s, const spari_point_inertia *n, const spin_gradient *by,
+static void add_gyroscopic(const point_one *s, const point_inertia_one *n, const spin_gradient *by,
                            inertia_gradient *g) {
     double W[9], JW[9], Wc[9], W_J[9], W_c[9], moment_by_rate[9], own_by_rate[9], force_by_rate[9], in = 1 / s->N;
     spari_skew(s->omega, W);
@@ -263,7 +266,7 @@ static void add_gyroscopic(const spari_point *s, const spari_point_inertia *n, c
 }
 
 /* R (A x mc) and J A, through A; and what turns with the section: R y, and mc x h as h = R^T (udd - g) does. */
-static void add_accelerated(const spari_point *s, const spari_point_inertia *n, const spin_gradient *by,
+static void add_accelerated(const point_one *s, const point_inertia_one *n, const spin_gradient *by,
                             inertia_gradient *g) {
     double h[9], y[9], force_by_acceleration[9], force_by_turn[9], moment_by_turn[9], in = 1 / s->N;
     spari_skew(n->h, h);
@@ -294,8 +297,8 @@ static void add_force_rows(double w, double mass, const inertia_gradient *g, poi
 }
 
 /* Rows Q: g_Q = 2 Q mb/N^2 changes with mb through 2 L^T/N, by udd through mc x R^T, and with Q itself. */
-static void add_rotary_rows(double w, const spari_point *s, const double *mb, const double *L,
-                            const inertia_gradient *g, point_matrices *m) {
+static void add_rotary_rows(double w, const point_one *s, const double *mb, const double *L, const inertia_gradient *g,
+                            point_matrices *m) {
     double back[9], moment_by_udd[9], in = 1 / s->N;
     for (int i = 0; i < 9; i++) {
         back[i] = g->R[3 * (i % 3) + i / 3];
@@ -313,10 +316,12 @@ static void add_rotary_rows(double w, const spari_point *s, const double *mb, co
 }
 
 /* Inertia: rows u and Q, against (u, Q) for accelerations (M), rates (B) and displacements (K). */
-static void add_inertia(const spari_body *body, int k, double w, const spari_point *s, const spari_point_inertia *n,
+static void add_inertia(const spari_body *body, int64_t slot, double w, const point_one *s, const point_inertia_one *n,
                         point_matrices *m) {
-    const double *mass = body->mass + 10 * (int64_t)k, *J = mass + 4;
+    double mass[10];
+    const double *J = mass + 4;
     spin_gradient by;
+    spari_slot_get(body->mass, 10, slot, mass);
     inertia_gradient g = {.J = {J[0], J[1], J[2], J[1], J[3], J[4], J[2], J[4], J[5]}};
     spari_quat_matrix(s->r, g.R);
     spari_skew(mass + 1, g.offset);
@@ -330,11 +335,12 @@ static void add_inertia(const spari_body *body, int k, double w, const spari_poi
 }
 
 /* The weight alone: its moment about the node turns with the section. */
-static void add_weight(const spari_body *body, int k, double w, const spari_point *s, const spari_point_inertia *n,
+static void add_weight(const spari_body *body, int64_t slot, double w, const point_one *s, const point_inertia_one *n,
                        point_matrices *m) {
-    double L[3][4], cx[3][3], hx[3][3], ch[3][3], mQ[3][4] = {{0}};
+    double L[3][4], cx[3][3], hx[3][3], ch[3][3], mQ[3][4] = {{0}}, mass[10];
     body_spin(s->r, *L);
-    spari_skew(body->mass + 10 * (int64_t)k + 1, *cx);
+    spari_slot_get(body->mass, 10, slot, mass);
+    spari_skew(mass + 1, *cx);
     spari_skew(n->h, *hx);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -423,6 +429,7 @@ static void first_stage(int P, const double *phi, const double *dphi, const doub
    and their first stages, all in the body's scratch; g[P][4], the forces on Q. */
 typedef struct element_tangent {
     int P, first, points; /* nodes, points */
+    int64_t slot;         /* of the first point */
     int damped, masses, rates;
     int64_t row; /* doubles of the first stage of one point */
     double *z, *f, *K, *B, *M, *g, *first_K, *first_B, *first_M;
@@ -432,9 +439,9 @@ typedef struct element_tangent {
 static element_tangent begin_tangent(const spari_body *body, int e, int masses, int rates) {
     int P = body->per_element, first = body->first[e], n = body->first[e + 1] - first;
     int64_t pp = (int64_t)P * P * 49, row = (int64_t)P * 49;
-    element_tangent t = {P, first, n, body->D != NULL, masses, rates, .row = row, .z = body->scratch};
-    t.f = t.z + (int64_t)P * (ROW + BACK);
-    t.K = t.f + (int64_t)n * (POINT_ROW + BACK_ROW);
+    element_tangent t = {P, first, n, body->slot[e], body->D != NULL, masses, rates, .row = row, .z = body->scratch};
+    t.f = t.z + (int64_t)P * ROW;
+    t.K = SPARI_BLOCK(t.f, POINT_ROWS, body->slot[e + 1] - body->slot[e]);
     t.B = t.K + pp, t.M = t.B + pp, t.g = t.M + pp;
     t.first_K = t.g + pp, t.first_B = t.first_K + 2 * n * row;
     t.first_M = t.first_B + n * row; /* B has no slopes unless damped: its second half is then free for M */
@@ -445,26 +452,27 @@ static element_tangent begin_tangent(const spari_body *body, int e, int masses, 
 }
 
 /* The matrices of one point, and its forces on Q and Q' in value and slope, 4 each. */
-static void differentiate_point(const spari_body *body, int at, const spari_regime *how, int masses, const double *f,
-                                point_matrices *m, double *value, double *slope) {
-    spari_point s;
-    double w = body->weight[at], of_value[BACK] = {0}, of_slope[BACK] = {0};
+static void differentiate_point(const spari_body *body, int64_t slot, const spari_regime *how, int masses,
+                                const double *f, point_matrices *m, double *value, double *slope) {
+    point_one s;
+    double w = body->weight[slot], of_value[BACK] = {0}, of_slope[BACK] = {0};
     memset(m, 0, sizeof *m);
-    spari_point_fields(f, &s);
+    fields_one(how->moving, f, &s);
     if (body->C) {
-        spari_point_strain(body, at, how->moving, &s);
-        add_elastic(body, at, how->moving, w, &s, m);
-        spari_point_elastic_forces(&s, of_value, of_slope);
+        strain_one(SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot),
+                   how->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL, &s);
+        add_elastic(body, slot, how->moving, w, &s, m);
+        elastic_forces_one(&s, of_value, of_slope);
     }
     if (masses || how->heavy) {
-        spari_point_inertia in;
+        point_inertia_one in;
         double m4[4];
         if (masses) {
-            spari_point_inertia_forces(body, at, how, &s, &in);
-            add_inertia(body, at, w, &s, &in, m);
+            inertia_forces_one(SPARI_BLOCK(body->mass, 10, slot), body->gyroscopic, how, &s, &in);
+            add_inertia(body, slot, w, &s, &in, m);
         } else {
-            spari_point_weight(body, at, how, &s, &in);
-            add_weight(body, at, w, &s, &in, m);
+            weight_forces_one(SPARI_BLOCK(body->mass, 10, slot), how, &s, &in);
+            add_weight(body, slot, w, &s, &in, m);
         }
         quat_vec(s.r, in.mb, m4);
         for (int i = 0; i < 4; i++) {
@@ -473,6 +481,17 @@ static void differentiate_point(const spari_body *body, int at, const spari_regi
     }
     memcpy(value, of_value + 3, 4 * sizeof *value);
     memcpy(slope, of_slope + 3, 4 * sizeof *slope);
+}
+
+/* All fields that a tangent asks for; at rest what belongs to rates is 0. */
+static void interpolate_all(const spari_body *body, int e, int moving, const element_tangent *t) {
+    int wanted = body->C ? SPARI_SLOPES : 0;
+    if (moving) {
+        wanted |= SPARI_RATES | SPARI_ACCELERATIONS | (body->C && body->D ? SPARI_RATE_SLOPES : 0);
+    } else {
+        memset(t->f, 0, (size_t)(body->slot[e + 1] - body->slot[e]) * POINT_ROWS * sizeof *t->f);
+    }
+    spari_lanes_interpolate(body, e, wanted, t->z, t->f);
 }
 
 /* The mass of point k: by a first stage of its own, or, where damping takes up the room for it, at once. */
@@ -498,10 +517,11 @@ static void collect_mass(const element_tangent *t, int k, const double *phi, con
 /* Point k of the element into forces on Q, the table of phi and the first stages. */
 static void collect_point(const spari_body *body, const element_tangent *t, int k, const spari_regime *how) {
     int P = t->P, n = t->points, at = t->first + k;
+    int64_t slot = t->slot + k;
     const double *phi = body->phi + (int64_t)at * P, *dphi = body->dphi + (int64_t)at * P;
-    double value[4], slope[4], w = body->weight[at];
+    double value[4], slope[4], w = body->weight[slot];
     point_matrices m;
-    differentiate_point(body, at, how, t->masses, t->f + (int64_t)POINT_ROW * k, &m, value, slope);
+    differentiate_point(body, slot, how, t->masses, SPARI_BLOCK(t->f, POINT_ROWS, k), &m, value, slope);
     for (int l = 0; l < P; l++) {
         for (int i = 0; i < 4; i++) {
             t->g[4 * l + i] += w * (phi[l] * value[i] + dphi[l] * slope[i]);
@@ -569,7 +589,7 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     int masses = (cm != 0 || a) && body->mass, rates = (cv != 0 || v) && (body->D || masses);
     const element_tangent t = begin_tangent(body, e, masses, rates);
     spari_point_gather(body, e, q, v, a, t.z);
-    spari_point_interpolate(body, e, t.z, how.moving, t.f);
+    interpolate_all(body, e, how.moving, &t);
     for (int k = 0; k < t.points; k++) {
         collect_point(body, &t, k, &how);
     }

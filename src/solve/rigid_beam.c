@@ -29,24 +29,31 @@ static int rigid_effects(const spar_member *m, int effects) {
 
 /* ---- the body that carries it ---- */
 
-/* Mass, first and second moments about the root, from the quadrature of the beam. */
+/* Adds what the mass m[10] of weight w at x has about the root: mass, first and second moments. */
+static void add_mass(double w, const double *m, const double *x, const double root[3], double out[10]) {
+    double a[3] = {x[0] - root[0], x[1] - root[1], x[2] - root[2]}, ac = spari_dot(a, m + 1), aa = spari_dot(a, a);
+    out[0] += w * m[0];
+    for (int i = 0; i < 3; i++) {
+        out[1 + i] += w * (m[0] * a[i] + m[1 + i]);
+    }
+    /* J + (m a.a + 2 a.mc) I - m a a^T - a mc^T - mc a^T */
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, col[6] = {0, 1, 2, 1, 2, 2};
+    for (int t = 0; t < 6; t++) {
+        int i = row[t], j = col[t];
+        out[4 + t] +=
+            w * (m[4 + t] + (i == j ? m[0] * aa + 2 * ac : 0) - m[0] * a[i] * a[j] - a[i] * m[1 + j] - m[1 + i] * a[j]);
+    }
+}
+
+/* The same of the whole beam, from its quadrature. */
 static void whole_mass(const spari_body *beam, const double root[3], double out[10]) {
-    int points = beam->first[beam->elements];
     memset(out, 0, 10 * sizeof *out);
-    for (int k = 0; k < points; k++) {
-        const double *m = beam->mass + 10 * (int64_t)k, *x = beam->place + 3 * (int64_t)k;
-        double w = beam->weight[k], a[3] = {x[0] - root[0], x[1] - root[1], x[2] - root[2]}, ac = spari_dot(a, m + 1),
-               aa = spari_dot(a, a);
-        out[0] += w * m[0];
-        for (int i = 0; i < 3; i++) {
-            out[1 + i] += w * (m[0] * a[i] + m[1 + i]);
-        }
-        /* J + (m a.a + 2 a.mc) I - m a a^T - a mc^T - mc a^T */
-        static const int row[6] = {0, 0, 0, 1, 1, 2}, col[6] = {0, 1, 2, 1, 2, 2};
-        for (int t = 0; t < 6; t++) {
-            int i = row[t], j = col[t];
-            out[4 + t] += w * (m[4 + t] + (i == j ? m[0] * aa + 2 * ac : 0) - m[0] * a[i] * a[j] - a[i] * m[1 + j] -
-                               m[1 + i] * a[j]);
+    for (int e = 0; e < beam->elements; e++) {
+        for (int k = beam->first[e]; k < beam->first[e + 1]; k++) {
+            int64_t slot = beam->slot[e] + k - beam->first[e];
+            double m[10];
+            spari_slot_get(beam->mass, 10, slot, m);
+            add_mass(beam->weight[slot], m, beam->place + 3 * (int64_t)k, root, out);
         }
     }
 }
@@ -62,18 +69,20 @@ static void rigid_free(void *solution) {
 
 static int rigid_create(spar_member *m) {
     spari_rigid_beam *b = m->solution = spari_zalloc(1, sizeof *b);
-    spari_body *body = b ? b->body = spari_body_create(1, 1, 1, 0, 0, 1) : NULL;
+    spari_body *body = b ? b->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1) : NULL;
     if (!body) {
         return SPAR_ERR_MEMORY;
     }
-    body->first[1] = 1;
     body->phi[0] = body->weight[0] = 1;
     body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     body->length = m->body->length;
     memcpy(body->place, m->xr, 3 * sizeof(double));
     if (m->body->mass) { /* else neither inertia nor weight is in force */
-        whole_mass(m->body, m->xr, body->mass);
+        double mass[10];
+        whole_mass(m->body, m->xr, mass);
+        spari_slot_put(body->mass, 10, 0, mass);
     }
+    spari_body_complete(body);
     if (spari_fidelity_is_here(m)) {
         b->solver = spari_solver_create(m, body, &b->arms);
         return b->solver ? SPAR_OK : SPAR_ERR_MEMORY;

@@ -2,19 +2,12 @@
 #include "transfer.h"
 
 #include "../base/status.h"
+#include "../math/lanes.h"
 #include "../math/rotation.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#if defined(__GNUC__)
-#define SPARI_ALWAYS_INLINE __attribute__((always_inline))
-#define SPARI_UNROLL _Pragma("GCC unroll 9")
-#else
-#define SPARI_ALWAYS_INLINE
-#define SPARI_UNROLL
-#endif
 
 #if defined(__has_builtin) /* in Clang, and in GCC from 12 on; GCC's own shuffle is older */
 #if __has_builtin(__builtin_shufflevector)

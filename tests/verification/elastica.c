@@ -2,7 +2,7 @@
    IJNME 17 (1981), table 1: elliptic integrals, 13 digits. EA = GA = 1e10 EI/L^2 stands for inextensible and
    shear-rigid, which leaves the shear of the tip, w/L = 1e-10 lambda. 18 nodes: the layer at the root has the width L /
    sqrt(lambda), so the interpolation error grows with lambda; two elements beyond 10 with a joint where the layer ends.
- */
+   Rounding in a stiffness of 1e10 leaves up to 2e-10 in the rotations, with another BLAS other digits. */
 #include "verification.h"
 
 static void solve(double lambda, int elements, double q[7]) {
@@ -26,7 +26,7 @@ static void test_elastica(void **state) {
                                {25, 0.8827305261799, 0.7171925461889, 1.548466471441},
                                {100, 0.941421350862, 0.8585786445629, 1.57064588466}};
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
-        double lambda = table[k][0], q[7], tolerance = 1e-10 * (1 + lambda) + (lambda > 10 ? 1e-8 : 0);
+        double lambda = table[k][0], q[7], tolerance = 1e-10 * (3 + lambda) + (lambda > 10 ? 1e-8 : 0);
         char what[64];
         solve(lambda, lambda > 10 ? 2 : 1, q);
         snprintf(what, sizeof what, "P L^2/EI = %g: w/L", lambda);
