@@ -58,8 +58,8 @@ SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, doub
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
-/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve and spar_aero_read_aerodyn; map
-   them anew and the object must be made anew.
+/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve and spar_aero_read_aerodyn;
+   map them anew and the object must be made anew.
      blades: in, on this rank; 0 with NULL: a rank without blades
      sections[blades]: in, one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with
            the same number n >= 2 of sections, in order from root to tip at different places

@@ -26,8 +26,8 @@ SPAR_API int spar_member_write_vtk(const spar_member *member, const char *path);
    wrong map is seen at once. At every node velocity, section_x, _y, _z (the turned axes of the line at the foot), xi,
    distance and flags (SPAR_MAP_*) of the map. Sections are also joined by a line in the order given, and have force, as
    pushed last. Where one set does not serve both, the motion nodes come first, then the force nodes: set is 0 and 1,
-   and force (0 at motion nodes) is there if node forces are kept (SPAR_EFFECT_FLUID_HISTORY). After the nodes come their feet in the
-   same order, with the node's values and 2 more in set. */
+   and force (0 at motion nodes) is there if node forces are kept (SPAR_EFFECT_FLUID_HISTORY). After the nodes come
+   their feet in the same order, with the node's values and 2 more in set. */
 SPAR_API int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path);
 /* Adds a file to an index of files in time (.pvd), which is made when it is not there; open that in ParaView. part:
    0, 1, ... where several files show one time. file is relative to the index. The index is whole after every call.
