@@ -45,13 +45,13 @@ int spari_carriage_create(spari_frame *f, spar_member *m) {
     if (m->floats && find_tangents(f, m) != SPAR_OK) {
         return SPAR_ERR_MEMORY;
     }
-    spari_body *body = c->body = spari_body_create(1, 1, 1, 0, 0, 0);
+    spari_body *body = c->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 0);
     if (!body) {
         return SPAR_ERR_MEMORY;
     }
     body->length = m->body->length;
-    body->first[1] = 1;
     body->phi[0] = body->weight[0] = 1;
+    spari_body_complete(body);
     c->root = spari_solver_create(m, body, NULL);
     return c->root ? SPAR_OK : SPAR_ERR_MEMORY;
 }
