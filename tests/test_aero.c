@@ -498,6 +498,24 @@ static void test_mapped_anew(void **state) {
     }
 }
 
+/* Motion sections that are given anew and not mapped: refused, and the last solution stays, to the bit. */
+static void test_motion_sections_not_mapped(void **state) {
+    (void)state;
+    static const double xi[N] = {0};
+    double before[3][N] = {{0}}, after[3][N] = {{0}};
+    scene s;
+    begin(&s, 8.0, 9.16);
+    build(&s, 0, 1);
+    OK(spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
+    OK(spar_aero_get_sections(s.aero, before[0], NULL, NULL, NULL, NULL));
+    OK(spar_fluid_set_motion_sections(s.fluid[0], N, xi, NULL));
+    s.wind[0][0] += 1;
+    REFUSED(SPAR_ERR_STATE, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0), "not mapped");
+    OK(spar_aero_get_sections(s.aero, after[0], NULL, NULL, NULL, NULL));
+    assert_memory_equal(before, after, sizeof before);
+    end(&s);
+}
+
 /* A wing in steady flow, no rotor: closed form of lift and of the lumped shares. Straight along x from 0 to 4 m, chord
    1 m, flow (0, 20, 0) across it from the leading edge; z = x cross y is the pressure side, so lift points along -z.
    Constant cl 0.8, three sections 1 m and 3 m apart: per length f = rho/2 V^2 c cl; shares f/2, f/2 + 3f/2, 3f/2
@@ -568,9 +586,11 @@ static void test_wing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam), cmocka_unit_test(test_reader),
-        cmocka_unit_test(test_effects),       cmocka_unit_test(test_turned),       cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),      cmocka_unit_test(test_mapped_anew),
+        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
+        cmocka_unit_test(test_reader),        cmocka_unit_test(test_effects),
+        cmocka_unit_test(test_turned),        cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_mapped_anew),   cmocka_unit_test(test_motion_sections_not_mapped),
         cmocka_unit_test(test_wing),          cmocka_unit_test(test_all_or_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

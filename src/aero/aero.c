@@ -301,6 +301,7 @@ static int check_blades(const spar_aero *aero, const char *call) {
                       "force nodes now; make a new one",
                       call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
         SPARI_TRY(check_packed(aero->session, fluid, SPAR_ERR_STATE, call));
+        SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_MOTION, NULL, NULL, NULL));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
     SPARI_REQUIRE(aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,
