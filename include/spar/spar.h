@@ -568,7 +568,8 @@ enum {
 };
 /* energy[capacity]: out, by SPAR_ENERGY_*, NULL: not wanted. Members spar does not solve for give zeros. With
    LARGE_ROTATION off, and of linear and modal members, the quadratic forms of their equations; on a driven root only
-   the strain energy, the others are those of the motion. */
+   the strain energy, the others are those of the motion. A modal member that joints tie gets its shapes for that from
+   the first call that steps, solves, saves or tries, and its energies are of those from then on. */
 SPAR_API int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy);
 /* Work done on a member, J. */
 enum {

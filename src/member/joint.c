@@ -25,6 +25,14 @@ static int check_node(const spar_session *s, const char *call, const char *name,
     return SPAR_OK;
 }
 
+/* A linear member whose root nothing gives is seen from it as soon as a joint ties it, not when its solver is made for
+   that: what getters say does not depend on which call made it. */
+static void let_float(spar_member *m) {
+    if (m && m->committed && m->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_given(m)) {
+        m->floats = 1;
+    }
+}
+
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
                         spar_member *b, int64_t node_b, spar_joint **out) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
@@ -60,6 +68,8 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     *end = j;
     *out = j;
     s->joints_stale = 1;
+    let_float(a);
+    let_float(b);
     return SPAR_OK;
 }
 
