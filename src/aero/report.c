@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <spar/spar_aero.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct aero_row {
@@ -127,8 +128,11 @@ int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, 
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
     const aero_trial t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
+    char message[SPARI_MESSAGE_SIZE] = "";
+    (void)snprintf(message, sizeof message, "%s", spar_session_message(session));
     int status = check_arguments(session, aero, &t, table_rows, table_columns, __func__);
     SPARI_TRY(spari_named(session, __func__, try_all(session, aero, &t, status, made)));
+    spari_put_message_back(session, message);
     spari_fill_table(table_rows, table_columns, table, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
 }

@@ -13,6 +13,9 @@ int spari_need_capacity(const spar_session *session, const char *call, int64_t c
 /* Answers `status`; of a failure whose message, from below, does not name the public call, the message then begins with
    it. At the public edge. */
 int spari_named(const spar_session *session, const char *call, int status);
+/* A message that stood before comes back, text[SPARI_MESSAGE_SIZE]: what failed in between is no failure of the call.
+ */
+void spari_put_message_back(const spar_session *session, const char *text);
 #ifdef __clang_analyzer__ /* reads one file at a time: what it must know is that a failure is never 0 */
 #define spari_fail(session, status, ...) ((spari_fail)(session, status, __VA_ARGS__) ? (status) ? (status) : 1 : 1)
 #endif

@@ -67,6 +67,10 @@ int spari_need_capacity(const spar_session *session, const char *call, int64_t c
     return SPAR_OK;
 }
 
+void spari_put_message_back(const spar_session *session, const char *text) {
+    memcpy(message_of(session), text, SPARI_MESSAGE_SIZE);
+}
+
 int spari_named(const spar_session *session, const char *call, int status) {
     char text[SPARI_MESSAGE_SIZE], *message = message_of(session);
     if (status != SPAR_OK && !strstr(message, call)) {

@@ -343,7 +343,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(spari_named(s, __func__, fill_rows(s, __func__, &run, made)));
-    memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
+    spari_put_message_back(s, message);
     spari_fill_table(table_rows, table_columns, table, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;
 }
