@@ -231,10 +231,12 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
      coupling.norm          motion (default) | loads: what the stop test, Aitken's factor and the columns of IQN-ILS
                             weigh loads by: the motion that the structure answers them with in the step, so that a load
                             that moves nothing (drag on a stiff direction) counts nothing; or the loads themselves. With
-                            a member whose motion the host gives (points, external) it is loads in any case
+                            a member whose motion the host gives (points, external), or that joints tie, it is loads in
+                            any case
      coupling.estimate      off (default) | on: explicit: spar_step_check also finds what another iteration would have
-                            moved, SPAR_REPORT_MOTION_ERROR, by one back-substitution and no solution of the fluid; of
-                            members that joints tie, and those whose motion the host gives, it knows nothing
+                            moved, SPAR_REPORT_MOTION_ERROR, by one back-substitution and no solution of the fluid: to
+                            first order, of members that joints tie with all that they are tied to; of those whose
+                            motion the host gives it knows nothing
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
      coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
      coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, part of a column that newer ones must not contain already

@@ -5,6 +5,7 @@
 
 #include "../comm/comm.h"
 #include "../member/structure.h"
+#include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include <math.h>
 #include <string.h>
@@ -76,20 +77,31 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     return SPAR_OK;
 }
 
-int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, double *farthest) {
-    int rank = spari_comm_rank(s->comm);
-    double square = 0, *at = image;
-    memset(image, 0, (size_t)(n + 1) * sizeof *image);
+/* Into image [n], what this rank's members answer to the loads that the prediction has missed. 1: there is none. */
+static int answer_miss(spar_session *s, double *image, double *room) {
+    int rank = spari_comm_rank(s->comm), singular = 0;
+    double *at = image;
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
-        if (m->owner != rank || !m->row->answer || m->assembly) {
+        if (m->owner != rank || !m->row->answer) {
             continue;
         }
+        double *miss = m->assembly ? at : room; /* the tied ones' answer comes in its place */
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            room[i] = m->load_pushed[i] - m->load_used[i];
+            miss[i] = m->load_pushed[i] - m->load_used[i];
         }
-        if (m->row->answer(m, room, at)) {
-            at[0] = NAN;
-        }
+        singular = (!m->assembly && m->row->answer(m, room, at)) || singular;
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        singular = spari_assembly_answer(a, image) || singular;
+    }
+    return singular;
+}
+
+int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, double *farthest) {
+    double square = 0;
+    memset(image, 0, (size_t)(n + 1) * sizeof *image);
+    if (answer_miss(s, image, room)) {
+        image[0] = NAN;
     }
     SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < n; i += 6) {

@@ -25,8 +25,8 @@ int spari_weighs_motion(const spar_session *session);
 int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
 
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:
-   what another iteration would move. 0 of members that the library does not solve, or that joints tie; infinite where
-   the matrix is singular. n: 6 of each node of all members; image [n + 1]: room, and for the ranks' status; room: for 6
+   what another iteration would move. 0 of members that the library does not solve; infinite where the matrix is
+   singular. n: 6 of each node of all members; image [n + 1]: room, and for the ranks' status; room: for 6
    of each node of the largest member. All ranks. */
 int spari_weigh_miss(spar_session *session, int64_t n, double *image, double *room, double *farthest);
 

@@ -361,3 +361,47 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
     }
     return publish_all(a, dt);
 }
+
+/* ---- its answer ---- */
+
+/* Tangents where the step has ended. They are for the answer alone: whether the next step forms its own stays as the
+   solution has left it. */
+static int form_after(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        double power = p->solver->power;
+        (void)p->row->balance(p);
+        p->solver->power = power;
+    }
+    return form(a);
+}
+
+/* Where a member's own begin among those of all. */
+static double *stacked_of(const spar_member *member, double *stacked) {
+    for (const spar_member *m = member->session->members; m != member; m = m->next) {
+        stacked += 6 * m->nodes;
+    }
+    return stacked;
+}
+
+int spari_assembly_answer(spari_assembly *a, double *stacked) {
+    if (!a->here || a->limbs == 0) {
+        return 0;
+    }
+    if (!a->factored && form_after(a)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->take_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+    }
+    for (int i = 0; i < a->links; i++) {
+        memset(a->link[i].gap, 0, sizeof a->link[i].gap);
+    }
+    a->standing = 0; /* that system is of parts a little way from here */
+    int singular = spari_tied_solve(a, a->limb[0].scheme.cv);
+    a->standing = 0;
+    for (int i = 0; i < a->limbs && !singular; i++) {
+        a->limb[i].row->show_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+    }
+    return singular;
+}

@@ -39,6 +39,12 @@ void spari_assembly_load(spari_assembly *assembly, const double *state);
 /* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
    rank. */
 int spari_assembly_advance(spari_assembly *assembly, double dt);
+/* After that, on its owner, elsewhere it does nothing: what a little more of the loads in use adds to the motions
+   after, to first order and over the last substep. stacked: six of each node of all members of the session; of those
+   that it solves the loads, and then the motions. The steps to come are the same, to the last bit. 0, or 1: there is no
+   answer.
+ */
+int spari_assembly_answer(spari_assembly *assembly, double *stacked);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
    [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */

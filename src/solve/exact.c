@@ -71,13 +71,21 @@ static void exact_effort(const spar_member *m, spari_effort *effort) {
     spari_solver_effort(m->solution, effort);
 }
 
+static void exact_take_more(spar_member *m, const double *load, double *r) {
+    spari_member_gather(m, load, r);
+}
+
+static void exact_show_more(spar_member *m, const double *x, double *motion) {
+    spari_member_from_unique(m, 6, x, motion);
+}
+
 static int exact_answer(spar_member *m, const double *load, double *motion) {
     spari_solver *s = m->solution;
-    spari_member_gather(m, load, s->r);
+    exact_take_more(m, load, s->r);
     if (spari_solver_answer(s, m, s->r, s->dx)) {
         return 1;
     }
-    spari_member_from_unique(m, 6, s->dx, motion);
+    exact_show_more(m, s->dx, motion);
     return 0;
 }
 
@@ -178,6 +186,8 @@ const spari_fidelity spari_fidelity_exact = {
     .solver = exact_solver,
     .take_loads = exact_take_loads,
     .take_rest = exact_take_rest,
+    .take_more = exact_take_more,
+    .show_more = exact_show_more,
     .publish = exact_publish,
     .state_size = exact_state_size,
     .save = exact_save,

@@ -71,6 +71,10 @@ typedef struct spari_fidelity {
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
     void (*take_rest)(spar_member *m, const double *fluid);
+    /* after a step, as `answer` has it: a little more load [nodes][6] as forces r on its unknowns, and the motion x of
+       these as that of the nodes [nodes][6] */
+    void (*take_more)(spar_member *m, const double *load, double *r);
+    void (*show_more)(spar_member *m, const double *x, double *motion);
     void (*publish)(spar_member *m);
 
     /* All that the next steps depend on beside the member itself, to the last bit, as doubles; whether `count` doubles

@@ -48,6 +48,11 @@ typedef struct spari_limb_row {
     void (*clear)(struct spari_limb *p);
     void (*shift_rates)(struct spari_limb *p);
 
+    /* After the step: its forces become a little more load [nodes][6] of its nodes; and the motion [nodes][6] of these
+       that the corrections are, displacements and small turns, global axes. */
+    void (*take_more)(struct spari_limb *p, const double *load);
+    void (*show_more)(struct spari_limb *p, double *motion);
+
     /* At t^0: the mass it starts with, factored (0 or 1); forces less loads of the accelerations there; those less the
        corrections; they are found. */
     int (*start)(struct spari_limb *p);

@@ -300,6 +300,61 @@ static void shift_rates_of_frame(spari_limb *p) {
     look_at_end_of_step(p);
 }
 
+/* As forces r and on the ends. The first six are force and moment of the whole about the root, arms deformed: modal
+   unknowns have those of the reference already. */
+static void take_more_of_frame(spari_limb *p, const double *load) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    double sum[6] = {0}, *own = f->turned;
+    const double *x = spari_frame_nodal(f, f->to.y, c->x);
+    spari_member_gather(p->member, load, own);
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(f->to.root.q + 3, own + i, own + i);
+    }
+    spari_frame_gather(f, own, f->r);
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3];
+        spari_member_arm(p->member, i, arm);
+        for (int k = 0; k < 3; k++) {
+            sum[k] += own[6 * i + k];
+            sum[3 + k] += own[6 * i + 3 + k];
+            arm[k] += x[6 * i + k];
+        }
+        spari_cross(arm, own + 6 * i, turn);
+        for (int k = 0; k < 3; k++) {
+            sum[3 + k] += turn[k];
+        }
+    }
+    memcpy(f->r, sum, sizeof sum);
+    memset(f->r, 0, (size_t)spari_member_held(p->member) * sizeof *f->r);
+    show_forces(p, &f->to);
+}
+
+/* The root carries the nodes where they are, and the deformation changes. */
+static void show_more_of_frame(spari_limb *p, double *motion) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    const double *root = p->solver->dx, *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, c->x);
+    memset(f->dx, 0, 6 * sizeof *f->dx);
+    const double *change = spari_frame_nodal(f, f->dx, f->nodal);
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3], *out = f->turned + 6 * i;
+        spari_member_arm(p->member, i, arm);
+        for (int k = 0; k < 3; k++) {
+            arm[k] += x[6 * i + k];
+        }
+        spari_rotate(q, arm, arm);
+        spari_cross(root + 3, arm, turn);
+        spari_rotate(q, change + 6 * i, out);
+        spari_rotate(q, change + 6 * i + 3, out + 3);
+        for (int k = 0; k < 3; k++) {
+            out[k] += root[k] + turn[k];
+            out[3 + k] += root[3 + k];
+        }
+    }
+    spari_member_from_unique(p->member, 6, f->turned, motion);
+}
+
 /* ---- the start ---- */
 
 static int start_of_frame(spari_limb *p) {
@@ -436,6 +491,8 @@ const spari_limb_row spari_limb_frame = {
     .way = way_of_frame,
     .clear = clear_frame,
     .shift_rates = shift_rates_of_frame,
+    .take_more = take_more_of_frame,
+    .show_more = show_more_of_frame,
     .start = start_of_frame,
     .unbalance = unbalance_frame,
     .correct_start = correct_start_of_frame,

@@ -225,6 +225,15 @@ static void shift_rates_of_nodes(spari_limb *p) {
     spari_root_show(s, p->member, &p->ends);
 }
 
+static void take_more_of_nodes(spari_limb *p, const double *load) {
+    p->member->row->take_more(p->member, load, p->solver->r);
+    memset(p->solver->r, 0, (size_t)spari_member_held(p->member) * sizeof(double));
+}
+
+static void show_more_of_nodes(spari_limb *p, double *motion) {
+    p->member->row->show_more(p->member, p->solver->dx, motion);
+}
+
 /* ---- the start ---- */
 
 static int start_nodes(spari_limb *p) {
@@ -336,6 +345,8 @@ const spari_limb_row spari_limb_nodes = {
     .way = way_of_nodes,
     .clear = clear_nodes,
     .shift_rates = shift_rates_of_nodes,
+    .take_more = take_more_of_nodes,
+    .show_more = show_more_of_nodes,
     .start = start_nodes,
     .unbalance = unbalance_nodes,
     .correct_start = correct_start_of_nodes,

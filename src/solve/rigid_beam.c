@@ -167,9 +167,9 @@ static int rigid_advance(spar_member *m, double dt) {
 }
 
 /* More force and moment on the root, the latter by the arms as they are turned. */
-static int rigid_answer(spar_member *m, const double *load, double *motion) {
-    const spari_rigid_beam *b = m->solution;
-    double sum[6] = {0}, arms[9] = {0}, root[6];
+static void rigid_take_more(spar_member *m, const double *load, double *sum) {
+    double arms[9] = {0};
+    memset(sum, 0, 6 * sizeof *sum);
     sum_on_root(m, load, sum, arms);
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], moment[3];
@@ -181,10 +181,20 @@ static int rigid_answer(spar_member *m, const double *load, double *motion) {
             sum[3 + k] += moment[k];
         }
     }
+}
+
+static void rigid_show_more(spar_member *m, const double *root, double *motion) {
+    spari_carried_displace(m, root, motion);
+}
+
+static int rigid_answer(spar_member *m, const double *load, double *motion) {
+    const spari_rigid_beam *b = m->solution;
+    double sum[6], root[6];
+    rigid_take_more(m, load, sum);
     if (spari_solver_answer(b->solver, m, sum, root)) {
         return 1;
     }
-    spari_carried_displace(m, root, motion);
+    rigid_show_more(m, root, motion);
     return 0;
 }
 
@@ -312,6 +322,8 @@ const spari_fidelity spari_fidelity_rigid = {
     .solver = solver_of,
     .take_loads = rigid_take_loads,
     .take_rest = rigid_take_rest,
+    .take_more = rigid_take_more,
+    .show_more = rigid_show_more,
     .publish = rigid_publish,
     .state_size = rigid_state_size,
     .save = rigid_save,
