@@ -64,16 +64,17 @@ static void solve_whole(double A[6][6], int n, double *X) {
             size = fmax(size, fabs(A[j][j]));
         }
         int none = !(A[p][p] > 1e-12 * size);
+        double by_pivot = none ? 0 : 1 / A[p][p];
         for (int i = 0; i < 6; i++) {
-            double by = none ? 0 : A[i][p] / A[p][p];
+            double by = A[i][p] * by_pivot;
             for (int j = 0; j < 6 && i != p; j++) {
                 A[i][j] -= by * A[p][j];
             }
             cblas_daxpy(i != p ? n : 0, -by, X + (int64_t)n * p, 1, X + (int64_t)n * i, 1);
         }
-        cblas_dscal(n, none ? 0 : 1 / A[p][p], X + (int64_t)n * p, 1);
+        cblas_dscal(n, by_pivot, X + (int64_t)n * p, 1);
         for (int j = 0; j < 6; j++) {
-            A[p][j] = none ? 0 : A[p][j] / A[p][p];
+            A[p][j] *= by_pivot;
         }
     }
 }

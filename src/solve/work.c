@@ -36,14 +36,14 @@ static int turns_linearly(const spar_member *m) {
                           (m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN));
 }
 
-/* Displacement and rotation vector of node i over the step */
-static void increment(const spar_member *m, int64_t i, double d[6]) {
+/* Displacement and rotation vector of node i over the step; linearly: the change of its rotation vector. */
+static void increment(const spar_member *m, int64_t i, int linearly, double d[6]) {
     const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
     double conj[4], turn[4];
     for (int c = 0; c < 3; c++) {
         d[c] = to[c] - from[c];
     }
-    if (turns_linearly(m)) {
+    if (linearly) {
         spari_quat_log(from + 3, conj);
         spari_quat_log(to + 3, turn);
         for (int c = 0; c < 3; c++) {
@@ -81,7 +81,7 @@ void spari_work_step(spar_member *m) {
             kept[c] = m->dead[6 * i + c] + 0.5 * w->load[6 * i + c];
             w->fluid[6 * i + c] = now;
         }
-        increment(m, i, d);
+        increment(m, i, turns_linearly(m), d);
         w->sum[SPAR_WORK_LOADS] += dot6(kept, d);
         w->sum[SPAR_WORK_FLUID] += dot6(fluid, d);
     }
@@ -91,7 +91,7 @@ void spari_work_step(spar_member *m) {
             memcpy(w->reaction, reaction, sizeof reaction);
             w->reaction_lacks = 0;
         }
-        increment(m, 0, d);
+        increment(m, 0, turns_linearly(m), d);
         w->sum[SPAR_WORK_ROOT] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
     }
@@ -155,7 +155,8 @@ void spari_work_of_joint(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
         if (m && m->work) {
-            increment(m, j->seat[side], d);
+            /* on a linear beam a joint's moment does its work on the turn: (J5) in docs/theory.md */
+            increment(m, j->seat[side], m->seen != SPARI_SEEN_LINEAR && turns_linearly(m), d);
             m->work->sum[SPAR_WORK_JOINTS] += 0.5 * (dot6(f[0] + 6 * side, d) + dot6(f[1] + 6 * side, d));
         }
     }
