@@ -1,5 +1,6 @@
 ! spar_c: the C interface of spar as it is, one binding per public function, one parameter per constant. The headers under
 ! include/spar say what every call does, and what it may be given; the module spar puts the types and checks of Fortran over it.
+! Written by cmake/make-fortran.sh from the headers.
 !
 ! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
@@ -7,66 +8,63 @@
 module spar_c
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   implicit none
-  private :: c_char, c_double, c_funptr, c_int, c_int64_t, c_ptr
+  private :: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   public
 
   ! spar.h
   integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
-  integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, &
-      SPAR_COUPLING_AITKEN = 2, SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
+      SPAR_COUPLING_IQN_ILS = 3
   integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
       SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
       SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_ADDED_MASS_SPREAD = 8, SPAR_REPORT_MOTION_ERROR = 9, &
       SPAR_REPORT_COUNT = 10
-  integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, SPAR_PHASE_SOLVED = 3, &
-      SPAR_PHASE_CHECKED = 4
+  integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
+      SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
   integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
-  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, &
-      SPAR_ROOT_DRIVEN = 3
-  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, &
-      SPAR_FIDELITY_LINEAR = 2, SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
-  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, &
-      SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
   integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
       SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
   integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
+  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
+      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
+      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
+  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
+      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
+  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
+  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
+      SPAR_WORK_COUNT = 4
+  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
+      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
-  integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer(c_int), parameter :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
-  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, &
-      SPAR_EFFECT_GRAVITY = 4, SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
-      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
-  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, &
-      SPAR_TRY_SECONDS = 3, SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
-  integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, SPAR_ROW_DAMPING = 3, &
-      SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, SPAR_ROW_FLUID_POSES = 7, &
-      SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, SPAR_ROW_HALF_STEP = 11, &
-      SPAR_ROW_COUNT = 12
+  integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
+  integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
+      SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
+      SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
+  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
+      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
+  integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
+      SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
+      SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_COUNT = 12
   integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
-  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
-      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
-  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, &
-       SPAR_WORK_JOINTS = 3, SPAR_WORK_COUNT = 4
-  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, SPAR_JOINT_ENERGY_DRIVE = 2, &
-       SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
-  integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, SPAR_AUDIT_FORCE_ERROR = 3, &
-      SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, SPAR_AUDIT_NODES = 7, &
-      SPAR_AUDIT_COUNT = 8
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
   integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
-  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, &
-      SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
   integer(c_int), parameter :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
       SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
 
@@ -91,20 +89,20 @@ module spar_c
 
     function spar_session_create(session) bind(c) result(status)
       import :: c_int, c_ptr
-      type(c_ptr), intent(inout) :: session
+      type(c_ptr), intent(inout), optional :: session
       integer(c_int) :: status
     end function spar_session_create
 
     function spar_session_create_fcomm(comm, session) bind(c) result(status)
       import :: c_int, c_ptr
       integer(c_int), value :: comm
-      type(c_ptr), intent(inout) :: session
+      type(c_ptr), intent(inout), optional :: session
       integer(c_int) :: status
     end function spar_session_create_fcomm
 
     subroutine spar_session_destroy(session) bind(c)
       import :: c_ptr
-      type(c_ptr), intent(inout) :: session
+      type(c_ptr), intent(inout), optional :: session
     end subroutine spar_session_destroy
 
     function spar_session_message(session) bind(c) result(text)
@@ -120,6 +118,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_set_gravity
 
+    function spar_session_get_gravity(session, g) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: g(3)
+      integer(c_int) :: status
+    end function spar_session_get_gravity
+
     function spar_session_set_integrator(session, rho_inf, substeps) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: session
@@ -127,6 +132,14 @@ module spar_c
       integer(c_int), value :: substeps
       integer(c_int) :: status
     end function spar_session_set_integrator
+
+    function spar_session_get_integrator(session, rho_inf, substeps) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: rho_inf
+      integer(c_int), intent(inout), optional :: substeps
+      integer(c_int) :: status
+    end function spar_session_get_integrator
 
     function spar_session_set_newton(session, atol, rtol, max_iterations) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -136,12 +149,27 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_set_newton
 
+    function spar_session_get_newton(session, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: atol, rtol
+      integer(c_int), intent(inout), optional :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_get_newton
+
     function spar_session_set_predictor(session, order) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: session
       integer(c_int), value :: order
       integer(c_int) :: status
     end function spar_session_set_predictor
+
+    function spar_session_get_predictor(session, order) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: order
+      integer(c_int) :: status
+    end function spar_session_get_predictor
 
     function spar_session_set_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -152,105 +180,21 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_set_coupling
 
+    function spar_session_get_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: scheme
+      real(c_double), intent(inout), optional :: atol, rtol
+      integer(c_int), intent(inout), optional :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_get_coupling
+
     function spar_session_set_relaxation(session, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: omega
       integer(c_int) :: status
     end function spar_session_set_relaxation
-
-    function spar_session_set_reproducible(session, on) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: on
-      integer(c_int) :: status
-    end function spar_session_set_reproducible
-
-    function spar_session_set_option(session, key, value) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: key(*), value(*)
-      integer(c_int) :: status
-    end function spar_session_set_option
-
-    function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: t
-      integer(c_int64_t), intent(inout), optional :: step
-      integer(c_int), intent(inout), optional :: iteration
-      integer(c_int) :: status
-    end function spar_session_get_time
-
-    function spar_session_get_phase(session, phase) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: phase
-      integer(c_int) :: status
-    end function spar_session_get_phase
-
-    function spar_session_sum(session, own, n, x) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: own
-      integer(c_int64_t), value :: n
-      real(c_double), intent(inout), optional :: x(*)
-      integer(c_int) :: status
-    end function spar_session_sum
-
-    function spar_member_get_session(member, session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      type(c_ptr), intent(inout), optional :: session
-      integer(c_int) :: status
-    end function spar_member_get_session
-
-    function spar_member_get_name(member) bind(c) result(text)
-      import :: c_ptr
-      type(c_ptr), value :: member
-      type(c_ptr) :: text
-    end function spar_member_get_name
-
-    function spar_session_get_gravity(session, g) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: g(3)
-      integer(c_int) :: status
-    end function spar_session_get_gravity
-
-    function spar_session_get_integrator(session, rho_inf, substeps) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: rho_inf
-      integer(c_int), intent(inout), optional :: substeps
-      integer(c_int) :: status
-    end function spar_session_get_integrator
-
-    function spar_session_get_newton(session, atol, rtol, max_iterations) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: atol
-      real(c_double), intent(inout), optional :: rtol
-      integer(c_int), intent(inout), optional :: max_iterations
-      integer(c_int) :: status
-    end function spar_session_get_newton
-
-    function spar_session_get_predictor(session, order) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: order
-      integer(c_int) :: status
-    end function spar_session_get_predictor
-
-    function spar_session_get_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: scheme
-      real(c_double), intent(inout), optional :: atol
-      real(c_double), intent(inout), optional :: rtol
-      integer(c_int), intent(inout), optional :: max_iterations
-      integer(c_int) :: status
-    end function spar_session_get_coupling
 
     function spar_session_get_relaxation(session, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -259,6 +203,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_relaxation
 
+    function spar_session_set_reproducible(session, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: on
+      integer(c_int) :: status
+    end function spar_session_set_reproducible
+
     function spar_session_get_reproducible(session, on) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: session
@@ -266,87 +217,12 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_reproducible
 
-    function spar_member_get_placement(member, x, q) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: x(3)
-      real(c_double), intent(inout), optional :: q(4)
+    function spar_session_set_option(session, key, value) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: key(*), value(*)
       integer(c_int) :: status
-    end function spar_member_get_placement
-
-    function spar_member_get_root(member, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int) :: status
-    end function spar_member_get_root
-
-    function spar_member_get_external(member, on) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: on
-      integer(c_int) :: status
-    end function spar_member_get_external
-
-    function spar_member_get_effects(member, effects) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: effects
-      integer(c_int) :: status
-    end function spar_member_get_effects
-
-    function spar_member_get_fidelity(member, kind, modes) bind(c) result(status)
-      import :: c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int64_t), intent(inout), optional :: modes
-      integer(c_int) :: status
-    end function spar_member_get_fidelity
-
-    function spar_member_get_owner(member, rank) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: rank
-      integer(c_int) :: status
-    end function spar_member_get_owner
-
-    function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int), intent(inout), optional :: elements
-      integer(c_int), intent(inout), optional :: nodes_per_element
-      integer(c_int) :: status
-    end function spar_beam_get_elements
-
-    function spar_beam_get_quadrature(beam, rule, points) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int), intent(inout), optional :: rule
-      integer(c_int), intent(inout), optional :: points
-      integer(c_int) :: status
-    end function spar_beam_get_quadrature
-
-    function spar_beam_get_damping(beam, mu) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: beam
-      real(c_double), intent(inout), optional :: mu(6)
-      integer(c_int) :: status
-    end function spar_beam_get_damping
-
-    function spar_fluid_get_projection(fluid, method, max_distance) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), intent(inout), optional :: method
-      real(c_double), intent(inout), optional :: max_distance
-      integer(c_int) :: status
-    end function spar_fluid_get_projection
-
-    function spar_fluid_get_interpolation(fluid, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int) :: status
-    end function spar_fluid_get_interpolation
+    end function spar_session_set_option
 
     function spar_session_get_option(session, key, capacity, text) bind(c) result(status)
       import :: c_char, c_int, c_int64_t, c_ptr
@@ -381,12 +257,45 @@ module spar_c
       integer(c_int) :: status
     end function spar_session_get_report
 
+    function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: t
+      integer(c_int64_t), intent(inout), optional :: step
+      integer(c_int), intent(inout), optional :: iteration
+      integer(c_int) :: status
+    end function spar_session_get_time
+
+    function spar_session_get_phase(session, phase) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: phase
+      integer(c_int) :: status
+    end function spar_session_get_phase
+
+    function spar_session_sum(session, status, n, x) bind(c) result(answer)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: status
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: x(*)
+      integer(c_int) :: answer
+    end function spar_session_sum
+
+    function spar_session_set_log(session, log, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: log
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_log
+
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
       type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
       real(c_double), intent(in), optional :: x(3), q(4)
-      type(c_ptr), intent(inout) :: member
+      type(c_ptr), intent(inout), optional :: member
       integer(c_int) :: status
     end function spar_point_create
 
@@ -395,7 +304,7 @@ module spar_c
       type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
       real(c_double), intent(in), optional :: x(3), q(4), mass(36)
-      type(c_ptr), intent(inout) :: member
+      type(c_ptr), intent(inout), optional :: member
       integer(c_int) :: status
     end function spar_rigid_create
 
@@ -404,9 +313,16 @@ module spar_c
       type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
       integer(c_int), value :: elements, nodes_per_element
-      type(c_ptr), intent(inout) :: member
+      type(c_ptr), intent(inout), optional :: member
       integer(c_int) :: status
     end function spar_beam_create
+
+    function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: elements, nodes_per_element
+      integer(c_int) :: status
+    end function spar_beam_get_elements
 
     function spar_beam_set_axis(beam, n, eta, xyz, twist) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -439,6 +355,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_set_quadrature
 
+    function spar_beam_get_quadrature(beam, rule, points) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: rule, points
+      integer(c_int) :: status
+    end function spar_beam_get_quadrature
+
     function spar_beam_set_damping(beam, mu) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: beam
@@ -446,11 +369,17 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_set_damping
 
+    function spar_beam_get_damping(beam, mu) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(inout), optional :: mu(6)
+      integer(c_int) :: status
+    end function spar_beam_get_damping
+
     function spar_beam_read_beamdyn(beam, primary_path, blade_path) bind(c) result(status)
       import :: c_char, c_int, c_ptr
       type(c_ptr), value :: beam
-      character(kind=c_char), intent(in), optional :: primary_path(*)
-      character(kind=c_char), intent(in), optional :: blade_path(*)
+      character(kind=c_char), intent(in), optional :: primary_path(*), blade_path(*)
       integer(c_int) :: status
     end function spar_beam_read_beamdyn
 
@@ -461,12 +390,26 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_set_placement
 
+    function spar_member_get_placement(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: x(3), q(4)
+      integer(c_int) :: status
+    end function spar_member_get_placement
+
     function spar_member_set_root(member, kind) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
       integer(c_int), value :: kind
       integer(c_int) :: status
     end function spar_member_set_root
+
+    function spar_member_get_root(member, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_member_get_root
 
     function spar_member_set_external(member, on) bind(c) result(status)
       import :: c_int, c_ptr
@@ -475,12 +418,26 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_set_external
 
+    function spar_member_get_external(member, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: on
+      integer(c_int) :: status
+    end function spar_member_get_external
+
     function spar_member_set_effects(member, effects) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
       integer(c_int), value :: effects
       integer(c_int) :: status
     end function spar_member_set_effects
+
+    function spar_member_get_effects(member, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: effects
+      integer(c_int) :: status
+    end function spar_member_get_effects
 
     function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -489,6 +446,14 @@ module spar_c
       integer(c_int64_t), value :: modes
       integer(c_int) :: status
     end function spar_member_set_fidelity
+
+    function spar_member_get_fidelity(member, kind, modes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int64_t), intent(inout), optional :: modes
+      integer(c_int) :: status
+    end function spar_member_get_fidelity
 
     function spar_member_set_added_mass(member, n, eta, mass) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -521,6 +486,13 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_set_owner
 
+    function spar_member_get_owner(member, rank) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: rank
+      integer(c_int) :: status
+    end function spar_member_get_owner
+
     function spar_member_commit(member) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
@@ -533,6 +505,19 @@ module spar_c
       integer(c_int64_t), intent(inout), optional :: nodes
       integer(c_int) :: status
     end function spar_member_get_count
+
+    function spar_member_get_session(member, session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      type(c_ptr), intent(inout), optional :: session
+      integer(c_int) :: status
+    end function spar_member_get_session
+
+    function spar_member_get_name(member) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: member
+      type(c_ptr) :: text
+    end function spar_member_get_name
 
     function spar_member_get_reference(member, x, q) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -576,8 +561,7 @@ module spar_c
       type(c_ptr), value :: beam
       integer(c_int), value :: kind
       integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: eta(*)
-      real(c_double), intent(in), optional :: load(*)
+      real(c_double), intent(in), optional :: eta(*), load(*)
       integer(c_int) :: status
     end function spar_beam_set_line_load
 
@@ -627,6 +611,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_solve_static
 
+    function spar_member_solve_modes(member, n, frequency_hz, shapes) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: frequency_hz(*), shapes(*)
+      integer(c_int) :: status
+    end function spar_member_solve_modes
+
     function spar_beam_set_modal_damping(beam, mode, ratio, mu) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam
@@ -636,21 +628,16 @@ module spar_c
       integer(c_int) :: status
     end function spar_beam_set_modal_damping
 
-    function spar_member_solve_modes(member, n, frequency_hz, shapes) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), value :: n
-      real(c_double), intent(inout), optional :: frequency_hz(*), shapes(*)
-      integer(c_int) :: status
-    end function spar_member_solve_modes
-
     function spar_joint_create(session, name, a, node_a, b, node_b, free_motions, joint) bind(c) result(status)
       import :: c_char, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session, a, b
+      type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
-      integer(c_int64_t), value :: node_a, node_b
+      type(c_ptr), value :: a
+      integer(c_int64_t), value :: node_a
+      type(c_ptr), value :: b
+      integer(c_int64_t), value :: node_b
       integer(c_int), value :: free_motions
-      type(c_ptr), intent(inout) :: joint
+      type(c_ptr), intent(inout), optional :: joint
       integer(c_int) :: status
     end function spar_joint_create
 
@@ -664,17 +651,18 @@ module spar_c
     function spar_joint_set_spring(joint, stiffness, damping, preload) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: joint
-      real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+      real(c_double), intent(in), optional :: stiffness(36), damping(36), preload(6)
       integer(c_int) :: status
     end function spar_joint_set_spring
 
-    function spar_member_set_spring(member, node, free_motions, stiffness, damping, preload, joint) bind(c) result(status)
+    function spar_member_set_spring(member, node, free_motions, stiffness, damping, preload, joint) bind(c) &
+        result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
       integer(c_int64_t), value :: node
       integer(c_int), value :: free_motions
-      real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
-      type(c_ptr), intent(inout) :: joint
+      real(c_double), intent(in), optional :: stiffness(36), damping(36), preload(6)
+      type(c_ptr), intent(inout), optional :: joint
       integer(c_int) :: status
     end function spar_member_set_spring
 
@@ -701,11 +689,15 @@ module spar_c
 
     function spar_line_create(session, name, a, node_a, point_a, b, node_b, point_b, joint) bind(c) result(status)
       import :: c_char, c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session, a, b
+      type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
-      integer(c_int64_t), value :: node_a, node_b
-      real(c_double), intent(in), optional :: point_a(3), point_b(3)
-      type(c_ptr), intent(inout) :: joint
+      type(c_ptr), value :: a
+      integer(c_int64_t), value :: node_a
+      real(c_double), intent(in), optional :: point_a(3)
+      type(c_ptr), value :: b
+      integer(c_int64_t), value :: node_b
+      real(c_double), intent(in), optional :: point_b(3)
+      type(c_ptr), intent(inout), optional :: joint
       integer(c_int) :: status
     end function spar_line_create
 
@@ -743,13 +735,26 @@ module spar_c
       import :: c_char, c_int, c_ptr
       type(c_ptr), value :: member
       character(kind=c_char), intent(in), optional :: name(*)
-      type(c_ptr), intent(inout) :: fluid
+      type(c_ptr), intent(inout), optional :: fluid
       integer(c_int) :: status
     end function spar_fluid_create
 
+    function spar_fluid_get_member(fluid, member) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      type(c_ptr), intent(inout), optional :: member
+      integer(c_int) :: status
+    end function spar_fluid_get_member
+
+    function spar_fluid_get_name(fluid) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: fluid
+      type(c_ptr) :: text
+    end function spar_fluid_get_name
+
     subroutine spar_fluid_destroy(fluid) bind(c)
       import :: c_ptr
-      type(c_ptr), intent(inout) :: fluid
+      type(c_ptr), intent(inout), optional :: fluid
     end subroutine spar_fluid_destroy
 
     function spar_fluid_set_motion_nodes(fluid, n, x) bind(c) result(status)
@@ -809,37 +814,6 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_set_motion_sections
 
-    function spar_fluid_get_kind(fluid, which, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: which
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int) :: status
-    end function spar_fluid_get_kind
-
-    function spar_fluid_pull_force_places(fluid, theta, x, v, q) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: x(*), v(*), q(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_force_places
-
-    function spar_fluid_get_places(fluid, which, x, v, q, foot) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: which
-      real(c_double), intent(inout), optional :: x(*), v(*), q(*), foot(*)
-      integer(c_int) :: status
-    end function spar_fluid_get_places
-
-    function spar_fluid_get_forces(fluid, force) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), intent(inout), optional :: force(*)
-      integer(c_int) :: status
-    end function spar_fluid_get_forces
-
     function spar_fluid_set_layout(fluid, which, node, component) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
@@ -864,6 +838,14 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_set_projection
 
+    function spar_fluid_get_projection(fluid, method, max_distance) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), intent(inout), optional :: method
+      real(c_double), intent(inout), optional :: max_distance
+      integer(c_int) :: status
+    end function spar_fluid_get_projection
+
     function spar_fluid_set_interpolation(fluid, kind) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -871,32 +853,18 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_set_interpolation
 
+    function spar_fluid_get_interpolation(fluid, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_fluid_get_interpolation
+
     function spar_fluid_map(fluid) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int) :: status
     end function spar_fluid_map
-
-    function spar_fluid_get_member(fluid, member) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      type(c_ptr), intent(inout), optional :: member
-      integer(c_int) :: status
-    end function spar_fluid_get_member
-
-    function spar_fluid_get_name(fluid) bind(c) result(text)
-      import :: c_ptr
-      type(c_ptr), value :: fluid
-      type(c_ptr) :: text
-    end function spar_fluid_get_name
-
-    function spar_fluid_fail(fluid, failure, message) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: failure
-      character(kind=c_char), intent(in), optional :: message(*)
-      integer(c_int) :: status
-    end function spar_fluid_fail
 
     function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -905,6 +873,14 @@ module spar_c
       integer(c_int64_t), intent(inout), optional :: n
       integer(c_int) :: status
     end function spar_fluid_get_count
+
+    function spar_fluid_get_kind(fluid, which, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_fluid_get_kind
 
     function spar_fluid_get_flag_count(fluid, which, flag, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -964,6 +940,30 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_pull_poses
 
+    function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: largest
+      integer(c_int64_t), intent(inout), optional :: node
+      integer(c_int) :: status
+    end function spar_fluid_get_travel
+
+    function spar_fluid_pull_force_places(fluid, theta, x, v, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), v(*), q(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_force_places
+
+    function spar_fluid_get_places(fluid, which, x, v, q, foot) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: x(*), v(*), q(*), foot(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_places
+
     function spar_fluid_pull_matrices(fluid, theta, convention, matrix) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -989,12 +989,35 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_pull_forces
 
+    function spar_fluid_get_forces(fluid, force) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(inout), optional :: force(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_forces
+
     function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       real(c_double), intent(in), optional :: force(*), moment(*)
       integer(c_int) :: status
     end function spar_fluid_push_forces
+
+    function spar_fluid_push_forces_at(fluid, theta, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces_at
+
+    function spar_fluid_fail(fluid, status, message) bind(c) result(answer)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: answer
+    end function spar_fluid_fail
 
     function spar_fluid_pull_motion_f32(fluid, theta, x, v) bind(c) result(status)
       import :: c_double, c_float, c_int, c_ptr
@@ -1020,14 +1043,6 @@ module spar_c
       integer(c_int) :: status
     end function spar_fluid_pull_forces_f32
 
-    function spar_fluid_push_forces_at(fluid, theta, force, moment) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(in), optional :: force(*), moment(*)
-      integer(c_int) :: status
-    end function spar_fluid_push_forces_at
-
     function spar_fluid_push_forces_f32(fluid, force, moment) bind(c) result(status)
       import :: c_float, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -1046,26 +1061,18 @@ module spar_c
     function spar_fluid_get_total(fluid, point, force, moment) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
-      real(c_double), intent(in), optional :: point(*)
-      real(c_double), intent(inout), optional :: force(*), moment(*)
+      real(c_double), intent(in), optional :: point(3)
+      real(c_double), intent(inout), optional :: force(3), moment(3)
       integer(c_int) :: status
     end function spar_fluid_get_total
 
     function spar_fluid_check_total(fluid, point, force, moment, rtol) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
-      real(c_double), intent(in), optional :: point(*), force(*), moment(*)
+      real(c_double), intent(in), optional :: point(3), force(3), moment(3)
       real(c_double), value :: rtol
       integer(c_int) :: status
     end function spar_fluid_check_total
-
-    function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), intent(inout), optional :: largest
-      integer(c_int64_t), intent(inout), optional :: node
-      integer(c_int) :: status
-    end function spar_fluid_get_travel
 
     function spar_step_begin(session, dt) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -1118,6 +1125,20 @@ module spar_c
       integer(c_int), intent(inout), optional :: iterations
       integer(c_int) :: status
     end function spar_session_solve_static
+
+    function spar_session_save(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_save
+
+    function spar_session_load(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_load
 
     function spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report) bind(c) &
         result(status)
@@ -1181,34 +1202,12 @@ module spar_c
       integer(c_int) :: status
     end function spar_member_get_advice
 
-    function spar_session_save(session, path) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: path(*)
-      integer(c_int) :: status
-    end function spar_session_save
-
-    function spar_session_load(session, path) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: path(*)
-      integer(c_int) :: status
-    end function spar_session_load
-
-    function spar_session_set_log(session, log, context) bind(c) result(status)
-      import :: c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      type(c_funptr), value :: log
-      type(c_ptr), value :: context
-      integer(c_int) :: status
-    end function spar_session_set_log
-
     ! spar_aero.h
     function spar_polar_create(n, alpha_rad, cl, cd, cm, polar) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: alpha_rad(*), cl(*), cd(*), cm(*)
-      type(c_ptr), intent(inout) :: polar
+      type(c_ptr), intent(inout), optional :: polar
       integer(c_int) :: status
     end function spar_polar_create
 
@@ -1229,20 +1228,20 @@ module spar_c
 
     subroutine spar_polar_destroy(polar) bind(c)
       import :: c_ptr
-      type(c_ptr), intent(inout) :: polar
+      type(c_ptr), intent(inout), optional :: polar
     end subroutine spar_polar_destroy
 
     function spar_aero_create(blades, sections, aero) bind(c) result(status)
       import :: c_int, c_ptr
       integer(c_int), value :: blades
       type(c_ptr), intent(in), optional :: sections(*)
-      type(c_ptr), intent(inout) :: aero
+      type(c_ptr), intent(inout), optional :: aero
       integer(c_int) :: status
     end function spar_aero_create
 
     subroutine spar_aero_destroy(aero) bind(c)
       import :: c_ptr
-      type(c_ptr), intent(inout) :: aero
+      type(c_ptr), intent(inout), optional :: aero
     end subroutine spar_aero_destroy
 
     function spar_aero_set_section(aero, i, chord, twist, polar) bind(c) result(status)
@@ -1254,19 +1253,10 @@ module spar_c
       integer(c_int) :: status
     end function spar_aero_set_section
 
-    function spar_aero_set_rotor(aero, hub, axis, hub_radius, tip_radius) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: aero
-      real(c_double), intent(in), optional :: hub(3), axis(3)
-      real(c_double), value :: hub_radius, tip_radius
-      integer(c_int) :: status
-    end function spar_aero_set_rotor
-
     function spar_fluid_read_aerodyn(fluid, primary_path, blade_path, q, n, span) bind(c) result(status)
       import :: c_char, c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
-      character(kind=c_char), intent(in), optional :: primary_path(*)
-      character(kind=c_char), intent(in), optional :: blade_path(*)
+      character(kind=c_char), intent(in), optional :: primary_path(*), blade_path(*)
       real(c_double), intent(in), optional :: q(4)
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: span(*)
@@ -1276,11 +1266,18 @@ module spar_c
     function spar_aero_read_aerodyn(aero, primary_path, blade_path, q, span) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
       type(c_ptr), value :: aero
-      character(kind=c_char), intent(in), optional :: primary_path(*)
-      character(kind=c_char), intent(in), optional :: blade_path(*)
+      character(kind=c_char), intent(in), optional :: primary_path(*), blade_path(*)
       real(c_double), intent(in), optional :: q(4), span(*)
       integer(c_int) :: status
     end function spar_aero_read_aerodyn
+
+    function spar_aero_set_rotor(aero, hub, axis, hub_radius, tip_radius) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(in), optional :: hub(3), axis(3)
+      real(c_double), value :: hub_radius, tip_radius
+      integer(c_int) :: status
+    end function spar_aero_set_rotor
 
     function spar_aero_set_turn(aero, turn) bind(c) result(status)
       import :: c_int, c_ptr

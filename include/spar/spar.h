@@ -80,7 +80,8 @@
    Clang, the library leaves all of this as it is.)
 
    Adding to the library (docs/adding.md):
-   - a public call: header, cmake/make-map.sh, both files of fortran/, tests/contract.c, the tables of tests/torture;
+   - a public call: header, cmake/make-map.sh, cmake/make-fortran.sh, fortran/spar.f90, tests/contract.c, the tables of
+     tests/torture;
    - a setting: a field of the session (src/base/scene.h) and a row of the table in src/session/settings.c;
    - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/solve/fidelity.h;
    - a coupling scheme: its SPAR_COUPLING_*, its row in src/session/accelerate.c, its name in accelerate.h;

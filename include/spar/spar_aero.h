@@ -53,7 +53,7 @@ SPAR_API int spar_polar_create(int64_t n, const double *alpha_rad, const double 
 /* SPAR_POLAR_LINEAR (default), _AKIMA or _CUBIC; periodic for a table over the full turn. Sections set before keep
    what they had. */
 SPAR_API int spar_polar_set_interpolation(spar_polar *polar, int kind);
-/* The coefficients at one angle; any output NULL. */
+/* The coefficients at one angle. cl, cd, cm: out, each NULL: not wanted. */
 SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm);
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);

@@ -11,6 +11,7 @@ file(READ "${SOURCE}/cmake/spar.map" map)
 file(READ "${SOURCE}/fortran/spar_c.f90" raw)
 file(READ "${SOURCE}/fortran/spar.f90" module)
 file(READ "${SOURCE}/tests/fortran/test_bindings.f90" test)
+string(REGEX REPLACE "&\n *" "" module "${module}")
 string(REPLACE ";" " ; " headers "${headers}")
 
 # comments out; a comment has no '/' behind a '*' but at its end
