@@ -1,4 +1,4 @@
-# One public header as Fortran: its constants, an interface for each of its calls, or the constants' names to be public.
+# One public header as Fortran: its constants, an interface for each of its calls, or its constants in the default kind of integer.
 #   awk -v pass=constants|calls|names -v title=<as the reader knows the header> -f make-fortran.awk <header>
 
 # "text" in lines of at most 120 columns, cut at blanks
@@ -22,10 +22,10 @@ function constants(body,   i, n, entry, value, line) {
         if (entry[i] == "") continue
         if (split(entry[i], side, "=") == 2) value = side[2]
         else value++
-        line = line (line == "" ? "" : ", ") side[1] (pass == "names" ? "" : " = " value)
+        line = line (line == "" ? "" : ", ") side[1] " = " value
     }
     if (pass == "constants" && !started++) print "  ! " title
-    put("  ", (pass == "names" ? "public" : "integer(c_int), parameter") " :: " line)
+    put("  ", (pass == "names" ? "integer, parameter, public" : "integer(c_int), parameter") " :: " line)
 }
 
 # What a comment says of parameters: "x[n][3], v[n][3]: out" are arrays, "t: in" is a number. It holds until another does.

@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/fortran}
 made=$(mktemp)
 trap 'rm -f "$made"' EXIT
-# of a header: constants, calls or names
+# of a header: calls, constants, or names, which are constants in the default kind of integer
 of() { awk -v pass="$2" -v title="$1.h" -f "$root/cmake/make-fortran.awk" "$root/include/spar/$1.h"; }
 {
     cat <<'HEAD'
@@ -19,28 +19,40 @@ of() { awk -v pass="$2" -v title="$1.h" -f "$root/cmake/make-fortran.awk" "$root
 ! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
 ! pointer to text of the library. Results are intent(inout): a refused call leaves them as they were. Counting is C's, from 0.
-module spar_c
+
+! The calls alone: the module spar has constants of its own, in the host's kind of integer.
+module spar_calls
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   implicit none
   private :: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   public
 
+  interface
 HEAD
-    for pass in constants calls; do
-        [ $pass = constants ] || printf '\n  interface\n'
-        first=1
-        for name in spar spar_aero spar_output; do
-            [ $first = 1 ] || [ $pass = constants ] || echo
-            of $name $pass
-            first=0
-        done
-        [ $pass = constants ] || printf '  end interface\n'
-    done
+    of spar calls
+    echo
+    of spar_aero calls
+    echo
+    of spar_output calls
+    cat <<'MIDDLE'
+  end interface
+end module spar_calls
+
+module spar_c
+  use, intrinsic :: iso_c_binding, only: c_int
+  use spar_calls
+  implicit none
+  private :: c_int
+  public
+
+MIDDLE
+    of spar constants
+    of spar_aero constants
     echo 'end module spar_c'
 } >"$made"
 cat "$made" >"$out/spar_c.f90"
 
-for name in spar spar_aero; do of $name names; done >"$made"
+{ of spar names && of spar_aero names; } >"$made"
 awk -v list="$made" '
     !skip
     /constants of the headers \{/ { skip = 1; while ((getline line < list) > 0) print line }

@@ -23,8 +23,11 @@
 !
 ! Arrays. Places x(3,n), orientations q(4,n), node motion q(7,n), v(6,n), a(6,n), loads (6,n), matrices (6,6,n), sections of
 ! blades (3,n,blades). n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
-! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Kinds are those of C, c_double and c_int; a count may also
-! be a 64-bit integer. Nodes and sections are counted from 1 in arguments; the library's own messages count from 0.
+! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Nodes and sections are counted from 1 in arguments; the
+! library's own messages count from 0.
+! Kinds. Numbers are real(c_double). Integers, logicals and the constants SPAR_* have the default kind: a host whose integers
+! have 8 bytes compiles this file and spar_c.f90 with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in
+! any case; one too large for C is refused as any other that is out of range.
 ! Figures that C names by constants from 0 (SPAR_REPORT_*, SPAR_TRY_*, SPAR_ADVICE_*, SPAR_COLUMN_* by SPAR_ROW_*) are found under
 ! these names in arrays declared from 0: table(0:SPAR_COLUMN_COUNT-1, 0:SPAR_ROW_COUNT-1). Such an array may have any length:
 ! its entries are set as far as it goes, those that the library does not know to 0.
@@ -39,7 +42,7 @@
 module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
       c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
-  use spar_c, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
+  use spar_calls, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
       c_effect_name => spar_effect_name, c_aero_effect_name => spar_aero_effect_name, c_series_add => spar_vtk_series_add
   implicit none
   private
@@ -49,50 +52,61 @@ module spar
   public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
 
   ! constants of the headers {
-  public :: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC, SPAR_ERR_MAPPING, &
-      SPAR_ERR_COMM, SPAR_ERR_PEER, SPAR_ERR_IO, SPAR_ERR_UNSUPPORTED, SPAR_ERR_USER
-  public :: SPAR_COUPLING_EXPLICIT, SPAR_COUPLING_FIXED_POINT, SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS
-  public :: SPAR_REPORT_CONTRACTION, SPAR_REPORT_ADDED_MASS, SPAR_REPORT_COLUMNS, SPAR_REPORT_DROPPED, &
-      SPAR_REPORT_ERROR, SPAR_REPORT_ADVISED_DT, SPAR_REPORT_WORK_DEFECT, SPAR_REPORT_UNCONVERGED, &
-      SPAR_REPORT_ADDED_MASS_SPREAD, SPAR_REPORT_MOTION_ERROR, SPAR_REPORT_COUNT
-  public :: SPAR_PHASE_START, SPAR_PHASE_BETWEEN, SPAR_PHASE_BEGUN, SPAR_PHASE_SOLVED, SPAR_PHASE_CHECKED
-  public :: SPAR_LOG_ERROR, SPAR_LOG_WARNING, SPAR_LOG_INFO
-  public :: SPAR_ROOT_FREE, SPAR_ROOT_FIXED, SPAR_ROOT_PINNED, SPAR_ROOT_DRIVEN
-  public :: SPAR_FREE_X, SPAR_FREE_Y, SPAR_FREE_Z, SPAR_FREE_RX, SPAR_FREE_RY, SPAR_FREE_RZ
-  public :: SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER
-  public :: SPAR_QUADRATURE_GAUSS, SPAR_QUADRATURE_LOBATTO, SPAR_QUADRATURE_SECTIONS
-  public :: SPAR_EFFECT_INERTIA, SPAR_EFFECT_GYROSCOPIC, SPAR_EFFECT_GRAVITY, SPAR_EFFECT_DAMPING, &
-      SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_MOMENT, SPAR_EFFECT_FLUID_HISTORY, SPAR_EFFECT_WORK, &
-      SPAR_EFFECT_DEFAULT
-  public :: SPAR_FIDELITY_PRESCRIBED, SPAR_FIDELITY_RIGID, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, &
-      SPAR_FIDELITY_EXACT
-  public :: SPAR_ENERGY_KINETIC, SPAR_ENERGY_STRAIN, SPAR_ENERGY_GRAVITY, SPAR_ENERGY_DISSIPATED, SPAR_ENERGY_COUNT
-  public :: SPAR_WORK_LOADS, SPAR_WORK_FLUID, SPAR_WORK_ROOT, SPAR_WORK_JOINTS, SPAR_WORK_COUNT
-  public :: SPAR_JOINT_ENERGY_SPRING, SPAR_JOINT_ENERGY_DAMPER, SPAR_JOINT_ENERGY_DRIVE, SPAR_JOINT_ENERGY_LOAD, &
-      SPAR_JOINT_ENERGY_COUNT
-  public :: SPAR_PROJECT_BOUNDED, SPAR_PROJECT_RPOLY
-  public :: SPAR_INTERPOLATE_NODAL, SPAR_INTERPOLATE_CONSISTENT
-  public :: SPAR_NODES_MOTION, SPAR_NODES_FORCE
-  public :: SPAR_MAP_END, SPAR_MAP_AMBIGUOUS, SPAR_MAP_FAR
-  public :: SPAR_KIND_SECTIONS, SPAR_KIND_SHARED, SPAR_KIND_WEIGHTS, SPAR_KIND_FORCES
-  public :: SPAR_MATRIX_LOCAL_TO_GLOBAL, SPAR_MATRIX_GLOBAL_TO_LOCAL
-  public :: SPAR_AUDIT_FORCE, SPAR_AUDIT_MOMENT, SPAR_AUDIT_POWER, SPAR_AUDIT_FORCE_ERROR, SPAR_AUDIT_MOMENT_ERROR, &
-      SPAR_AUDIT_POWER_ERROR, SPAR_AUDIT_FARTHEST, SPAR_AUDIT_NODES, SPAR_AUDIT_COUNT
-  public :: SPAR_TRY_MOTION, SPAR_TRY_REACTION, SPAR_TRY_LOAD, SPAR_TRY_SECONDS, SPAR_TRY_SOLUTIONS, SPAR_TRY_COUNT
-  public :: SPAR_ROW_INERTIA, SPAR_ROW_GYROSCOPIC, SPAR_ROW_GRAVITY, SPAR_ROW_DAMPING, SPAR_ROW_LARGE_ROTATION, &
-      SPAR_ROW_FLUID_MOMENT, SPAR_ROW_FLUID_VELOCITY, SPAR_ROW_FLUID_POSES, SPAR_ROW_FLUID_HISTORY, &
-      SPAR_ROW_PREDICTOR, SPAR_ROW_ITERATION, SPAR_ROW_HALF_STEP, SPAR_ROW_COUNT
-  public :: SPAR_COLUMN_IN_FORCE, SPAR_COLUMN_SIZE, SPAR_COLUMN_MOTION, SPAR_COLUMN_REACTION, SPAR_COLUMN_SHARE, &
-      SPAR_COLUMN_COUNT
-  public :: SPAR_ADVICE_DT, SPAR_ADVICE_SUBSTEPS, SPAR_ADVICE_SCHEME, SPAR_ADVICE_COUPLING_RTOL, &
-      SPAR_ADVICE_PREDICTOR, SPAR_ADVICE_NEWTON_RTOL, SPAR_ADVICE_ERROR, SPAR_ADVICE_COST, SPAR_ADVICE_PRESENT_ERROR, &
-      SPAR_ADVICE_TRIALS, SPAR_ADVICE_COUNT
-  public :: SPAR_AERO_INDUCTION, SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL, SPAR_AERO_DRAG, &
-      SPAR_AERO_MOMENT
-  public :: SPAR_POLAR_LINEAR, SPAR_POLAR_AKIMA, SPAR_POLAR_CUBIC
-  public :: SPAR_AERO_FLAG_END, SPAR_AERO_FLAG_NO_ROOT, SPAR_AERO_FLAG_BEYOND_POLAR
-  public :: SPAR_AERO_ROW_INDUCTION, SPAR_AERO_ROW_TIP_LOSS, SPAR_AERO_ROW_HUB_LOSS, SPAR_AERO_ROW_SWIRL, &
-      SPAR_AERO_ROW_DRAG, SPAR_AERO_ROW_MOMENT, SPAR_AERO_ROW_COUNT
+  integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
+      SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
+      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
+  integer, parameter, public :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
+      SPAR_COUPLING_IQN_ILS = 3
+  integer, parameter, public :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
+      SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
+      SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_ADDED_MASS_SPREAD = 8, SPAR_REPORT_MOTION_ERROR = 9, &
+      SPAR_REPORT_COUNT = 10
+  integer, parameter, public :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
+      SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
+  integer, parameter, public :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
+  integer, parameter, public :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
+  integer, parameter, public :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
+      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
+  integer, parameter, public :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
+  integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
+  integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
+      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
+      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
+  integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
+      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
+  integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
+  integer, parameter, public :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
+      SPAR_WORK_COUNT = 4
+  integer, parameter, public :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
+      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
+  integer, parameter, public :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
+  integer, parameter, public :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
+  integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
+  integer, parameter, public :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, &
+      SPAR_KIND_FORCES = 8
+  integer, parameter, public :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
+  integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
+      SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
+      SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
+  integer, parameter, public :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
+      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
+  integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
+      SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
+      SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_COUNT = 12
+  integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
+      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
+  integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
+      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
+      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
+  integer, parameter, public :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
+      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
+  integer, parameter, public :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
+  integer, parameter, public :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer, parameter, public :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
+      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
   ! } written by cmake/make-fortran.sh
 
   type :: spar_session
@@ -335,27 +349,26 @@ module spar
     ! The host's fluid in session%step, once per iteration: pulls the motion, finds its loads at t + dt, pushes them. context:
     ! what session%step was given. stat is 0 on entry; any other value fails the step with SPAR_ERR_USER.
     subroutine spar_fluid_solver(session, t, dt, iteration, context, stat)
-      import :: c_double, c_int, spar_session
+      import :: c_double, spar_session
       class(spar_session), intent(inout) :: session
       real(c_double), intent(in) :: t, dt
-      integer(c_int), intent(in) :: iteration
+      integer, intent(in) :: iteration
       class(*), intent(inout), optional :: context
-      integer(c_int), intent(inout) :: stat
+      integer, intent(inout) :: stat
     end subroutine spar_fluid_solver
 
     ! What the host does ahead of each step of a trial run, from t to t + dt; as spar_fluid_solver.
     subroutine spar_before_step(session, t, dt, context, stat)
-      import :: c_double, c_int, spar_session
+      import :: c_double, spar_session
       class(spar_session), intent(inout) :: session
       real(c_double), intent(in) :: t, dt
       class(*), intent(inout), optional :: context
-      integer(c_int), intent(inout) :: stat
+      integer, intent(inout) :: stat
     end subroutine spar_before_step
 
     ! Takes the library's messages, see session%set_log.
     subroutine spar_log(level, text, context)
-      import :: c_int
-      integer(c_int), intent(in) :: level
+      integer, intent(in) :: level
       character(*), intent(in) :: text
       class(*), intent(inout), optional :: context
     end subroutine spar_log
@@ -412,14 +425,14 @@ contains
 
   subroutine session_create(self, comm, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(in), optional :: comm
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in), optional :: comm
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     if (c_associated(self%handle)) then
       call occupied('session%create', stat, errmsg)
     else if (present(comm)) then
-      call finish(spar_session_create_fcomm(comm, self%handle), c_null_ptr, stat, errmsg)
+      call finish(spar_session_create_fcomm(to_c(comm), self%handle), c_null_ptr, stat, errmsg)
     else
       call finish(spar_session_create(self%handle), c_null_ptr, stat, errmsg)
     end if
@@ -468,31 +481,34 @@ contains
 
   subroutine session_get_phase(self, phase, stat, errmsg)
     class(spar_session), intent(in) :: self
-    integer(c_int), intent(inout) :: phase
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: phase
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_phase
 
-    call finish(spar_session_get_phase(self%handle, phase), self%handle, stat, errmsg)
+    status = spar_session_get_phase(self%handle, c_phase)
+    call hand(status, c_phase, phase)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_phase
 
   ! status: what this rank has failed with, left out: nothing.
   subroutine session_sum(self, x, status, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: x(:)
-    integer(c_int), intent(in), optional :: status
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in), optional :: status
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: own
 
     own = SPAR_OK
-    if (present(status)) own = status
+    if (present(status)) own = to_c(status)
     call finish(spar_session_sum(self%handle, own, size(x, kind=c_int64_t), x), self%handle, stat, errmsg)
   end subroutine session_sum
 
   subroutine session_set_gravity(self, g, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: g(3)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_set_gravity(self%handle, g), self%handle, stat, errmsg)
@@ -501,48 +517,48 @@ contains
   subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: rho_inf
-    integer(c_int), intent(in) :: substeps
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: substeps
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_session_set_integrator(self%handle, rho_inf, substeps), self%handle, stat, errmsg)
+    call finish(spar_session_set_integrator(self%handle, rho_inf, to_c(substeps)), self%handle, stat, errmsg)
   end subroutine session_set_integrator
 
   subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: atol, rtol
-    integer(c_int), intent(in) :: max_iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_session_set_newton(self%handle, atol, rtol, max_iterations), self%handle, stat, errmsg)
+    call finish(spar_session_set_newton(self%handle, atol, rtol, to_c(max_iterations)), self%handle, stat, errmsg)
   end subroutine session_set_newton
 
   subroutine session_set_predictor(self, order, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(in) :: order
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: order
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_session_set_predictor(self%handle, order), self%handle, stat, errmsg)
+    call finish(spar_session_set_predictor(self%handle, to_c(order)), self%handle, stat, errmsg)
   end subroutine session_set_predictor
 
   subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(in) :: scheme
+    integer, intent(in) :: scheme
     real(c_double), intent(in) :: atol, rtol
-    integer(c_int), intent(in) :: max_iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_session_set_coupling(self%handle, scheme, atol, rtol, max_iterations), self%handle, &
+    call finish(spar_session_set_coupling(self%handle, to_c(scheme), atol, rtol, to_c(max_iterations)), self%handle, &
         stat, errmsg)
   end subroutine session_set_coupling
 
   subroutine session_set_relaxation(self, omega, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: omega
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_set_relaxation(self%handle, omega), self%handle, stat, errmsg)
@@ -551,7 +567,7 @@ contains
   subroutine session_set_reproducible(self, on, stat, errmsg)
     class(spar_session), intent(inout) :: self
     logical, intent(in) :: on
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_set_reproducible(self%handle, flag(on)), self%handle, stat, errmsg)
@@ -560,7 +576,7 @@ contains
   subroutine session_set_option(self, key, value, stat, errmsg)
     class(spar_session), intent(inout) :: self
     character(*), intent(in) :: key, value
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
@@ -574,7 +590,7 @@ contains
     class(spar_session), intent(inout) :: self
     procedure(spar_log), optional :: log
     class(*), pointer, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(log_record), pointer :: record
     integer(c_int) :: status
@@ -607,9 +623,9 @@ contains
     call c_f_pointer(context, record)
     call copy_text(text, words)
     if (associated(record%context)) then
-      call record%log(level, words, record%context)
+      call record%log(int(level), words, record%context)
     else
-      call record%log(level, words)
+      call record%log(int(level), words)
     end if
   end subroutine call_log
 
@@ -617,11 +633,14 @@ contains
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: t
     integer(c_int64_t), intent(inout), optional :: step
-    integer(c_int), intent(inout), optional :: iteration
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: iteration
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_iteration
 
-    call finish(spar_session_get_time(self%handle, t, step, iteration), self%handle, stat, errmsg)
+    status = spar_session_get_time(self%handle, t, step, c_iteration)
+    call hand(status, c_iteration, iteration)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_time
 
   ! ---- what is set ----
@@ -629,7 +648,7 @@ contains
   subroutine session_get_gravity(self, g, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout) :: g(3)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
@@ -638,49 +657,62 @@ contains
   subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: rho_inf
-    integer(c_int), intent(inout), optional :: substeps
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: substeps
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_substeps
 
-    call finish(spar_session_get_integrator(self%handle, rho_inf, substeps), self%handle, stat, errmsg)
+    status = spar_session_get_integrator(self%handle, rho_inf, c_substeps)
+    call hand(status, c_substeps, substeps)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_integrator
 
   subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: atol
     real(c_double), intent(inout), optional :: rtol
-    integer(c_int), intent(inout), optional :: max_iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_max_iterations
 
-    call finish(spar_session_get_newton(self%handle, atol, rtol, max_iterations), self%handle, stat, errmsg)
+    status = spar_session_get_newton(self%handle, atol, rtol, c_max_iterations)
+    call hand(status, c_max_iterations, max_iterations)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_newton
 
   subroutine session_get_predictor(self, order, stat, errmsg)
     class(spar_session), intent(in) :: self
-    integer(c_int), intent(inout) :: order
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: order
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_order
 
-    call finish(spar_session_get_predictor(self%handle, order), self%handle, stat, errmsg)
+    status = spar_session_get_predictor(self%handle, c_order)
+    call hand(status, c_order, order)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_predictor
 
   subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(in) :: self
-    integer(c_int), intent(inout), optional :: scheme
+    integer, intent(inout), optional :: scheme
     real(c_double), intent(inout), optional :: atol
     real(c_double), intent(inout), optional :: rtol
-    integer(c_int), intent(inout), optional :: max_iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_scheme, c_max_iterations
 
-    call finish(spar_session_get_coupling(self%handle, scheme, atol, rtol, max_iterations), self%handle, stat, errmsg)
+    status = spar_session_get_coupling(self%handle, c_scheme, atol, rtol, c_max_iterations)
+    call hand(status, c_scheme, scheme)
+    call hand(status, c_max_iterations, max_iterations)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_coupling
 
   subroutine session_get_relaxation(self, omega, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout) :: omega
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
@@ -689,7 +721,7 @@ contains
   subroutine session_get_reproducible(self, on, stat, errmsg)
     class(spar_session), intent(in) :: self
     logical, intent(inout) :: on
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: status, found
 
@@ -702,7 +734,7 @@ contains
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout), optional :: x(3)
     real(c_double), intent(inout), optional :: q(4)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
@@ -710,17 +742,20 @@ contains
 
   subroutine member_get_root(self, kind, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
 
-    call finish(spar_member_get_root(self%handle, kind), self%session, stat, errmsg)
+    status = spar_member_get_root(self%handle, c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_root
 
   subroutine member_get_external(self, on, stat, errmsg)
     class(spar_member), intent(in) :: self
     logical, intent(inout) :: on
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: status, found
 
@@ -731,56 +766,73 @@ contains
 
   subroutine member_get_effects(self, effects, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout) :: effects
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: effects
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_effects
 
-    call finish(spar_member_get_effects(self%handle, effects), self%session, stat, errmsg)
+    status = spar_member_get_effects(self%handle, c_effects)
+    call hand(status, c_effects, effects)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_effects
 
   subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout), optional :: kind
+    integer, intent(inout), optional :: kind
     integer(c_int64_t), intent(inout), optional :: modes
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
 
-    call finish(spar_member_get_fidelity(self%handle, kind, modes), self%session, stat, errmsg)
+    status = spar_member_get_fidelity(self%handle, c_kind, modes)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_fidelity
 
   subroutine member_get_owner(self, rank, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout) :: rank
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: rank
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rank
 
-    call finish(spar_member_get_owner(self%handle, rank), self%session, stat, errmsg)
+    status = spar_member_get_owner(self%handle, c_rank)
+    call hand(status, c_rank, rank)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_owner
 
   subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout), optional :: elements
-    integer(c_int), intent(inout), optional :: nodes_per_element
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: elements
+    integer, intent(inout), optional :: nodes_per_element
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_elements, c_nodes_per_element
 
-    call finish(spar_beam_get_elements(self%handle, elements, nodes_per_element), self%session, stat, errmsg)
+    status = spar_beam_get_elements(self%handle, c_elements, c_nodes_per_element)
+    call hand(status, c_elements, elements)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_elements
 
   subroutine member_get_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout), optional :: rule
-    integer(c_int), intent(inout), optional :: points
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: rule
+    integer, intent(inout), optional :: points
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rule, c_points
 
-    call finish(spar_beam_get_quadrature(self%handle, rule, points), self%session, stat, errmsg)
+    status = spar_beam_get_quadrature(self%handle, c_rule, c_points)
+    call hand(status, c_rule, rule)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_quadrature
 
   subroutine member_get_damping(self, mu, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: mu(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
@@ -788,21 +840,27 @@ contains
 
   subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(inout), optional :: method
+    integer, intent(inout), optional :: method
     real(c_double), intent(inout), optional :: max_distance
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_method
 
-    call finish(spar_fluid_get_projection(self%handle, method, max_distance), self%session, stat, errmsg)
+    status = spar_fluid_get_projection(self%handle, c_method, max_distance)
+    call hand(status, c_method, method)
+    call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_projection
 
   subroutine fluid_get_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(inout) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
 
-    call finish(spar_fluid_get_interpolation(self%handle, kind), self%session, stat, errmsg)
+    status = spar_fluid_get_interpolation(self%handle, c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_interpolation
 
   ! value is as long as what is set.
@@ -810,7 +868,7 @@ contains
     class(spar_session), intent(in) :: self
     character(*), intent(in) :: key
     character(:), allocatable, intent(inout) :: value
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer, parameter :: room = 64
     character(kind=c_char) :: text(room)
@@ -831,9 +889,9 @@ contains
   ! residual and size, by iteration from 1, take as many as they have room for: as many as set_coupling allows is always enough.
   subroutine session_get_iterations(self, iterations, residual, size, stat, errmsg)
     class(spar_session), intent(in) :: self
-    integer(c_int), intent(inout), optional :: iterations
+    integer, intent(inout), optional :: iterations
     real(c_double), contiguous, intent(inout), optional :: residual(:), size(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: status
     integer(c_int) :: n
@@ -851,7 +909,7 @@ contains
   subroutine session_get_residual(self, residual, size, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: residual, size
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
@@ -861,7 +919,7 @@ contains
   subroutine session_get_report(self, report, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: report(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
@@ -870,7 +928,7 @@ contains
   subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self
     character(*), intent(in) :: path
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
@@ -879,7 +937,7 @@ contains
   subroutine session_load(self, path, stat, errmsg)
     class(spar_session), intent(inout) :: self
     character(*), intent(in) :: path
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
@@ -890,7 +948,7 @@ contains
   subroutine session_step_begin(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
@@ -898,7 +956,7 @@ contains
 
   subroutine session_step_solve(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
@@ -908,7 +966,7 @@ contains
   subroutine session_step_check(self, done, stat, errmsg)
     class(spar_session), intent(inout) :: self
     logical, intent(out) :: done
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: status, ended
 
@@ -920,7 +978,7 @@ contains
 
   subroutine session_step_accept(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
@@ -928,7 +986,7 @@ contains
 
   subroutine session_step_reject(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
@@ -942,14 +1000,19 @@ contains
     real(c_double), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(inout), optional :: iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
+    integer(c_int) :: status, n
 
+    n = 0
+    if (present(iterations)) n = to_c(iterations)
     call fill_record(self, record, to_solver, to_before, solve, context=context)
-    call finish(spar_step(self%handle, dt, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
+    status = spar_step(self%handle, dt, to_solver, c_loc(record), n)
+    if (present(iterations)) iterations = n
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_step
 
   ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
@@ -959,17 +1022,21 @@ contains
     integer, intent(in), optional :: load_steps
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(inout), optional :: iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
-    integer(c_int) :: parts
+    integer(c_int) :: parts, status, n
 
+    n = 0
+    if (present(iterations)) n = to_c(iterations)
     parts = 1
-    if (present(load_steps)) parts = int(load_steps, c_int)
+    if (present(load_steps)) parts = to_c(load_steps)
     call fill_record(self, record, to_solver, to_before, solve, context=context)
-    call finish(spar_session_solve_static(self%handle, parts, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
+    status = spar_session_solve_static(self%handle, parts, to_solver, c_loc(record), n)
+    if (present(iterations)) iterations = n
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_solve_static
 
   ! What C is handed for the host's procedures: the record with them, and the calls that read it; none for none.
@@ -1000,34 +1067,38 @@ contains
     real(c_double), value :: t, dt
     integer(c_int), value :: iteration
     integer(c_int) :: answer
+    integer :: stat
     type(step_record), pointer :: record
 
     answer = SPAR_ERR_ARGUMENT
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
-    answer = SPAR_OK
+    stat = SPAR_OK
     if (associated(record%context)) then
-      call record%solve(record%session, t, dt, iteration, record%context, stat=answer)
+      call record%solve(record%session, t, dt, int(iteration), record%context, stat=stat)
     else
-      call record%solve(record%session, t, dt, iteration, stat=answer)
+      call record%solve(record%session, t, dt, int(iteration), stat=stat)
     end if
+    answer = to_c(stat)
   end function call_solver
 
   function call_before(session, t, dt, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: t, dt
     integer(c_int) :: answer
+    integer :: stat
     type(step_record), pointer :: record
 
     answer = SPAR_ERR_ARGUMENT
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
-    answer = SPAR_OK
+    stat = SPAR_OK
     if (associated(record%context)) then
-      call record%before(record%session, t, dt, record%context, stat=answer)
+      call record%before(record%session, t, dt, record%context, stat=stat)
     else
-      call record%before(record%session, t, dt, stat=answer)
+      call record%before(record%session, t, dt, stat=stat)
     end if
+    answer = to_c(stat)
   end function call_before
 
   subroutine session_try_64(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
@@ -1039,7 +1110,7 @@ contains
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
     logical, intent(in), optional :: compare ! with the last one that did not
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
@@ -1061,7 +1132,7 @@ contains
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
     logical, intent(in), optional :: compare ! with the last one that did not
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%try(dt, int(steps, c_int64_t), report, before, solve, context, compare, stat, errmsg)
@@ -1075,7 +1146,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
@@ -1093,7 +1164,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%report_effects(dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
@@ -1107,7 +1178,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
@@ -1125,7 +1196,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%advise(tolerance, dt, int(steps, c_int64_t), advice, before, solve, context, stat, errmsg)
@@ -1134,7 +1205,7 @@ contains
   subroutine session_apply_advice(self, dt, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: dt
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_session_apply_advice(self%handle, dt), self%handle, stat, errmsg)
@@ -1147,14 +1218,14 @@ contains
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
     real(c_double), intent(in) :: x(3), q(4)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made
     integer(c_int) :: status
 
     made = c_null_ptr
     status = spar_point_create(session%handle, c_text(name), x, q, made)
-    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1_c_int)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1)
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_point
 
@@ -1163,14 +1234,14 @@ contains
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
     real(c_double), intent(in) :: x(3), q(4), mass(6,6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made
     integer(c_int) :: status
 
     made = c_null_ptr
     status = spar_rigid_create(session%handle, c_text(name), x, q, mass, made)
-    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1_c_int)
+    if (status == SPAR_OK) call member_take(self, made, session%handle, name, 1)
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_rigid
 
@@ -1178,14 +1249,14 @@ contains
     class(spar_member), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
-    integer(c_int), intent(in) :: elements, nodes_per_element
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: elements, nodes_per_element
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made
     integer(c_int) :: status
 
     made = c_null_ptr
-    status = spar_beam_create(session%handle, c_text(name), elements, nodes_per_element, made)
+    status = spar_beam_create(session%handle, c_text(name), to_c(elements), to_c(nodes_per_element), made)
     if (status == SPAR_OK) call member_take(self, made, session%handle, name, elements)
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_beam
@@ -1202,7 +1273,7 @@ contains
     class(spar_member), intent(inout) :: self
     type(c_ptr), intent(in) :: handle, session
     character(*), intent(in) :: name
-    integer(c_int), intent(in) :: elements
+    integer, intent(in) :: elements
 
     self%handle = handle
     self%session = session
@@ -1227,7 +1298,7 @@ contains
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in) :: xyz(:,:)
     real(c_double), contiguous, intent(in), optional :: twist(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1245,7 +1316,7 @@ contains
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
     real(c_double), contiguous, intent(in), optional :: q(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1263,7 +1334,7 @@ contains
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in) :: stiffness(:,:,:)
     real(c_double), contiguous, intent(in), optional :: mass(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1280,17 +1351,17 @@ contains
 
   subroutine member_set_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: rule, points
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: rule, points
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_beam_set_quadrature(self%handle, rule, points), self%session, stat, errmsg)
+    call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
   end subroutine member_set_quadrature
 
   subroutine member_set_damping(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: mu(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
@@ -1300,7 +1371,7 @@ contains
     class(spar_member), intent(inout) :: self
     character(*), intent(in) :: primary_path
     character(*), intent(in), optional :: blade_path
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: status
 
@@ -1315,7 +1386,7 @@ contains
   subroutine member_set_placement(self, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: x(3), q(4)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
@@ -1323,17 +1394,17 @@ contains
 
   subroutine member_set_root(self, kind, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_set_root(self%handle, kind), self%session, stat, errmsg)
+    call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
   end subroutine member_set_root
 
   subroutine member_set_external(self, on, stat, errmsg)
     class(spar_member), intent(inout) :: self
     logical, intent(in) :: on
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
@@ -1341,24 +1412,24 @@ contains
 
   subroutine member_set_effects(self, effects, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: effects
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: effects
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_set_effects(self%handle, effects), self%session, stat, errmsg)
+    call finish(spar_member_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
   end subroutine member_set_effects
 
   subroutine member_set_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: kind
+    integer, intent(in) :: kind
     integer, intent(in), optional :: modes !! of a modal member
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
 
     n = 0
     if (present(modes)) n = modes
-    call finish(spar_member_set_fidelity(self%handle, kind, n), self%session, stat, errmsg)
+    call finish(spar_member_set_fidelity(self%handle, to_c(kind), n), self%session, stat, errmsg)
   end subroutine member_set_fidelity
 
   ! of a rigid body one mass, and eta is not looked at; no stations: no guess
@@ -1366,7 +1437,7 @@ contains
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in) :: mass(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1384,7 +1455,7 @@ contains
     integer(c_int64_t), intent(inout), optional :: n
     real(c_double), contiguous, intent(inout), optional :: eta(:)
     real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
     integer(c_int) :: status
@@ -1406,7 +1477,7 @@ contains
   subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
@@ -1414,16 +1485,16 @@ contains
 
   subroutine member_set_owner(self, rank, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: rank
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: rank
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_set_owner(self%handle, rank), self%session, stat, errmsg)
+    call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
   end subroutine member_set_owner
 
   subroutine member_commit(self, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
@@ -1432,7 +1503,7 @@ contains
   subroutine member_get_count_64(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout) :: nodes
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_get_count(self%handle, nodes), self%session, stat, errmsg)
@@ -1441,7 +1512,7 @@ contains
   subroutine member_get_count_32(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int), intent(inout) :: nodes
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     integer(c_int) :: status
@@ -1453,7 +1524,7 @@ contains
   subroutine member_get_reference(self, x, q, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
@@ -1476,7 +1547,7 @@ contains
   subroutine member_get_motion(self, q, v, a, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
@@ -1500,7 +1571,7 @@ contains
   subroutine member_set_motion(self, q, v, a, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
@@ -1525,7 +1596,7 @@ contains
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: q(7)
     real(c_double), intent(in), optional :: v(6), a(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
@@ -1546,9 +1617,9 @@ contains
   subroutine member_set_load_64(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int64_t), intent(in) :: node
-    integer(c_int), intent(in) :: kind
+    integer, intent(in) :: kind
     real(c_double), intent(in) :: load(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1557,15 +1628,15 @@ contains
       call refuse('member%set_load', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_member_set_load(self%handle, node - 1, kind, load), self%session, stat, errmsg)
+    call finish(spar_member_set_load(self%handle, node - 1, to_c(kind), load), self%session, stat, errmsg)
   end subroutine member_set_load_64
 
   subroutine member_set_load_32(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int), intent(in) :: node
-    integer(c_int), intent(in) :: kind
+    integer, intent(in) :: kind
     real(c_double), intent(in) :: load(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%set_load(int(node, c_int64_t), kind, load, stat, errmsg)
@@ -1573,10 +1644,10 @@ contains
 
   subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: kind
+    integer, intent(in) :: kind
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in) :: load(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -1585,14 +1656,14 @@ contains
       call refuse('member%set_line_load', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_beam_set_line_load(self%handle, kind, size(eta, kind=c_int64_t), eta, load), &
+    call finish(spar_beam_set_line_load(self%handle, to_c(kind), size(eta, kind=c_int64_t), eta, load), &
         self%session, stat, errmsg)
   end subroutine member_set_line_load
 
   subroutine member_get_loads(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: load(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
@@ -1614,7 +1685,7 @@ contains
   subroutine member_get_reaction(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: load(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
@@ -1624,7 +1695,7 @@ contains
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
     integer(c_int64_t) :: n
@@ -1644,7 +1715,7 @@ contains
   subroutine member_get_energy(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: energy(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
@@ -1653,7 +1724,7 @@ contains
   subroutine member_get_work(self, work, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: work(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_get_work(self%handle, size(work, kind=c_int64_t), work), self%session, stat, errmsg)
@@ -1661,11 +1732,11 @@ contains
 
   subroutine member_solve_static(self, load_steps, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer(c_int), intent(in) :: load_steps
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: load_steps
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_solve_static(self%handle, load_steps), self%session, stat, errmsg)
+    call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
   end subroutine member_solve_static
 
   ! modes are counted from 1
@@ -1674,7 +1745,7 @@ contains
     integer, intent(in) :: mode(2)
     real(c_double), intent(in) :: ratio(2)
     real(c_double), intent(inout), optional :: mu(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_beam_set_modal_damping(self%handle, int(mode, c_int64_t) - 1, ratio, mu), self%session, stat, &
@@ -1685,7 +1756,7 @@ contains
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: frequency_hz(:)
     real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
@@ -1708,19 +1779,24 @@ contains
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self
-    integer(c_int), intent(inout), optional :: fidelity
+    integer, intent(inout), optional :: fidelity
     integer(c_int64_t), intent(inout), optional :: modes
-    integer(c_int), intent(inout), optional :: nodes_per_element, points
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: nodes_per_element, points
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_fidelity, c_nodes_per_element, c_points
 
-    call finish(spar_member_get_advice(self%handle, fidelity, modes, nodes_per_element, points), self%session, stat, errmsg)
+    status = spar_member_get_advice(self%handle, c_fidelity, modes, c_nodes_per_element, c_points)
+    call hand(status, c_fidelity, fidelity)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
   end subroutine member_get_advice
 
   subroutine member_write_vtk(self, path, stat, errmsg)
     class(spar_member), intent(in) :: self
     character(*), intent(in) :: path
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_member_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
@@ -1735,10 +1811,10 @@ contains
     character(*), intent(in) :: name
     class(spar_member), intent(in) :: a
     integer(c_int64_t), intent(in) :: node_a
-    integer(c_int), intent(in) :: free_motions
+    integer, intent(in) :: free_motions
     class(spar_member), intent(in), optional :: b
     integer(c_int64_t), intent(in), optional :: node_b
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made, other
     integer(c_int64_t) :: node
@@ -1746,7 +1822,7 @@ contains
 
     made = c_null_ptr
     call joint_end(b, node_b, other, node)
-    status = spar_joint_create(session%handle, c_text(name), a%handle, node_a - 1, other, node, free_motions, made)
+    status = spar_joint_create(session%handle, c_text(name), a%handle, node_a - 1, other, node, to_c(free_motions), made)
     call joint_take(self, made, session%handle, status)
     call finish(status, session%handle, stat, errmsg)
   end subroutine joint_create_64
@@ -1756,10 +1832,11 @@ contains
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
     class(spar_member), intent(in) :: a
-    integer(c_int), intent(in) :: node_a, free_motions
+    integer(c_int), intent(in) :: node_a
+    integer, intent(in) :: free_motions
     class(spar_member), intent(in), optional :: b
     integer(c_int), intent(in), optional :: node_b
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: node
 
@@ -1777,7 +1854,7 @@ contains
     real(c_double), intent(in) :: point_a(3), point_b(3)
     class(spar_member), intent(in), optional :: b
     integer(c_int64_t), intent(in), optional :: node_b
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made, other
     integer(c_int64_t) :: node
@@ -1799,7 +1876,7 @@ contains
     real(c_double), intent(in) :: point_a(3), point_b(3)
     class(spar_member), intent(in), optional :: b
     integer(c_int), intent(in), optional :: node_b
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: node
 
@@ -1847,7 +1924,7 @@ contains
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: x(3)
     real(c_double), intent(in), optional :: q(4)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_set_frame(self%handle, x, q), self%session, stat, errmsg)
@@ -1856,7 +1933,7 @@ contains
   subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
@@ -1867,15 +1944,15 @@ contains
     class(spar_joint), intent(inout) :: self
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
-    integer(c_int), intent(in) :: free_motions
+    integer, intent(in) :: free_motions
     real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made
     integer(c_int) :: status
 
     made = c_null_ptr
-    status = spar_member_set_spring(member%handle, node - 1, free_motions, stiffness, damping, preload, made)
+    status = spar_member_set_spring(member%handle, node - 1, to_c(free_motions), stiffness, damping, preload, made)
     call joint_take(self, made, member%session, status)
     call finish(status, member%session, stat, errmsg)
   end subroutine joint_at_node_64
@@ -1883,9 +1960,10 @@ contains
   subroutine joint_at_node_32(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_member), intent(in) :: member
-    integer(c_int), intent(in) :: node, free_motions
+    integer(c_int), intent(in) :: node
+    integer, intent(in) :: free_motions
     real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call joint_at_node_64(self, member, int(node, c_int64_t), free_motions, stiffness, damping, preload, stat, errmsg)
@@ -1895,7 +1973,7 @@ contains
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: stiffness, damping, length
     logical, intent(in), optional :: tension_only
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int) :: slack
 
@@ -1906,18 +1984,18 @@ contains
 
   subroutine joint_set_driven(self, mask, stat, errmsg)
     class(spar_joint), intent(inout) :: self
-    integer(c_int), intent(in) :: mask
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: mask
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_joint_set_driven(self%handle, mask), self%session, stat, errmsg)
+    call finish(spar_joint_set_driven(self%handle, to_c(mask)), self%session, stat, errmsg)
   end subroutine joint_set_driven
 
   subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: motion(6)
     real(c_double), intent(in), optional :: rate(6), acceleration(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_drive(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
@@ -1926,7 +2004,7 @@ contains
   subroutine joint_set_load(self, load, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: load(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
@@ -1935,7 +2013,7 @@ contains
   subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_get_motion(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
@@ -1944,7 +2022,7 @@ contains
   subroutine joint_get_load(self, load, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), intent(inout) :: load(6)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
@@ -1953,7 +2031,7 @@ contains
   subroutine joint_get_energy(self, energy, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: energy(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_joint_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
@@ -1963,7 +2041,7 @@ contains
     class(spar_fluid), intent(inout) :: self
     class(spar_member), intent(in) :: member
     character(*), intent(in) :: name
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: made
     integer(c_int) :: status
@@ -1984,7 +2062,7 @@ contains
   subroutine fluid_get_member(self, member, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     class(spar_member), intent(inout) :: member
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr) :: found
     character(:), allocatable :: name
@@ -1994,7 +2072,7 @@ contains
     status = spar_fluid_get_member(self%handle, found)
     if (status == SPAR_OK) then
       call copy_text(spar_member_get_name(found), name)
-      call member_take(member, found, self%session, name, int(self%elements, c_int))
+      call member_take(member, found, self%session, name, int(self%elements))
     end if
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_member
@@ -2008,12 +2086,12 @@ contains
 
   subroutine fluid_fail(self, status, message, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: status
+    integer, intent(in) :: status
     character(*), intent(in) :: message
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_fail(self%handle, status, c_text(message)), self%session, stat, errmsg)
+    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
   end subroutine fluid_fail
 
   ! Takes the fluid out of its session, which must still be there.
@@ -2046,7 +2124,7 @@ contains
   subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -2062,7 +2140,7 @@ contains
   subroutine fluid_set_motion_weights(self, w, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in), optional :: w(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
 
@@ -2074,13 +2152,13 @@ contains
   subroutine fluid_get_motion_weights(self, w, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: w(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2098,14 +2176,15 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_double), intent(in) :: within, beyond
     real(c_double), contiguous, intent(in), optional :: distance(:)
-    integer(c_int), contiguous, intent(in), optional :: held(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in), optional :: held(:)
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
+    integer(c_int), allocatable :: c_held(:)
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2116,13 +2195,14 @@ contains
       call refuse('fluid%fade_motion', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, held), self%session, stat, errmsg)
+    if (present(held)) allocate (c_held, source=merge(1_c_int, 0_c_int, held /= 0))
+    call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, c_held), self%session, stat, errmsg)
   end subroutine fluid_fade_motion
 
   subroutine fluid_set_force_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -2138,7 +2218,7 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: xi(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -2158,7 +2238,7 @@ contains
     character(*), intent(in), optional :: blade_path
     real(c_double), intent(in), optional :: q(4)
     real(c_double), contiguous, intent(in), optional :: span(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     integer(c_int) :: status
@@ -2177,7 +2257,7 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: xi(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -2193,57 +2273,60 @@ contains
 
   subroutine fluid_get_kind(self, which, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
-    integer(c_int), intent(inout) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: which
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
 
-    call finish(spar_fluid_get_kind(self%handle, which, kind), self%session, stat, errmsg)
+    status = spar_fluid_get_kind(self%handle, to_c(which), c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_kind
 
   ! (1, n): arrays x(n,3), by component; (3, 1): x(3,n).
   subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     integer(c_int64_t), intent(in) :: node, component
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_set_layout(self%handle, which, node, component), self%session, stat, errmsg)
+    call finish(spar_fluid_set_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
   end subroutine fluid_set_layout
 
   subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     integer(c_int64_t), intent(inout), optional :: node, component
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_get_layout(self%handle, which, node, component), self%session, stat, errmsg)
+    call finish(spar_fluid_get_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
   end subroutine fluid_get_layout
 
   subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    integer(c_int), intent(in) :: method
+    integer, intent(in) :: method
     real(c_double), intent(in) :: max_distance
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_set_projection(self%handle, method, max_distance), self%session, stat, errmsg)
+    call finish(spar_fluid_set_projection(self%handle, to_c(method), max_distance), self%session, stat, errmsg)
   end subroutine fluid_set_projection
 
   subroutine fluid_set_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    integer(c_int), intent(in) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_set_interpolation(self%handle, kind), self%session, stat, errmsg)
+    call finish(spar_fluid_set_interpolation(self%handle, to_c(kind)), self%session, stat, errmsg)
   end subroutine fluid_set_interpolation
 
   subroutine fluid_map(self, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
@@ -2251,49 +2334,50 @@ contains
 
   subroutine fluid_get_count_64(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     integer(c_int64_t), intent(inout) :: n
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_get_count(self%handle, which, n), self%session, stat, errmsg)
+    call finish(spar_fluid_get_count(self%handle, to_c(which), n), self%session, stat, errmsg)
   end subroutine fluid_get_count_64
 
   subroutine fluid_get_count_32(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     integer(c_int), intent(inout) :: n
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: long
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, which, long)
+    status = spar_fluid_get_count(self%handle, to_c(which), long)
     call narrow(status, long, n, 'fluid%get_count', self%session, stat, errmsg)
   end subroutine fluid_get_count_32
 
   subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which, flag
+    integer, intent(in) :: which, flag
     integer(c_int64_t), intent(inout) :: n
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_get_flag_count(self%handle, which, flag, n), self%session, stat, errmsg)
+    call finish(spar_fluid_get_flag_count(self%handle, to_c(which), to_c(flag), n), self%session, stat, errmsg)
   end subroutine fluid_get_flag_count
 
   subroutine fluid_get_map(self, which, xi, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: xi(:), distance(:)
-    integer(c_int), contiguous, intent(inout), optional :: flags(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: flags(:)
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
+    integer(c_int), allocatable :: c_flags(:)
 
-    status = spar_fluid_get_count(self%handle, which, n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2305,20 +2389,23 @@ contains
       call refuse('fluid%get_map', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_map(self%handle, which, xi, distance, flags), self%session, stat, errmsg)
+    if (present(flags)) allocate (c_flags(n), source=0_c_int)
+    status = spar_fluid_get_map(self%handle, to_c(which), xi, distance, c_flags)
+    if (status == SPAR_OK .and. present(flags)) flags(:n) = c_flags
+    call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_map
 
   subroutine fluid_get_feet(self, which, x_map, q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, which, n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2330,22 +2417,22 @@ contains
       call refuse('fluid%get_feet', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_feet(self%handle, which, x_map, q_map, con), self%session, stat, errmsg)
+    call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
   end subroutine fluid_get_feet
 
   ! first_node(n) counts from 1; phi(p,n), p nodes per element.
   subroutine fluid_get_basis(self, which, first_node, phi, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     integer(c_int64_t), contiguous, intent(inout), optional :: first_node(:)
     real(c_double), contiguous, intent(inout), optional :: phi(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n, nodes
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, which, n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status == SPAR_OK) status = spar_member_get_count(self%member, nodes) ! not those of create: trials vary them
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
@@ -2357,7 +2444,7 @@ contains
       call refuse('fluid%get_basis', fault, stat, errmsg, self%name)
       return
     end if
-    status = spar_fluid_get_basis(self%handle, which, first_node, phi)
+    status = spar_fluid_get_basis(self%handle, to_c(which), first_node, phi)
     if (status == SPAR_OK .and. present(first_node)) first_node = first_node + 1
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_basis
@@ -2366,13 +2453,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2390,13 +2477,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2415,13 +2502,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2443,13 +2530,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2466,15 +2553,15 @@ contains
 
   subroutine fluid_get_places(self, which, x, v, q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, which, n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2487,19 +2574,19 @@ contains
       call refuse('fluid%get_places', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_places(self%handle, which, x, v, q, foot), self%session, stat, errmsg)
+    call finish(spar_fluid_get_places(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
   end subroutine fluid_get_places
 
   subroutine fluid_get_forces(self, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: force(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2516,15 +2603,15 @@ contains
   subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
-    integer(c_int), intent(in) :: convention
+    integer, intent(in) :: convention
     real(c_double), contiguous, intent(inout) :: matrix(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2534,21 +2621,21 @@ contains
       call refuse('fluid%pull_matrices', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_pull_matrices(self%handle, theta, 1 - convention, matrix), self%session, stat, errmsg)
+    call finish(spar_fluid_pull_matrices(self%handle, theta, to_c(1 - convention), matrix), self%session, stat, errmsg)
   end subroutine fluid_pull_matrices
 
   ! matrix(row, column, n), as above.
   subroutine fluid_check_matrices(self, convention, matrix, stat, errmsg)
     class(spar_fluid), intent(in) :: self
-    integer(c_int), intent(in) :: convention
+    integer, intent(in) :: convention
     real(c_double), contiguous, intent(in) :: matrix(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2558,20 +2645,20 @@ contains
       call refuse('fluid%check_matrices', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_check_matrices(self%handle, 1 - convention, matrix), self%session, stat, errmsg)
+    call finish(spar_fluid_check_matrices(self%handle, to_c(1 - convention), matrix), self%session, stat, errmsg)
   end subroutine fluid_check_matrices
 
   subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout) :: force(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2588,13 +2675,13 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: force(:,:)
     real(c_double), contiguous, intent(in), optional :: moment(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2614,13 +2701,13 @@ contains
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(in) :: force(:,:)
     real(c_double), contiguous, intent(in), optional :: moment(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2639,13 +2726,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_float), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2663,13 +2750,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_float), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_MOTION, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2688,13 +2775,13 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_float), contiguous, intent(inout) :: force(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2711,13 +2798,13 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_float), contiguous, intent(in) :: force(:,:)
     real(c_float), contiguous, intent(in), optional :: moment(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, SPAR_NODES_FORCE, n)
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
@@ -2735,7 +2822,7 @@ contains
   subroutine fluid_get_audit(self, audit, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: audit(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
@@ -2746,7 +2833,7 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in), optional :: point(3)
     real(c_double), intent(inout), optional :: force(3), moment(3)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
@@ -2758,7 +2845,7 @@ contains
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: force(3), rtol
     real(c_double), intent(in), optional :: point(3), moment(3)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_check_total(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
@@ -2769,7 +2856,7 @@ contains
     class(spar_fluid), intent(inout) :: self
     real(c_double), intent(inout), optional :: largest
     integer(c_int64_t), intent(inout), optional :: node
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
@@ -2778,7 +2865,7 @@ contains
   subroutine fluid_write_vtk(self, path, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     character(*), intent(in) :: path
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_fluid_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
@@ -2791,7 +2878,7 @@ contains
     class(spar_polar), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: alpha_rad(:), cl(:), cd(:)
     real(c_double), contiguous, intent(in), optional :: cm(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
     integer(c_int64_t) :: n
@@ -2845,18 +2932,18 @@ contains
 
   subroutine polar_set_interpolation(self, kind, stat, errmsg)
     class(spar_polar), intent(inout) :: self
-    integer(c_int), intent(in) :: kind
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_polar_set_interpolation(self%handle, kind), c_null_ptr, stat, errmsg)
+    call finish(spar_polar_set_interpolation(self%handle, to_c(kind)), c_null_ptr, stat, errmsg)
   end subroutine polar_set_interpolation
 
   subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
     class(spar_polar), intent(in) :: self
     real(c_double), intent(in) :: alpha
     real(c_double), intent(inout), optional :: cl, cd, cm
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_polar_evaluate(self%handle, alpha, cl, cd, cm), c_null_ptr, stat, errmsg)
@@ -2868,12 +2955,13 @@ contains
   subroutine aero_create(self, fluids, stat, errmsg)
     class(spar_aero), intent(inout) :: self
     type(spar_fluid), intent(in) :: fluids(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(c_ptr), allocatable :: handles(:)
     type(c_ptr) :: session
     integer(c_int64_t) :: n
-    integer(c_int) :: b, status
+    integer :: b
+    integer(c_int) :: status
 
     if (c_associated(self%handle)) then
       call occupied('aero%create', stat, errmsg)
@@ -2887,7 +2975,7 @@ contains
       if (b == 1) session = fluids(b)%session
     end do
     status = spar_aero_create(int(size(fluids), c_int), handles, self%handle)
-    if (status == SPAR_OK .and. size(fluids) > 0) status = spar_fluid_get_count(handles(1), SPAR_NODES_MOTION, n)
+    if (status == SPAR_OK .and. size(fluids) > 0) status = spar_fluid_get_count(handles(1), to_c(SPAR_NODES_MOTION), n)
     if (status == SPAR_OK) then
       self%session = session
       self%blades = size(fluids)
@@ -2936,7 +3024,7 @@ contains
     integer(c_int64_t), intent(in) :: i
     real(c_double), intent(in) :: chord, twist
     class(spar_polar), intent(in) :: polar
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     if (c_associated(self%handle) .and. (i < 1 .or. (self%blades > 0 .and. i > self%sections))) then
@@ -2952,7 +3040,7 @@ contains
     integer(c_int), intent(in) :: i
     real(c_double), intent(in) :: chord, twist
     class(spar_polar), intent(in) :: polar
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
@@ -2961,7 +3049,7 @@ contains
   subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
     class(spar_aero), intent(inout) :: self
     real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
@@ -2973,7 +3061,7 @@ contains
     character(*), intent(in), optional :: blade_path
     real(c_double), intent(in), optional :: q(4)
     real(c_double), contiguous, intent(in), optional :: span(:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
     integer(c_int) :: status
@@ -2993,29 +3081,29 @@ contains
 
   subroutine aero_set_turn(self, turn, stat, errmsg)
     class(spar_aero), intent(inout) :: self
-    integer(c_int), intent(in) :: turn
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: turn
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_aero_set_turn(self%handle, turn), self%session, stat, errmsg)
+    call finish(spar_aero_set_turn(self%handle, to_c(turn)), self%session, stat, errmsg)
   end subroutine aero_set_turn
 
   subroutine aero_set_blades(self, total, stat, errmsg)
     class(spar_aero), intent(inout) :: self
-    integer(c_int), intent(in) :: total
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: total
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_aero_set_blades(self%handle, total), self%session, stat, errmsg)
+    call finish(spar_aero_set_blades(self%handle, to_c(total)), self%session, stat, errmsg)
   end subroutine aero_set_blades
 
   subroutine aero_set_effects(self, effects, stat, errmsg)
     class(spar_aero), intent(inout) :: self
-    integer(c_int), intent(in) :: effects
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: effects
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_aero_set_effects(self%handle, effects), self%session, stat, errmsg)
+    call finish(spar_aero_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
   end subroutine aero_set_effects
 
   subroutine aero_solve(self, density, inflow, theta, stat, errmsg)
@@ -3023,7 +3111,7 @@ contains
     real(c_double), intent(in) :: density
     real(c_double), contiguous, intent(in) :: inflow(:,:,:)
     real(c_double), intent(in) :: theta
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -3038,7 +3126,7 @@ contains
   subroutine aero_get_rotor(self, thrust, torque, power, stat, errmsg)
     class(spar_aero), intent(in) :: self
     real(c_double), intent(inout), optional :: thrust, torque, power
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_aero_get_rotor(self%handle, thrust, torque, power), self%session, stat, errmsg)
@@ -3047,7 +3135,7 @@ contains
   subroutine aero_get_sections(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
     class(spar_aero), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: alpha(:,:), cl(:,:), cd(:,:), a(:,:), a_tangential(:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -3066,24 +3154,29 @@ contains
 
   subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
     class(spar_aero), intent(in) :: self
-    integer(c_int), contiguous, intent(inout), optional :: flags(:,:)
+    integer, intent(inout), optional :: flags(:,:)
     integer(c_int64_t), intent(inout), optional :: no_root
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
+    integer(c_int) :: status
+    integer(c_int), allocatable :: c_flags(:,:)
 
     if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [self%sections, self%blades])
     if (allocated(fault)) then
       call refuse('aero%get_flags', fault, stat, errmsg)
       return
     end if
-    call finish(spar_aero_get_flags(self%handle, flags, no_root), self%session, stat, errmsg)
+    if (present(flags)) allocate (c_flags(self%sections, self%blades), source=0_c_int)
+    status = spar_aero_get_flags(self%handle, c_flags, no_root)
+    if (status == SPAR_OK .and. present(flags)) flags(:self%sections, :self%blades) = c_flags
+    call finish(status, self%session, stat, errmsg)
   end subroutine aero_get_flags
 
   subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
     class(spar_aero), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: per_length(:,:,:), force(:,:,:), moment(:,:,:)
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
@@ -3108,7 +3201,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
@@ -3127,7 +3220,7 @@ contains
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call self%report_effects(session, dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
@@ -3136,10 +3229,10 @@ contains
   ! ---- calls that need no object ----
 
   function status_text(status) result(text)
-    integer(c_int), intent(in) :: status
+    integer, intent(in) :: status
     character(:), allocatable :: text
 
-    call copy_text(c_status_text(status), text)
+    call copy_text(c_status_text(to_c(status)), text)
   end function status_text
 
   function version() result(text)
@@ -3157,29 +3250,29 @@ contains
 
   ! Of a row of report_effects, from 0 as SPAR_ROW_*; '' for what is no row.
   function effect_name(row) result(name)
-    integer(c_int), intent(in) :: row
+    integer, intent(in) :: row
     character(:), allocatable :: name
 
-    call copy_text(c_effect_name(row), name)
+    call copy_text(c_effect_name(to_c(row)), name)
   end function effect_name
 
   ! The same of aero%report_effects.
   function aero_effect_name(row) result(name)
-    integer(c_int), intent(in) :: row
+    integer, intent(in) :: row
     character(:), allocatable :: name
 
-    call copy_text(c_aero_effect_name(row), name)
+    call copy_text(c_aero_effect_name(to_c(row)), name)
   end function aero_effect_name
 
   ! Adds a file to an index of files in time; part counts from 0.
   subroutine series_add(path, time, part, file, stat, errmsg)
     character(*), intent(in) :: path, file
     real(c_double), intent(in) :: time
-    integer(c_int), intent(in) :: part
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(in) :: part
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(c_series_add(c_text(path), time, part, c_text(file)), c_null_ptr, stat, errmsg)
+    call finish(c_series_add(c_text(path), time, to_c(part), c_text(file)), c_null_ptr, stat, errmsg)
   end subroutine series_add
 
   ! ---- status and messages ----
@@ -3189,7 +3282,7 @@ contains
   subroutine finish(status, session, stat, errmsg)
     integer(c_int), intent(in) :: status
     type(c_ptr), intent(in) :: session ! whose message tells; none: this thread's
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: text
 
@@ -3203,7 +3296,7 @@ contains
   ! How a call ends whose arguments the library has not seen.
   subroutine refuse(place, fault, stat, errmsg, name)
     character(*), intent(in) :: place, fault
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(*), intent(in), optional :: name
 
@@ -3217,7 +3310,7 @@ contains
 
   subroutine occupied(place, stat, errmsg)
     character(*), intent(in) :: place
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     if (present(stat)) stat = SPAR_ERR_STATE
@@ -3265,7 +3358,7 @@ contains
   ! Triples of a fluid's n nodes: (3,n), or as large as the set's layout needs.
   subroutine need_triples(fluid, which, fault, array, has, n)
     class(spar_fluid), intent(in) :: fluid
-    integer(c_int), intent(in) :: which
+    integer, intent(in) :: which
     character(:), allocatable, intent(inout) :: fault
     character(*), intent(in) :: array
     integer(c_int64_t), intent(in) :: has(:), n
@@ -3274,7 +3367,7 @@ contains
     if (allocated(fault)) return
     node = 3
     component = 1
-    if (spar_fluid_get_layout(fluid%handle, which, node, component) /= SPAR_OK) return
+    if (spar_fluid_get_layout(fluid%handle, to_c(which), node, component) /= SPAR_OK) return
     if (node == 3 .and. component == 1) then
       call need(fault, array, has, [3_c_int64_t, n])
       return
@@ -3311,7 +3404,7 @@ contains
     integer(c_int), intent(inout) :: to
     character(*), intent(in) :: place
     type(c_ptr), intent(in) :: session
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     if (status == SPAR_OK) then
@@ -3323,6 +3416,22 @@ contains
     end if
     call finish(status, session, stat, errmsg)
   end subroutine narrow
+
+  ! A result of C in the host's kind of integer, which may be absent.
+  pure subroutine hand(status, from, to)
+    integer(c_int), intent(in) :: status, from
+    integer, intent(inout), optional :: to
+
+    if (status == SPAR_OK .and. present(to)) to = from
+  end subroutine hand
+
+  ! An integer of the host for C; what C cannot hold becomes the largest that it can, which no call takes.
+  elemental integer(c_int) function to_c(number)
+    integer, intent(in) :: number
+    integer, parameter :: largest = huge(0_c_int)
+
+    to_c = int(max(-largest, min(number, largest)), c_int)
+  end function to_c
 
   integer(c_int) function flag(on)
     logical, intent(in) :: on

@@ -5,68 +5,13 @@
 ! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
 ! pointer to text of the library. Results are intent(inout): a refused call leaves them as they were. Counting is C's, from 0.
-module spar_c
+
+! The calls alone: the module spar has constants of its own, in the host's kind of integer.
+module spar_calls
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   implicit none
   private :: c_char, c_double, c_float, c_funptr, c_int, c_int64_t, c_ptr
   public
-
-  ! spar.h
-  integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
-      SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
-      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
-  integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
-      SPAR_COUPLING_IQN_ILS = 3
-  integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
-      SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
-      SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_ADDED_MASS_SPREAD = 8, SPAR_REPORT_MOTION_ERROR = 9, &
-      SPAR_REPORT_COUNT = 10
-  integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
-      SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
-  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
-  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
-  integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
-      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
-  integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
-  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
-  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
-      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
-      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
-  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
-      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
-  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
-      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
-  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
-      SPAR_WORK_COUNT = 4
-  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
-      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
-  integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
-  integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
-  integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
-  integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
-  integer(c_int), parameter :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
-  integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
-  integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
-      SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
-      SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
-  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
-      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
-  integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
-      SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
-      SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
-      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_COUNT = 12
-  integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
-      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
-  integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
-      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
-      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
-  ! spar_aero.h
-  integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
-      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
-  integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
-  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
-  integer(c_int), parameter :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
-      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
 
   interface
     ! spar.h
@@ -1381,4 +1326,69 @@ module spar_c
       integer(c_int) :: status
     end function spar_vtk_series_add
   end interface
+end module spar_calls
+
+module spar_c
+  use, intrinsic :: iso_c_binding, only: c_int
+  use spar_calls
+  implicit none
+  private :: c_int
+  public
+
+  ! spar.h
+  integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
+      SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
+      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
+  integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
+      SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
+      SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_ADVISED_DT = 5, SPAR_REPORT_WORK_DEFECT = 6, &
+      SPAR_REPORT_UNCONVERGED = 7, SPAR_REPORT_ADDED_MASS_SPREAD = 8, SPAR_REPORT_MOTION_ERROR = 9, &
+      SPAR_REPORT_COUNT = 10
+  integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
+      SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
+  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
+  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
+  integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
+      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
+  integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
+  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
+      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
+      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
+  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
+      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
+  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
+  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
+      SPAR_WORK_COUNT = 4
+  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
+      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
+  integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
+  integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
+  integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
+  integer(c_int), parameter :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
+  integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
+  integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
+      SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
+      SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
+  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
+      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
+  integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
+      SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
+      SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_COUNT = 12
+  integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
+      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
+  integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
+      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
+      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
+  ! spar_aero.h
+  integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
+      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
+  integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
+  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer(c_int), parameter :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
+      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
 end module spar_c

@@ -38,7 +38,7 @@ endif()
 
 function(spar_consumer name folder)
   spar_package_test(${name} "${CMAKE_CTEST_COMMAND}" --build-and-test "${here}/${folder}" "${work}/${name}"
-    --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_PREFIX_PATH=${prefix}"
+    --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_PREFIX_PATH=${prefix}" ${ARGN}
     --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure --no-tests=error)
 endfunction()
 
@@ -58,6 +58,9 @@ endif()
 
 if(TARGET spar_fortran AND EXISTS "${here}/fortran/main.f90")
   spar_consumer(fortran_cmake fortran)
+  if(CMAKE_Fortran_COMPILER_ID MATCHES "GNU|LLVMFlang") # a host whose integers and logicals have 8 bytes
+    spar_consumer(fortran_integer8 fortran -DCMAKE_Fortran_FLAGS=-fdefault-integer-8)
+  endif()
   if(SPAR_PKG_CONFIG)
     spar_package_test(fortran_pkgconfig sh "${here}/pkgconfig.sh" "${prefix}" "${work}/fortran_pkgconfig"
       "${CMAKE_Fortran_COMPILER}" "${here}/fortran/main.f90" spar_fortran)
