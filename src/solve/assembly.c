@@ -288,6 +288,18 @@ static int start_all(spari_assembly *a) {
 
 /* ---- the step ---- */
 
+/* Places and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of its
+   nodes depend on the velocities, and only the scheme's own are those that its loads have answered to. */
+static void publish_limb(spari_limb *p, double *rates) {
+    const spar_member *m = p->member;
+    size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
+    m->row->publish(p->member);
+    memcpy(rates, m->after.v, size);
+    p->row->keep_rates(p, 1);
+    m->row->publish(p->member);
+    memcpy(m->after.v, rates, size);
+}
+
 /* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
    which are off them by dt^2: with velocities put onto them the accelerations, and so the joints' loads, would be of
    first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
@@ -299,9 +311,7 @@ static int publish_all(spari_assembly *a, double dt) {
     }
     int singular = moves && project(a, 1, dt);
     for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        p->member->row->publish(p->member);
-        p->row->keep_rates(p, 1);
+        publish_limb(a->limb + i, a->rates);
     }
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
                   "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take a "

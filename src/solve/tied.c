@@ -359,11 +359,17 @@ int spari_tied_room(spari_assembly *a) {
     a->A = gsl_matrix_calloc((size_t)a->n, (size_t)(3 * a->band + 1));
     a->swap = gsl_vector_uint_alloc((size_t)a->n);
     a->x = spari_zalloc(a->n, sizeof *a->x);
-    return a->A && a->swap && a->x ? SPAR_OK : SPAR_ERR_MEMORY;
+    int64_t most = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        most = a->limb[i].member->nodes > most ? a->limb[i].member->nodes : most;
+    }
+    a->rates = spari_zalloc(6 * most, sizeof *a->rates);
+    return a->A && a->swap && a->x && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
 void spari_tied_free(spari_assembly *a) {
     gsl_matrix_free(a->A);
     gsl_vector_uint_free(a->swap);
     free(a->x);
+    free(a->rates);
 }

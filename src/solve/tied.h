@@ -37,6 +37,7 @@ struct spari_assembly {
     gsl_matrix *A;
     gsl_vector_uint *swap;
     double *x;
+    double *rates; /* 6 of each node of the largest part */
 };
 
 /* The relative motion of a link in the states of its parts, at the part s of the step dt where a node moves as it is
