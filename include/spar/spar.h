@@ -466,14 +466,14 @@ SPAR_API int spar_member_get_fidelity(const spar_member *member, int *kind, int6
    (docs/theory.md): give rather too little, and order 0 where it is known to a half only. What the coupling reports of
    an added mass is the same ratio. What explicit coupling leaves is told as always (SPAR_REPORT_WORK_DEFECT); the loads
    of spar_member_get_loads within a step are those that move the structure. With substeps the part of the loads that
-   the guess accounts for follows the acceleration of each: the answer differs by dt^2 from that without a guess. With
-   INERTIA off it does nothing. Default: none, which costs nothing. Before commit; replaces an earlier one. Local.
+   the guess accounts for follows the acceleration of each: the answer differs by dt^2 from that without a guess, as do
+   the velocities of members that joints tie. With INERTIA off it does nothing. Default: none, which costs nothing.
+   Before commit; replaces an earlier one. Local.
      n: in, stations of a beam, linear in eta between them and constant beyond; 1 of a rigid body; 0: no guess
      eta[n]: in, of a beam, strictly increasing in [0,1]; else not looked at
      mass[n][36]: in, symmetric and positive semidefinite; it turns with the member. Of a beam per length, in section
            axes: kg/m, kg, kg m; of a rigid body about its node, in its own axes: kg, kg m, kg m^2
-   SPAR_ERR_UNSUPPORTED: a point; at commit: external or prescribed, which move as they are told; at the first step:
-   linear or modal, and tied by joints. */
+   SPAR_ERR_UNSUPPORTED: a point; at commit: external or prescribed, which move as they are told. */
 SPAR_API int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta, const double *mass);
 /* The guess that was given. n: out, stations, NULL: not wanted; capacity: in, of the arrays; eta[capacity],
    mass[capacity][36]: out, 0 behind the last, NULL: not wanted. Local. */

@@ -222,7 +222,7 @@ static void turn_at(const spar_member *m, int64_t e, const double *phi, double t
     double sign = 1;
     memset(turn, 0, 4 * sizeof *turn);
     turn[0] = 1;
-    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
+    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->floats) {
         return;
     }
     if (d->per_element == 1 || m->seen == SPARI_SEEN_LINEAR) {

@@ -286,22 +286,10 @@ int spari_joints_place(spar_session *s) {
     return SPAR_OK;
 }
 
-/* A frame whose root is an unknown of joints has no place for a guess of the fluid's added mass. */
-static int check_added(const spar_session *s) {
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(m->session, !m->assembly || !m->added || m->seen != SPARI_SEEN_LINEAR, SPAR_ERR_UNSUPPORTED,
-                      "member '%s' is linear or modal, and tied by joints: it takes no added mass "
-                      "(spar_member_set_added_mass); leave that out, or make it exact or rigid",
-                      m->name);
-    }
-    return SPAR_OK;
-}
-
 /* This rank's part. */
 static int make_all(spar_session *s) {
     SPARI_TRY(spari_joints_place(s));
     int status = gather_all(s);
-    status = status == SPAR_OK ? check_added(s) : status;
     status = status == SPAR_OK ? choose_owners(s) : status;
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
         status = move_members(a);

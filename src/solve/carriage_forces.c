@@ -96,11 +96,16 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     }
 }
 
+/* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
+static int steps_on(const spari_frame *f) {
+    return !f->carriage->still && f->steps.started;
+}
+
 /* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
    guess of the fluid's added mass takes of their accelerations. */
 static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
     spari_carriage *c = f->carriage;
-    int n = f->nodes, n6 = 6 * n, guessed = m->added && !c->still;
+    int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
     double *q = f->turned, *v = q + 7 * n, *a = v + n6;
     memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
     if (m->applied || guessed) {
@@ -383,11 +388,11 @@ static void add_arms_to_rows(const spari_frame *f) {
 static void form_element(spari_frame *f, int e, const double alpha[3], double cm, double cv) {
     const double *K = f->sumK ? f->sumK : f->K;
     int64_t mm = (int64_t)f->block * f->block;
-    int moving = f->E[0] && !f->carriage->still;
+    int moving = f->E[0] && !f->carriage->still, guessed = f->A && steps_on(f);
     for (int64_t i = 0; i < mm; i++) {
         int64_t at = mm * e + i;
         f->element[i] =
-            K[at] + (f->sumC ? cv * f->sumC[at] : 0) + (f->M ? cm * f->M[at] : 0) + (f->A ? cm * f->A[at] : 0);
+            K[at] + (f->sumC ? cv * f->sumC[at] : 0) + (f->M ? cm * f->M[at] : 0) + (guessed ? cm * f->A[at] : 0);
         for (int k = 0; k < 3 && moving; k++) {
             f->element[i] += alpha[k] * f->E[k][at];
         }

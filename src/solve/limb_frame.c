@@ -366,6 +366,7 @@ static int start_of_frame(spari_limb *p) {
         memset(s->begin.a, 0, (size_t)end * sizeof(double));
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
     }
+    f->steps.started = 0;
     copy_to(f); /* the rates are shifted at the end, which is the beginning */
     p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
