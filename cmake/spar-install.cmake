@@ -1,5 +1,5 @@
 # What is installed: libraries, headers, the CMake package, the pkg-config files, the Fortran modules (by compiler) and their
-# source (for any other compiler), the documents. Three components, which are Debian's three packages: `cpack` writes them.
+# source (for any other compiler), Python's module, the documents. Three components, which are Debian's three packages: `cpack` writes them.
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(spar_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/spar")
@@ -24,6 +24,7 @@ if(TARGET spar_fortran)
   endforeach()
 endif()
 install(FILES ${spar_fortran_sources} DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/fortran")
+install(FILES "${PROJECT_SOURCE_DIR}/examples/python/spar.py" DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/python")
 
 configure_package_config_file(cmake/spar-config.cmake.in "${PROJECT_BINARY_DIR}/spar-config.cmake"
   INSTALL_DESTINATION "${spar_package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_LIBDIR)

@@ -107,7 +107,7 @@ module spar
   integer, parameter, public :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
   integer, parameter, public :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
       SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
-  ! } written by cmake/make-fortran.sh
+  ! } written by cmake/make-bindings.sh
 
   type :: spar_session
     private

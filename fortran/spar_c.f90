@@ -1,6 +1,6 @@
 ! spar_c: the C interface of spar as it is, one binding per public function, one parameter per constant. The headers under
 ! include/spar say what every call does, and what it may be given; the module spar puts the types and checks of Fortran over it.
-! Written by cmake/make-fortran.sh from the headers.
+! Written by cmake/make-bindings.sh from the headers.
 !
 ! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
@@ -26,10 +26,10 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_version
 
-    function spar_has(feature) bind(c) result(there)
+    function spar_has(feature) bind(c) result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in), optional :: feature(*)
-      integer(c_int) :: there
+      integer(c_int) :: status
     end function spar_has
 
     function spar_session_create(session) bind(c) result(status)

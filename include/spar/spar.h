@@ -80,7 +80,7 @@
    Clang, the library leaves all of this as it is.)
 
    Adding to the library (docs/adding.md):
-   - a public call: header, cmake/make-map.sh, cmake/make-fortran.sh, fortran/spar.f90, tests/contract.c, the tables of
+   - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, fortran/spar.f90, tests/contract.c, the tables of
      tests/torture;
    - a setting: a field of the session (src/base/scene.h) and a row of the table in src/session/settings.c;
    - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/solve/fidelity.h;

@@ -24,6 +24,8 @@ find_program(SPAR_AWK awk)
 mark_as_advanced(SPAR_AWK)
 if(SPAR_AWK)
   spar_package_test(interface sh "${here}/interface" "${CMAKE_C_COMPILER}")
+  add_test(NAME package_generated COMMAND sh "${here}/generated" "${work}/generated")
+  spar_set_test(package_generated package 30)
   spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
 endif()
 

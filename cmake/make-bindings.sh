@@ -1,20 +1,20 @@
 #!/bin/sh
-# Writes fortran/spar_c.f90 from the public headers, and into fortran/spar.f90 the list of their constants: run it after they
-# have changed. What a pointer is, the headers' own comments say: `x[n][3]: out` is an array, `t: out` a single number; what
-# is said of a name holds until something else is.
-#   make-fortran.sh [<folder to write to>]
+# Writes from the public headers fortran/spar_c.f90, the constants of fortran/spar.f90, and the table of examples/python/spar.py:
+# run it after they have changed.
+#   make-bindings.sh [<folder to write to, instead of fortran and examples/python>]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-out=${1:-$root/fortran}
+out=${1:-$root/fortran} out_python=${1:-$root/examples/python}
 made=$(mktemp)
 trap 'rm -f "$made"' EXIT
-# of a header: calls, constants, or names, which are constants in the default kind of integer
-of() { awk -v pass="$2" -v title="$1.h" -f "$root/cmake/make-fortran.awk" "$root/include/spar/$1.h"; }
+# of <header> calls|constants|names
+of() { awk -f "$root/cmake/interface.awk" "$root/include/spar/$1.h" | awk -v pass="$2" -v title="$1.h" -f "$root/cmake/fortran.awk"; }
+
 {
     cat <<'HEAD'
 ! spar_c: the C interface of spar as it is, one binding per public function, one parameter per constant. The headers under
 ! include/spar say what every call does, and what it may be given; the module spar puts the types and checks of Fortran over it.
-! Written by cmake/make-fortran.sh from the headers.
+! Written by cmake/make-bindings.sh from the headers.
 !
 ! Handles are type(c_ptr), by value where C takes a pointer and by reference where C takes the address of one. An array or
 ! a number that C takes by address is optional here: left out, C gets NULL. Text ends in c_null_char; text that comes back is a
@@ -52,10 +52,25 @@ MIDDLE
 } >"$made"
 cat "$made" >"$out/spar_c.f90"
 
-{ of spar names && of spar_aero names; } >"$made"
-awk -v list="$made" '
-    !skip
-    /constants of the headers \{/ { skip = 1; while ((getline line < list) > 0) print line }
-    skip && /\} written by/ { skip = 0; print }' "$root/fortran/spar.f90" >"$made.f90"
-cat "$made.f90" >"$out/spar.f90"
-rm "$made.f90"
+# <file> <mark>: the file with what was made between the line that has the mark and the one that says who wrote it
+put_between() {
+    awk -v list="$made" -v mark="$2" '
+        index($0, mark) { print; skip = 1; while ((getline line < list) > 0) print line }
+        index($0, "} written by cmake/make-bindings.sh") { skip = 0 }
+        !skip && !index($0, mark)' "$1" >"$made.file"
+}
+
+{ of spar names; of spar_aero names; } >"$made"
+put_between "$root/fortran/spar.f90" 'constants of the headers {'
+cat "$made.file" >"$out/spar.f90"
+
+{
+    echo 'TABLE = """'
+    for name in spar spar_aero spar_output; do
+        awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | tr '\t' ' '
+    done
+    echo '"""'
+} >"$made"
+put_between "$root/examples/python/spar.py" 'as cmake/interface.awk reads it {'
+cat "$made.file" >"$out_python/spar.py"
+rm "$made.file"

@@ -1,0 +1,626 @@
+"""spar from Python: every call of the C interface, with numpy arrays. Needs numpy and the shared library, nothing compiled.
+
+    import spar
+    with spar.Session() as s:
+        blade = s.beam_create('blade', 1, 10)
+        blade.set_axis([0, 1], [[0, 0, 0], [0, 0, 61.5]])
+        ...
+        x, v = surface.pull_motion(1.0)
+        surface.push_forces(force)
+        done = s.step_check()
+
+The headers under include/spar say what each call does; here is what is different.
+- Names. A call is a method of its first argument, without spar_ and without the name of that: spar_fluid_push_forces is
+  fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. Constants are spar.OK, ...
+  without SPAR_.
+- Arguments stand in the header's order. Left out are counts that an array given shows (n), capacities, contexts, and all
+  results. Arrays may be lists; what C takes as NULL is None, or left out at the end.
+- Results come back: none, one, or a tuple in the header's order. An array that is given by its name is filled in place:
+  fluid.pull_motion(1.0, x=x, v=v). One given as None is not wanted.
+- Failures raise spar.Error with the library's message, .status is its SPAR_ERR_*.
+- A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
+  (session, t, dt), a log one of (level, text). What they raise ends the step and is raised again.
+- A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints and fluids keep it.
+- Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
+The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.1.
+"""
+import ctypes
+import os
+import re
+
+import numpy
+
+# the interface, as cmake/interface.awk reads it {
+TABLE = """
+constants SPAR_OK=0 SPAR_ERR_ARGUMENT=1 SPAR_ERR_STATE=2 SPAR_ERR_MEMORY=3 SPAR_ERR_NUMERIC=4 SPAR_ERR_MAPPING=5 SPAR_ERR_COMM=6 SPAR_ERR_PEER=7 SPAR_ERR_IO=8 SPAR_ERR_UNSUPPORTED=9 SPAR_ERR_USER=10
+call spar_status_text text status|int|value|
+call spar_version text
+call spar_has int feature|char|in|[]
+constants SPAR_COUPLING_EXPLICIT=0 SPAR_COUPLING_FIXED_POINT=1 SPAR_COUPLING_AITKEN=2 SPAR_COUPLING_IQN_ILS=3
+constants SPAR_REPORT_CONTRACTION=0 SPAR_REPORT_ADDED_MASS=1 SPAR_REPORT_COLUMNS=2 SPAR_REPORT_DROPPED=3 SPAR_REPORT_ERROR=4 SPAR_REPORT_ADVISED_DT=5 SPAR_REPORT_WORK_DEFECT=6 SPAR_REPORT_UNCONVERGED=7 SPAR_REPORT_ADDED_MASS_SPREAD=8 SPAR_REPORT_MOTION_ERROR=9 SPAR_REPORT_COUNT=10
+call spar_session_create int session|session|out|
+call spar_session_create_fcomm int comm|int|value| session|session|out|
+call spar_session_destroy none session|session|out|
+call spar_session_message text session|session|value|
+call spar_session_set_gravity int session|session|value| g|double|in|[3]
+call spar_session_get_gravity int session|session|value| g|double|out|[3]
+call spar_session_set_integrator int session|session|value| rho_inf|double|value| substeps|int|value|
+call spar_session_get_integrator int session|session|value| rho_inf|double|out| substeps|int|out|
+call spar_session_set_newton int session|session|value| atol|double|value| rtol|double|value| max_iterations|int|value|
+call spar_session_get_newton int session|session|value| atol|double|out| rtol|double|out| max_iterations|int|out|
+call spar_session_set_predictor int session|session|value| order|int|value|
+call spar_session_get_predictor int session|session|value| order|int|out|
+call spar_session_set_coupling int session|session|value| scheme|int|value| atol|double|value| rtol|double|value| max_iterations|int|value|
+call spar_session_get_coupling int session|session|value| scheme|int|out| atol|double|out| rtol|double|out| max_iterations|int|out|
+call spar_session_set_relaxation int session|session|value| omega|double|value|
+call spar_session_get_relaxation int session|session|value| omega|double|out|
+call spar_session_set_reproducible int session|session|value| on|int|value|
+call spar_session_get_reproducible int session|session|value| on|int|out|
+call spar_session_set_option int session|session|value| key|char|in|[] value|char|in|[]
+call spar_session_get_option int session|session|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
+call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]
+call spar_session_get_residual int session|session|value| residual|double|out| size|double|out|
+call spar_session_get_report int session|session|value| capacity|int64_t|value| report|double|out|[SPAR_REPORT_COUNT]
+call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
+constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_SOLVED=3 SPAR_PHASE_CHECKED=4
+call spar_session_get_phase int session|session|value| phase|int|out|
+call spar_session_sum int session|session|value| status|int|value| n|int64_t|value| x|double|out|[n]
+constants SPAR_LOG_ERROR=0 SPAR_LOG_WARNING=1 SPAR_LOG_INFO=2
+call spar_session_set_log int session|session|value| log|log|callback| context|context|value|
+constants SPAR_ROOT_FREE=0 SPAR_ROOT_FIXED=1 SPAR_ROOT_PINNED=2 SPAR_ROOT_DRIVEN=3
+constants SPAR_FREE_X=1 SPAR_FREE_Y=2 SPAR_FREE_Z=4 SPAR_FREE_RX=8 SPAR_FREE_RY=16 SPAR_FREE_RZ=32
+constants SPAR_LOAD_DEAD=0 SPAR_LOAD_FOLLOWER=1
+constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
+constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_LARGE_ROTATION=16 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256
+constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
+call spar_point_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] member|member|out|
+call spar_rigid_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] mass|double|in|[36] member|member|out|
+call spar_beam_create int session|session|value| name|char|in|[] elements|int|value| nodes_per_element|int|value| member|member|out|
+call spar_beam_get_elements int beam|member|value| elements|int|out| nodes_per_element|int|out|
+call spar_beam_set_axis int beam|member|value| n|int64_t|value| eta|double|in|[n] xyz|double|in|[n][3] twist|double|in|[n]
+call spar_beam_set_nodes int beam|member|value| n|int64_t|value| x|double|in|[n][3] q|double|in|[n][4]
+call spar_beam_set_sections int beam|member|value| n|int64_t|value| eta|double|in|[n] stiffness|double|in|[n][36] mass|double|in|[n][36]
+call spar_beam_set_quadrature int beam|member|value| rule|int|value| points|int|value|
+call spar_beam_get_quadrature int beam|member|value| rule|int|out| points|int|out|
+call spar_beam_set_damping int beam|member|value| mu|double|in|[6]
+call spar_beam_get_damping int beam|member|value| mu|double|out|[6]
+call spar_beam_read_beamdyn int beam|member|value| primary_path|char|in|[] blade_path|char|in|[]
+call spar_member_set_placement int member|member|value| x|double|in|[3] q|double|in|[4]
+call spar_member_get_placement int member|member|value| x|double|out|[3] q|double|out|[4]
+call spar_member_set_root int member|member|value| kind|int|value|
+call spar_member_get_root int member|member|value| kind|int|out|
+call spar_member_set_external int member|member|value| on|int|value|
+call spar_member_get_external int member|member|value| on|int|out|
+call spar_member_set_effects int member|member|value| effects|int|value|
+call spar_member_get_effects int member|member|value| effects|int|out|
+call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int64_t|value|
+call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
+call spar_member_set_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
+call spar_member_get_added_mass int member|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
+call spar_member_set_initial_velocity int member|member|value| x0|double|in|[3] v0|double|in|[3] omega|double|in|[3]
+call spar_member_set_owner int member|member|value| rank|int|value|
+call spar_member_get_owner int member|member|value| rank|int|out|
+call spar_member_commit int member|member|value|
+call spar_member_get_count int member|member|value| nodes|int64_t|out|
+call spar_member_get_session int member|member|value| session|session|out|
+call spar_member_get_name text member|member|value|
+call spar_member_get_reference int member|member|value| x|double|out|[n][3] q|double|out|[n][4]
+call spar_member_get_motion int member|member|value| q|double|out|[n][7] v|double|out|[n][6] a|double|out|[n][6]
+call spar_member_set_motion int member|member|value| q|double|in|[n][7] v|double|in|[n][6] a|double|in|[n][6]
+call spar_member_drive_root int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
+call spar_member_set_load int member|member|value| node|int64_t|value| kind|int|value| load|double|in|[6]
+call spar_beam_set_line_load int beam|member|value| kind|int|value| n|int64_t|value| eta|double|in|[n] load|double|in|[n][6]
+call spar_member_get_loads int member|member|value| load|double|out|[n][6]
+call spar_member_get_reaction int member|member|value| load|double|out|[6]
+call spar_beam_get_section int beam|member|value| n|int64_t|value| eta|double|in|[n] strain|double|out|[n][6] force|double|out|[n][6] x|double|out|[n][3] q|double|out|[n][4]
+constants SPAR_ENERGY_KINETIC=0 SPAR_ENERGY_STRAIN=1 SPAR_ENERGY_GRAVITY=2 SPAR_ENERGY_DISSIPATED=3 SPAR_ENERGY_COUNT=4
+call spar_member_get_energy int member|member|value| capacity|int64_t|value| energy|double|out|[SPAR_ENERGY_COUNT]
+constants SPAR_WORK_LOADS=0 SPAR_WORK_FLUID=1 SPAR_WORK_ROOT=2 SPAR_WORK_JOINTS=3 SPAR_WORK_COUNT=4
+call spar_member_get_work int member|member|value| capacity|int64_t|value| work|double|out|[SPAR_WORK_COUNT]
+call spar_member_solve_static int member|member|value| load_steps|int|value|
+call spar_member_solve_modes int member|member|value| n|int64_t|value| frequency_hz|double|out|[n] shapes|double|out|[n][nodes][6]
+call spar_beam_set_modal_damping int beam|member|value| mode|int64_t|in|[2] ratio|double|in|[2] mu|double|out|[6]
+call spar_joint_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| b|member|value| node_b|int64_t|value| free_motions|int|value| joint|joint|out|
+call spar_joint_set_frame int joint|joint|value| x|double|in|[3] q|double|in|[4]
+call spar_joint_set_spring int joint|joint|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6]
+call spar_member_set_spring int member|member|value| node|int64_t|value| free_motions|int|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6] joint|joint|out|
+call spar_joint_set_driven int joint|joint|value| mask|int|value|
+call spar_joint_drive int joint|joint|value| motion|double|in|[6] rate|double|in|[6] acceleration|double|in|[6]
+call spar_joint_set_load int joint|joint|value| load|double|in|[6]
+call spar_line_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| point_a|double|in|[3] b|member|value| node_b|int64_t|value| point_b|double|in|[3] joint|joint|out|
+call spar_line_set_spring int joint|joint|value| stiffness|double|value| damping|double|value| length|double|value| tension_only|int|value|
+call spar_joint_get_motion int joint|joint|value| motion|double|out|[6] rate|double|out|[6] acceleration|double|out|[6]
+call spar_joint_get_load int joint|joint|value| load|double|out|[6]
+constants SPAR_JOINT_ENERGY_SPRING=0 SPAR_JOINT_ENERGY_DAMPER=1 SPAR_JOINT_ENERGY_DRIVE=2 SPAR_JOINT_ENERGY_LOAD=3 SPAR_JOINT_ENERGY_COUNT=4
+call spar_joint_get_energy int joint|joint|value| capacity|int64_t|value| energy|double|out|[SPAR_JOINT_ENERGY_COUNT]
+constants SPAR_PROJECT_BOUNDED=0 SPAR_PROJECT_RPOLY=1
+constants SPAR_INTERPOLATE_NODAL=0 SPAR_INTERPOLATE_CONSISTENT=1
+constants SPAR_NODES_MOTION=0 SPAR_NODES_FORCE=1
+constants SPAR_MAP_END=1 SPAR_MAP_AMBIGUOUS=2 SPAR_MAP_FAR=4
+call spar_fluid_create int member|member|value| name|char|in|[] fluid|fluid|out|
+call spar_fluid_get_member int fluid|fluid|value| member|member|out|
+call spar_fluid_get_name text fluid|fluid|value|
+call spar_fluid_destroy none fluid|fluid|out|
+call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
+call spar_fluid_set_motion_weights int fluid|fluid|value| n|int64_t|value| w|double|in|[n]
+call spar_fluid_get_motion_weights int fluid|fluid|value| w|double|out|[n]
+call spar_fluid_fade_motion int fluid|fluid|value| within|double|value| beyond|double|value| n|int64_t|value| distance|double|in|[n] held|int|in|[n]
+call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
+call spar_fluid_set_sections int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_motion_sections int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_layout int fluid|fluid|value| which|int|value| node|int64_t|value| component|int64_t|value|
+call spar_fluid_get_layout int fluid|fluid|value| which|int|value| node|int64_t|out| component|int64_t|out|
+call spar_fluid_set_projection int fluid|fluid|value| method|int|value| max_distance|double|value|
+call spar_fluid_get_projection int fluid|fluid|value| method|int|out| max_distance|double|out|
+call spar_fluid_set_interpolation int fluid|fluid|value| kind|int|value|
+call spar_fluid_get_interpolation int fluid|fluid|value| kind|int|out|
+call spar_fluid_map int fluid|fluid|value|
+call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|
+constants SPAR_KIND_SECTIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
+call spar_fluid_get_kind int fluid|fluid|value| which|int|value| kind|int|out|
+call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|value| n|int64_t|out|
+call spar_fluid_get_map int fluid|fluid|value| which|int|value| xi|double|out|[n] distance|double|out|[n] flags|int|out|[n]
+call spar_fluid_get_feet int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
+call spar_fluid_get_basis int fluid|fluid|value| which|int|value| first_node|int64_t|out|[n] phi|double|out|[n][P]
+call spar_fluid_pull_motion int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3]
+call spar_fluid_pull_sections int fluid|fluid|value| theta|double|value| q|double|out|[n][4] omega|double|out|[n][3] accel|double|out|[n][3]
+call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
+call spar_fluid_get_travel int fluid|fluid|value| largest|double|out| node|int64_t|out|
+call spar_fluid_pull_force_places int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4]
+call spar_fluid_get_places int fluid|fluid|value| which|int|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4] foot|double|out|[n][3]
+constants SPAR_MATRIX_LOCAL_TO_GLOBAL=0 SPAR_MATRIX_GLOBAL_TO_LOCAL=1
+call spar_fluid_pull_matrices int fluid|fluid|value| theta|double|value| convention|int|value| matrix|double|out|[n][9]
+call spar_fluid_check_matrices int fluid|fluid|value| convention|int|value| matrix|double|in|[n][9]
+call spar_fluid_pull_forces int fluid|fluid|value| theta|double|value| force|double|out|[n][3]
+call spar_fluid_get_forces int fluid|fluid|value| force|double|out|[n][3]
+call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
+call spar_fluid_push_forces_at int fluid|fluid|value| theta|double|value| force|double|in|[n][3] moment|double|in|[n][3]
+call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
+call spar_fluid_pull_motion_f32 int fluid|fluid|value| theta|double|value| x|float|out|[n][3] v|float|out|[n][3]
+call spar_fluid_pull_sections_f32 int fluid|fluid|value| theta|double|value| q|float|out|[n][4] omega|float|out|[n][3] accel|float|out|[n][3]
+call spar_fluid_pull_forces_f32 int fluid|fluid|value| theta|double|value| force|float|out|[n][3]
+call spar_fluid_push_forces_f32 int fluid|fluid|value| force|float|in|[n][3] moment|float|in|[n][3]
+constants SPAR_AUDIT_FORCE=0 SPAR_AUDIT_MOMENT=1 SPAR_AUDIT_POWER=2 SPAR_AUDIT_FORCE_ERROR=3 SPAR_AUDIT_MOMENT_ERROR=4 SPAR_AUDIT_POWER_ERROR=5 SPAR_AUDIT_FARTHEST=6 SPAR_AUDIT_NODES=7 SPAR_AUDIT_COUNT=8
+call spar_fluid_get_audit int fluid|fluid|value| capacity|int64_t|value| audit|double|out|[SPAR_AUDIT_COUNT]
+call spar_fluid_get_total int fluid|fluid|value| point|double|in|[3] force|double|out|[3] moment|double|out|[3]
+call spar_fluid_check_total int fluid|fluid|value| point|double|in|[3] force|double|in|[3] moment|double|in|[3] rtol|double|value|
+call spar_step_begin int session|session|value| dt|double|value|
+call spar_step_solve int session|session|value|
+call spar_step_check int session|session|value| done|int|out|
+call spar_step_accept int session|session|value|
+call spar_step_reject int session|session|value|
+call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_session_save int session|session|value| path|char|in|[]
+call spar_session_load int session|session|value| path|char|in|[]
+constants SPAR_TRY_MOTION=0 SPAR_TRY_REACTION=1 SPAR_TRY_LOAD=2 SPAR_TRY_SECONDS=3 SPAR_TRY_SOLUTIONS=4 SPAR_TRY_COUNT=5
+call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]
+constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_LARGE_ROTATION=4 SPAR_ROW_FLUID_MOMENT=5 SPAR_ROW_FLUID_VELOCITY=6 SPAR_ROW_FLUID_POSES=7 SPAR_ROW_FLUID_HISTORY=8 SPAR_ROW_PREDICTOR=9 SPAR_ROW_ITERATION=10 SPAR_ROW_HALF_STEP=11 SPAR_ROW_COUNT=12
+constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
+call spar_effect_name text row|int|value|
+call spar_session_report_effects int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]
+constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_COUNT=10
+call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
+call spar_session_apply_advice int session|session|value| dt|double|out|
+call spar_member_get_advice int member|member|value| fidelity|int|out| modes|int64_t|out| nodes_per_element|int|out| points|int|out|
+constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32
+constants SPAR_POLAR_LINEAR=0 SPAR_POLAR_AKIMA=1 SPAR_POLAR_CUBIC=2
+constants SPAR_AERO_FLAG_END=1 SPAR_AERO_FLAG_NO_ROOT=2 SPAR_AERO_FLAG_BEYOND_POLAR=4
+call spar_polar_create int n|int64_t|value| alpha_rad|double|in|[n] cl|double|in|[n] cd|double|in|[n] cm|double|in|[n] polar|polar|out|
+call spar_polar_set_interpolation int polar|polar|value| kind|int|value|
+call spar_polar_evaluate int polar|polar|value| alpha_rad|double|value| cl|double|out| cd|double|out| cm|double|out|
+call spar_polar_destroy none polar|polar|out|
+call spar_aero_create int blades|int|value| sections|fluid|list|[n] aero|aero|out|
+call spar_aero_destroy none aero|aero|out|
+call spar_aero_set_section int aero|aero|value| i|int64_t|value| chord|double|value| twist|double|value| polar|polar|value|
+call spar_fluid_read_aerodyn int fluid|fluid|value| primary_path|char|in|[] blade_path|char|in|[] q|double|in|[4] n|int64_t|value| span|double|in|[n]
+call spar_aero_read_aerodyn int aero|aero|value| primary_path|char|in|[] blade_path|char|in|[] q|double|in|[4] span|double|in|[n]
+call spar_aero_set_rotor int aero|aero|value| hub|double|in|[3] axis|double|in|[3] hub_radius|double|value| tip_radius|double|value|
+call spar_aero_set_turn int aero|aero|value| turn|int|value|
+call spar_aero_set_blades int aero|aero|value| total|int|value|
+call spar_aero_set_effects int aero|aero|value| effects|int|value|
+call spar_aero_solve int aero|aero|value| density|double|value| inflow|double|in|[blades][n][3] theta|double|value|
+call spar_aero_get_rotor int aero|aero|value| thrust|double|out| torque|double|out| power|double|out|
+call spar_aero_get_sections int aero|aero|value| alpha|double|out|[blades][n] cl|double|out|[blades][n] cd|double|out|[blades][n] a|double|out|[blades][n] a_tangential|double|out|[blades][n]
+call spar_aero_get_flags int aero|aero|value| flags|int|out|[blades][n] no_root|int64_t|out|
+call spar_aero_get_loads int aero|aero|value| per_length|double|out|[blades][n][6] force|double|out|[blades][n][3] moment|double|out|[blades][n][3]
+constants SPAR_AERO_ROW_INDUCTION=0 SPAR_AERO_ROW_TIP_LOSS=1 SPAR_AERO_ROW_HUB_LOSS=2 SPAR_AERO_ROW_SWIRL=3 SPAR_AERO_ROW_DRAG=4 SPAR_AERO_ROW_MOMENT=5 SPAR_AERO_ROW_COUNT=6
+call spar_aero_effect_name text row|int|value|
+call spar_aero_report_effects int aero|aero|value| session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]
+call spar_member_write_vtk int member|member|value| path|char|in|[]
+call spar_fluid_write_vtk int fluid|fluid|value| path|char|in|[]
+call spar_vtk_series_add int path|char|in|[] time|double|value| part|int|value| file|char|in|[]
+"""
+# } written by cmake/make-bindings.sh
+
+_library = ctypes.CDLL(os.environ.get('SPAR_LIBRARY', 'libspar.so.1'))
+
+
+class Error(Exception):
+    """A call has failed; .status is its SPAR_ERR_*."""
+
+    def __init__(self, status, message):
+        super().__init__(message)
+        self.status = status
+
+
+# ---- the table ----
+
+_NUMBERS = {'int': (ctypes.c_int, numpy.intc), 'int64_t': (ctypes.c_int64, numpy.int64),
+            'double': (ctypes.c_double, numpy.float64), 'float': (ctypes.c_float, numpy.float32)}
+_CALLBACKS = {
+    'fluid_solver': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int,
+                                     ctypes.c_void_p),
+    'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
+    'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
+_IN_AND_OUT = {('spar_session_sum', 'x')}  # a result that is read too
+_OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_force_places', 'pull_forces_f32',
+                   'push_forces_f32'}
+_ENOUGH = 1000  # the capacity of lists that the library cuts off at their end
+
+
+class _Parameter:
+    def __init__(self, text):
+        self.name, self.type, self.how, shape = text.split('|')
+        self.dims = [int(d) if d.isdigit() else _constants.get(d, d) for d in re.findall(r'\[(\w*)\]', shape)]
+        self.array = self.type in _NUMBERS and bool(self.dims)
+        self.result = self.how == 'out'
+
+    def c_type(self):
+        if self.how == 'callback':
+            return _CALLBACKS[self.type]
+        if self.how == 'value' and self.type in _NUMBERS:
+            return _NUMBERS[self.type][0]
+        return ctypes.c_char_p if self.type == 'char' and self.how == 'in' else ctypes.c_void_p
+
+
+class _Call:
+    """One function of the library."""
+
+    def __init__(self, name, answer, parameters):
+        self.name, self.answer = name, answer
+        self.parameters = [_Parameter(p) for p in parameters]
+        self.function = getattr(_library, name)
+        self.function.restype = {'int': ctypes.c_int, 'text': ctypes.c_char_p, 'none': None}[answer]
+        self.function.argtypes = [p.c_type() for p in self.parameters]
+        shown = {d for p in self.parameters if p.how == 'list' or (p.array and self._given(p)) for d in p.dims}
+        first = self.parameters[0] if self.parameters else None
+        self.owner = first.type if first and first.type in _CLASSES and first.how == 'value' else None
+        self.asked = [p for p in self.parameters[1 if self.owner else 0:]  # what the caller gives, in this order
+                      if self._given(p) and p.type != 'context' and not (p.type == 'int64_t' and p.name in shown)
+                      and not (p.how == 'value' and p.name in ('capacity', 'rows', 'columns'))
+                      and not (name == 'spar_aero_create' and p.name == 'blades')]
+        self.python_name = name[len('spar_'):]
+        for prefix in {'member': ('member_', 'beam_'), 'joint': ('joint_', 'line_')}.get(self.owner, (f'{self.owner}_',)):
+            if self.python_name.startswith(prefix):
+                self.python_name = self.python_name[len(prefix):]
+
+    def _given(self, p):
+        return not p.result or (self.name, p.name) in _IN_AND_OUT
+
+    def __call__(self, owner, *values, **named):
+        if len(values) > len(self.asked):
+            raise TypeError(f'{self.python_name} takes {", ".join(p.name for p in self.asked) or "no arguments"}')
+        given = dict(zip((p.name for p in self.asked), values))
+        for name, value in named.items():
+            if name in given or all(p.name != name for p in self.parameters):
+                raise TypeError(f'{self.python_name} has no argument {name} left')
+            given[name] = value
+        return _Running(self, owner, given).run()
+
+
+class _Running:
+    """A call under way: from Python's arguments to C's, and its results back."""
+
+    def __init__(self, call, owner, given):
+        self.call, self.owner, self.given = call, owner, given
+        self.sizes, self.results, self.raised, self.keep = {}, [], [], []
+
+    def run(self):
+        for p in self.call.parameters:
+            if p.array and self.given.get(p.name) is not None:
+                self._array_given(p)
+            elif p.how == 'list':
+                self.sizes['blades' if self.call.name == 'spar_aero_create' else p.dims[0]] = len(self.given[p.name])
+        arguments = [self._argument(p) for p in self.call.parameters]
+        answer = self.call.function(*arguments)
+        if self.call.answer == 'text':
+            return (answer or b'').decode()
+        if self.call.name == 'spar_has':
+            return bool(answer)
+        if self.call.answer == 'int' and answer != 0:
+            if self.raised:
+                raise self.raised[0]
+            raise Error(answer, self._message())
+        results = [r() for r in self.results]
+        return results[0] if len(results) == 1 else tuple(results) or None
+
+    def _message(self):
+        session = self.owner.session.handle if self.owner is not None and self.owner.session is not None else None
+        return _calls['spar_session_message'].function(session).decode()
+
+    def _array_given(self, p):
+        """An array of the caller's, as C reads it; what it shows of the sizes."""
+        c_kind = _NUMBERS[p.type][1]
+        value = self.given[p.name]
+        if p.result:  # filled in place
+            if not isinstance(value, numpy.ndarray) or value.dtype != c_kind or not value.flags.c_contiguous:
+                raise TypeError(f'{p.name}: a contiguous array of {numpy.dtype(c_kind)} is filled in place')
+        else:
+            value = self.given[p.name] = numpy.ascontiguousarray(value, dtype=c_kind)
+        known = [self._size(d) for d in p.dims]
+        unknown = [d for d, size in zip(p.dims, known) if size is None]
+        rest = int(numpy.prod([size for size in known if size is not None], dtype=numpy.int64))
+        if len(unknown) == 1 and rest and value.size % rest == 0:
+            self.sizes[unknown[0]] = value.size // rest
+        elif unknown or value.size != rest:
+            shape = ''.join(f'[{d}]' for d in p.dims)
+            raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; it must be {p.name}{shape}')
+
+    def _size(self, d):
+        if isinstance(d, int):
+            return d
+        if d in self.sizes:
+            return self.sizes[d]
+        if d in self.given:
+            return int(self.given[d])
+        if any(p.name == d and p.how == 'value' for p in self.call.parameters):
+            return _ENOUGH if d == 'capacity' and not self._array_named(d) else None
+        return self.owner.size(d, self.call, self.given) if self.owner is not None else None
+
+    def _array_named(self, d):
+        return any(p.array and d in p.dims and self.given.get(p.name) is not None for p in self.call.parameters)
+
+    def _argument(self, p):
+        if p is self.call.parameters[0] and self.call.owner:
+            return self.owner.handle
+        if p.how == 'callback':
+            return self._callback(p, self.given.get(p.name))
+        if p.type == 'context':
+            return None
+        if p.type in _CLASSES:
+            return self._handle(p)
+        if p.type == 'char':
+            return self._text(p)
+        if p.array:
+            return self._array(p)
+        if p.result:
+            return self._number(p)
+        if p.name in self.given:
+            return self.given[p.name]
+        size = self._size(p.name) if p.type == 'int64_t' or p.name == 'blades' else None
+        if p.name in ('capacity', 'rows', 'columns'):
+            size = self._capacity(p.name)
+        if size is None:
+            if p.name == 'n':
+                return 0  # of no array
+            raise TypeError(f'{self.call.python_name} lacks {p.name}')
+        return size
+
+    def _capacity(self, name):
+        """What the result has room for: by a constant of the table, by the caller's array, or enough."""
+        for p in self.call.parameters:
+            if p.array and p.result and p.how == 'out':
+                if name == 'columns':
+                    return self._size(p.dims[1])
+                size = self._size(p.dims[0])
+                if size is not None:
+                    return size
+        return self.sizes.get(name, _ENOUGH)
+
+    def _handle(self, p):
+        if p.how == 'list':
+            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[h.handle for h in self.given[p.name]])
+            self.keep.append(handles)
+            return ctypes.cast(handles, ctypes.c_void_p)
+        if p.how == 'value':
+            value = self.given.get(p.name)
+            return value.handle if value is not None else None
+        made = ctypes.c_void_p()
+        self.keep.append(made)
+        of = list(self.given.get('sections', []))[:1]
+        session = self.owner.session if self.owner is not None else of[0].session if of else None
+        self.results.append(lambda: session if p.type == 'session' else _CLASSES[p.type](made.value, session))
+        return ctypes.addressof(made)
+
+    def _text(self, p):
+        if p.how == 'in':
+            value = self.given.get(p.name)
+            return os.fsencode(value) if value is not None else None
+        text = ctypes.create_string_buffer(_ENOUGH)
+        self.results.append(lambda: text.value.decode())
+        return ctypes.addressof(text)
+
+    def _array(self, p):
+        value = self.given.get(p.name)
+        if value is None and p.result and p.name not in self.given:
+            shape = [self._size(d) if d != 'capacity' else self._capacity(d) for d in p.dims]
+            if None in shape:
+                return None  # not wanted, for nobody knows how large it is
+            value = numpy.zeros(shape, _NUMBERS[p.type][1])
+        if value is None:
+            return None
+        self.keep.append(value)
+        if p.result:
+            self.results.append(lambda: value)
+        return value.ctypes.data
+
+    def _number(self, p):
+        if p.name in self.given and self.given[p.name] is None:
+            return None
+        number = _NUMBERS[p.type][0]()
+        self.keep.append(number)
+        self.results.append(lambda: number.value)
+        return ctypes.addressof(number)
+
+    def _callback(self, p, function):
+        kind = _CALLBACKS[p.type]
+        if function is None:
+            return kind()
+        if p.type == 'log':
+            def called(_session, level, text, _context):
+                function(level, text.decode(errors='replace'))
+            self.owner.log = kind(called)  # kept as long as the session
+            return self.owner.log
+
+        def called(_session, *rest):
+            try:
+                return int(function(self.owner.session, *rest[:-1]) or 0)
+            except BaseException as fault:  # pylint: disable=broad-except
+                self.raised.append(fault)
+                return 1
+        made = kind(called)
+        self.keep.append(made)
+        return made
+
+
+# ---- what calls belong to ----
+
+class _Thing:
+    """A handle of the library; its methods are the calls that take it first."""
+    kind, owned, handle, session = '', False, None, None
+
+    def __init__(self, handle, session=None):
+        self.handle = handle
+        if session is not None:
+            self.session = session
+
+    def __getattr__(self, name):
+        call = _methods.get((self.kind, name))
+        if call is None:
+            raise AttributeError(f'there is no {self.kind} call {name}')
+        return lambda *values, **named: call(self, *values, **named)
+
+    def __dir__(self):
+        return [*super().__dir__(), *(name for kind, name in _methods if kind == self.kind)]
+
+    def size(self, d, _call, _given):
+        """How large a dimension is that no argument says."""
+        return None
+
+    def close(self):
+        """Destroys it, if it is still there; of a session with all that is made from it."""
+        if self.handle:
+            handle = ctypes.c_void_p(self.handle)
+            self.handle = None
+            _calls[f'spar_{self.kind}_destroy'].function(ctypes.addressof(handle))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        if self.owned and _library is not None:
+            self.close()
+
+
+class Session(_Thing):
+    """A session of this process alone, or over a communicator."""
+    kind, owned = 'session', True
+    session = property(lambda self: self)
+
+    def __init__(self, comm=None):
+        super().__init__(None)
+        made = ctypes.c_void_p()
+        if comm is None:
+            status = _calls['spar_session_create'].function(ctypes.addressof(made))
+        else:
+            comm = comm.py2f() if hasattr(comm, 'py2f') else int(comm)
+            status = _calls['spar_session_create_fcomm'].function(comm, ctypes.addressof(made))
+        if status != 0:
+            raise Error(status, _calls['spar_session_message'].function(None).decode())
+        self.handle = made.value
+
+
+class Member(_Thing):
+    kind = 'member'
+
+    def size(self, d, call, given):
+        if d in ('n', 'nodes'):
+            return self.get_count()
+        return None
+
+
+class Joint(_Thing):
+    kind = 'joint'
+
+
+class Fluid(_Thing):
+    kind = 'fluid'
+
+    def size(self, d, call, given):
+        if d == 'n':
+            force = call.python_name in _OF_FORCE_NODES
+            return self.get_count(given.get('which', 1 if force else 0))
+        if d == 'P':
+            return self.get_member().get_elements()[1]
+        return None
+
+
+class Polar(_Thing):
+    kind, owned = 'polar', True
+
+    def __init__(self, alpha_rad, cl, cd, cm=None):
+        made = _calls['spar_polar_create'](None, alpha_rad, cl, cd, cm)
+        super().__init__(made.handle)
+        made.handle = None
+
+
+class Aero(_Thing):
+    kind, owned = 'aero', True
+
+    def __init__(self, sections):
+        made = _calls['spar_aero_create'](None, sections)
+        super().__init__(made.handle, sections[0].session if sections else None)
+        self.sections = list(sections)
+        made.handle = None
+
+    def size(self, d, call, given):
+        if d == 'blades':
+            return len(self.sections)
+        return self.sections[0].get_count(0) if d == 'n' and self.sections else None
+
+
+class _Made(_Thing):
+    """What a call has made, on its way to the class that owns it."""
+
+
+_CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'polar': _Made, 'aero': _Made}
+_constants, _calls = {}, {}
+for _line in TABLE.split('\n'):
+    _words = _line.split()
+    if _line.startswith('constants'):
+        _constants.update((name, int(number)) for name, number in (word.split('=') for word in _words[1:]))
+for _line in TABLE.split('\n'):
+    _words = _line.split()
+    if _line.startswith('call'):
+        _calls[_words[1]] = _Call(_words[1], _words[2], _words[3:])
+_methods = {(call.owner, call.python_name): call for call in _calls.values() if call.owner}
+globals().update((name[len('SPAR_'):], number) for name, number in _constants.items())
+
+
+def status_text(status):
+    """Name and text of a status."""
+    return _calls['spar_status_text'](None, status)
+
+
+def version():
+    """Release, 'major.minor.patch'."""
+    return _calls['spar_version'](None)
+
+
+def has(feature):
+    """Whether this build has a feature: 'mpi', ..."""
+    return _calls['spar_has'](None, feature)
+
+
+def effect_name(row):
+    """Name of a row of the report of effects."""
+    return _calls['spar_effect_name'](None, row)
+
+
+def series_add(path, time, part, file):
+    """Adds a file to an index of files in time."""
+    _calls['spar_vtk_series_add'](None, path, time, part, file)

@@ -1,0 +1,266 @@
+"""examples/python/spar.py against closed forms, and what it promises of arguments, results and failures.
+    test_python.py <folder to write in>
+"""
+import gc
+import os
+import sys
+import unittest
+
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'examples', 'python'))
+import spar  # noqa: E402 pylint: disable=wrong-import-position
+
+UNIT = [1, 0, 0, 0]
+WORK = sys.argv.pop() if len(sys.argv) > 1 else '.'
+
+
+def body(session, mass=2.0):
+    """A rigid body at the origin with one fluid node in its middle."""
+    member = session.rigid_create('body', [0, 0, 0], UNIT, numpy.eye(6) * mass)
+    member.commit()
+    fluid = member.fluid_create('fluid')
+    fluid.set_motion_nodes([[0, 0, 0]])
+    fluid.set_force_nodes([[0, 0, 0]])
+    fluid.map()
+    return member, fluid
+
+
+def cantilever(session, stiffness=1e3, length=2.0):
+    """A straight clamped beam along x."""
+    beam = session.beam_create('beam', 1, 6)
+    beam.set_axis([0, 1], [[0, 0, 0], [length, 0, 0]])
+    beam.set_sections([0], [numpy.diag([1e9, 1e9, 1e9, stiffness, stiffness, stiffness])], [numpy.eye(6)])
+    beam.set_root(spar.ROOT_FIXED)
+    beam.commit()
+    return beam
+
+
+class Values(unittest.TestCase):
+    def test_fall(self):
+        """Constant acceleration is exact for the integrator: -g t^2 / 2."""
+        with spar.Session() as s:
+            s.set_gravity([0, 0, -9.81])
+            member, _ = body(s)
+            for _ in range(10):
+                self.assertEqual(s.step(0.1), 1)  # iterations
+            q, v, a = member.get_motion()
+            self.assertAlmostEqual(q[0, 2], -4.905, delta=1e-12)
+            self.assertAlmostEqual(v[0, 2], -9.81, delta=1e-12)
+            self.assertAlmostEqual(a[0, 2], -9.81, delta=1e-11)
+            self.assertEqual((q.shape, v.shape, a.shape), ((1, 7), (1, 6), (1, 6)))
+            t, step, iteration = s.get_time()
+            self.assertAlmostEqual(t, 1, delta=1e-14)
+            self.assertEqual((step, iteration), (10, 1))
+
+    def test_tip_load(self):
+        """Small load P at the tip: P L^3 / 3 EI, to (P L^2 / EI)^2 and the shear's 3 EI / (L^2 GA)."""
+        with spar.Session() as s:
+            beam = cantilever(s)
+            nodes = beam.get_count()
+            beam.set_load(nodes - 1, spar.LOAD_DEAD, [0, 0, 1e-3, 0, 0, 0])
+            beam.solve_static(1)
+            q = beam.get_motion(v=None, a=None)
+            self.assertAlmostEqual(q[-1, 2], 1e-3 * 8 / 3e3, delta=1e-3 * 8 / 3e3 * 2e-6)
+            numpy.testing.assert_allclose(beam.get_reaction(), [0, 0, -1e-3, 0, 2e-3, 0], atol=1e-9)  # GA = 1e9 N
+            strain, force, x, _ = beam.get_section([0.25, 0.5])
+            self.assertEqual((strain.shape, x.shape), ((2, 6), (2, 3)))
+            numpy.testing.assert_allclose(x[:, 0], [0.5, 1.0], atol=1e-9)
+            self.assertAlmostEqual(abs(force[1, 4]), 1e-3, delta=1e-6)  # bending at half the length
+
+    def test_modes(self):
+        """First bending of a clamped beam: (1.8751)^2 sqrt(EI / rho A L^4) / 2 pi, within its rotary inertia's part."""
+        with spar.Session() as s:
+            beam = cantilever(s, stiffness=1e3, length=20.0)
+            frequency, shapes = beam.solve_modes(3)
+            expected = 1.87510407**2 * numpy.sqrt(1e3 / 20.0**4) / (2 * numpy.pi)
+            self.assertAlmostEqual(frequency[0], expected, delta=0.01 * expected)
+            self.assertEqual(shapes.shape, (3, 6, 6))
+
+    def test_coupled(self):
+        """A spring that is the fluid: x'' = -(k / m) x from x = 0, v = 1; order 2, so sin(w t) / w to 2e-5 at this dt."""
+        with spar.Session() as s:
+            s.set_coupling(spar.COUPLING_IQN_ILS, 1e-12, 1e-10, 30)
+            member, fluid = body(s)
+            member.set_initial_velocity([0, 0, 0], [1, 0, 0], [0, 0, 0])
+            seen = []
+
+            def spring(session, t, dt, iteration):
+                self.assertIs(session, s)
+                seen.append((t, dt, iteration))
+                x, _ = fluid.pull_motion(1.0)
+                fluid.push_forces(-8.0 * x)
+
+            for _ in range(100):
+                s.step(0.005, spring)
+            self.assertAlmostEqual(member.get_motion()[0][0, 0], numpy.sin(1.0) / 2, delta=2e-5)
+            self.assertEqual(seen[0], (0.0, 0.005, 0))
+            iterations, residual, size = s.get_iterations()
+            self.assertTrue(1 <= iterations <= 30 and residual[iterations - 1] < 1e-9 * size[iterations - 1] + 1e-12)
+            self.assertEqual(s.get_report().shape, (spar.REPORT_COUNT,))
+
+    def test_loop_and_joint(self):
+        """A body on a spring to the ground, by hand: at rest under a load F at F / k."""
+        with spar.Session() as s:
+            stiffness, damping = numpy.zeros((6, 6)), numpy.zeros((6, 6))
+            stiffness[1, 1], damping[1, 1] = 50.0, 20.0  # critical for 2 kg
+            member, fluid = body(s)
+            joint = member.set_spring(0, spar.FREE_Y, stiffness, damping)
+            for _ in range(200):
+                s.step_begin(0.02)
+                done = False
+                while not done:
+                    s.step_solve()
+                    fluid.push_forces([[3.0, 5.0, 7.0]])
+                    done = s.step_check()
+                s.step_accept()
+            self.assertAlmostEqual(member.get_motion()[0][0, 1], 0.1, delta=1e-8)
+            numpy.testing.assert_allclose(joint.get_load(), [-3, -5, -7, 0, 0, 0], atol=1e-5)
+            force, moment = fluid.get_total([0, 0, 1.0])
+            numpy.testing.assert_allclose(force, [3, 5, 7], atol=1e-12)
+            numpy.testing.assert_allclose(moment, [0.1 * 7 + 1.0 * 5, -1.0 * 3, -0.1 * 3], atol=1e-6)
+
+    def test_polar(self):
+        """A straight line between two rows."""
+        polar = spar.Polar([-0.5, 0.5], [-1, 3], [0.1, 0.3])
+        cl, cd, cm = polar.evaluate(0.0)
+        self.assertAlmostEqual(cl, 1, delta=1e-15)
+        self.assertAlmostEqual(cd, 0.2, delta=1e-15)
+        self.assertEqual(cm, 0)
+
+    def test_aero(self):
+        """Lift in an even wind, without induction, of sections at both ends: q c cl L."""
+        with spar.Session() as s:
+            blade = s.beam_create('blade', 1, 4)
+            blade.set_axis([0, 1], [[0, 0, 0], [10.0, 0, 0]])
+            blade.set_sections([0], [numpy.eye(6) * 1e6], [numpy.eye(6)])
+            blade.set_root(spar.ROOT_FIXED)
+            blade.commit()
+            sections = blade.fluid_create('sections')
+            sections.set_sections([-1, 1])
+            sections.map()
+            aero = spar.Aero([sections])
+            polar = spar.Polar([-3, 3], [1.2, 1.2], [0, 0])
+            for i in range(2):
+                aero.set_section(i, 0.5, 0.0, polar)
+            aero.set_effects(0)
+            wind = numpy.zeros((1, 2, 3))
+            wind[..., 1] = 10.0
+            aero.solve(1.2, wind, 1.0)
+            _, force, _ = aero.get_loads()
+            self.assertEqual(force.shape, (1, 2, 3))
+            self.assertAlmostEqual(abs(force[0, :, 2].sum()), 0.5 * 1.2 * 100 * 0.5 * 1.2 * 10.0, delta=1e-9)
+            alpha = aero.get_sections()[0]
+            self.assertEqual(alpha.shape, (1, 2))
+            aero.close()
+
+    def test_save(self):
+        """A run that goes on from a file ends with the same bits."""
+        ends = []
+        for saved in (False, True):
+            with spar.Session() as s:
+                beam = cantilever(s)
+                beam.set_load(5, spar.LOAD_DEAD, [0, 0, 10, 0, 0, 0])
+                path = os.path.join(WORK, 'python.spar')
+                if saved:
+                    s.load(path)
+                else:
+                    for _ in range(5):
+                        s.step(0.01)
+                    s.save(path)
+                for _ in range(5):
+                    s.step(0.01)
+                ends.append(beam.get_motion())
+        for first, second in zip(*ends):
+            self.assertTrue((first == second).all())
+
+
+class Edges(unittest.TestCase):
+    def test_failures(self):
+        with spar.Session() as s:
+            with self.assertRaises(spar.Error) as caught:
+                s.set_integrator(2.0, 1)
+            self.assertEqual(caught.exception.status, spar.ERR_ARGUMENT)
+            self.assertIn('rho_inf', str(caught.exception))
+            with self.assertRaises(spar.Error) as caught:
+                s.step_solve()
+            self.assertEqual(caught.exception.status, spar.ERR_STATE)
+        with self.assertRaises(spar.Error):
+            spar.Polar([1, 0], [0, 0], [0, 0])
+
+    def test_shapes(self):
+        with spar.Session() as s:
+            _, fluid = body(s)
+            with self.assertRaisesRegex(ValueError, r'force has the shape \(2, 3\); it must be force\[n\]\[3\]'):
+                fluid.push_forces(numpy.zeros((2, 3)))
+            with self.assertRaises(ValueError):
+                s.set_gravity([0, 0])
+            with self.assertRaisesRegex(spar.Error, 'NULL'):
+                s.set_gravity()
+            with self.assertRaises(TypeError):
+                s.set_integrator(0.9)
+            with self.assertRaises(TypeError):
+                s.set_integrator(0.9, 1, 1)
+            with self.assertRaises(TypeError):
+                s.set_integrator(0.9, steps=1)
+            with self.assertRaises(AttributeError):
+                s.set_nothing()
+
+    def test_in_place(self):
+        with spar.Session() as s:
+            _, fluid = body(s)
+            x = numpy.full((1, 3), 9.0)
+            self.assertIs(fluid.pull_motion(1.0, x=x, v=None), x)
+            numpy.testing.assert_array_equal(x, numpy.zeros((1, 3)))
+            with self.assertRaises(TypeError):
+                fluid.pull_motion(1.0, x=numpy.zeros((1, 3), dtype=int))
+            single = fluid.pull_motion_f32(1.0, v=None)
+            self.assertEqual(single.dtype, numpy.float32)
+
+    def test_raise_through(self):
+        """What a fluid solver raises ends the step and is raised again; the session goes on."""
+        with spar.Session() as s:
+            member, _ = body(s)
+
+            def broken(*_):
+                raise KeyError('flow')
+
+            with self.assertRaises(KeyError):
+                s.step(0.1, broken)
+            s.step(0.1)
+            self.assertEqual(s.get_time()[1], 1)
+            self.assertEqual(member.get_name(), 'body')
+
+    def test_log(self):
+        told = []
+        with spar.Session() as s:
+            s.set_log(lambda level, text: told.append((level, text)))
+            gc.collect()
+            with self.assertRaises(spar.Error):
+                s.step(-1.0)
+        self.assertEqual(told[0][0], spar.LOG_ERROR)
+        self.assertIn('dt', told[0][1])
+
+    def test_life(self):
+        """A member keeps its session; what is closed twice is closed."""
+        session = spar.Session()
+        member, _ = body(session)
+        del session
+        gc.collect()
+        member.session.step(0.1)
+        self.assertIs(member.get_session(), member.session)
+        member.session.close()
+        member.session.close()
+
+    def test_texts(self):
+        self.assertRegex(spar.version(), r'^\d+\.\d+\.\d+$')
+        self.assertFalse(spar.has('a wish'))
+        self.assertIn('argument', spar.status_text(spar.ERR_ARGUMENT).lower())
+        self.assertEqual(spar.effect_name(spar.ROW_GRAVITY), 'gravity')
+        with spar.Session() as s:
+            s.set_option('coupling.reuse', '7')
+            self.assertEqual(s.get_option('coupling.reuse'), '7')
+
+
+if __name__ == '__main__':
+    unittest.main()
