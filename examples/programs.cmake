@@ -78,6 +78,13 @@ add_test(NAME example_rotor_gust
           --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/rotor_gust)
 spar_set_test(example_rotor_gust stability 120 ${spar_example_environment})
 
+# The figures that docs/rotor.md quotes (unoptimised and sanitized it takes minutes).
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND SPAR_AWK)
+  add_test(NAME docs_rotor COMMAND sh "${PROJECT_SOURCE_DIR}/tests/docs/rotor" $<TARGET_FILE:examples_rotor>
+    "${PROJECT_BINARY_DIR}/tests/docs-rotor")
+  spar_set_test(docs_rotor docs 300 ${spar_example_environment})
+endif()
+
 # At a hundred times the mass explicit coupling and fixed point must fail, the others must get the exact motion to 0.4 %
 # (backward Euler in 200 steps).
 add_test(NAME example_piston COMMAND examples_piston)
