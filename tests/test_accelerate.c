@@ -519,6 +519,62 @@ static void elastic_tube(void **state) {
     assert_true(reused < alone && alone < aitken);
 }
 
+/* ---- images ---- */
+
+/* A flexibility of 1 across a direction that turns, of 1e-4 along it. */
+static int image_turned(void *context, int64_t count, const double *x, double *image) {
+    const double *angle = context, c = cos(*angle), s = sin(*angle);
+    for (const double *end = x + 2 * count; x != end; x += 2, image += 2) {
+        double along = 1e-4 * (c * x[0] + s * x[1]), across = c * x[1] - s * x[0];
+        image[0] = c * along - s * across;
+        image[1] = s * along + c * across;
+    }
+    return SPAR_OK;
+}
+
+/* An added mass of 3 across, in loads of 1000 along: J = (0, 0; 0, -3), x = (1000, 1/4). */
+static void across(const double *x, double *g) {
+    g[0] = 1000;
+    g[1] = 1 - 3 * x[1];
+}
+
+/* The flexibility turns by a hundredth from iteration to iteration. The map is linear in one unknown: the first step
+   learns it, the third and later ones end in the second evaluation, and it does not contradict itself (0.0025 is what
+   columns of two flexibilities make of each other).
+   Differences of the images of whole loads are 10 off here, where the loads change by 0.4; with those each step takes 4
+   evaluations. */
+static void flexibility_turns(void **state) {
+    (void)state;
+    spari_accelerator_settings set = settings(SPAR_COUPLING_IQN_ILS, 1, 5, 1e-4);
+    set.imaged = 1;
+    spari_accelerator *a = spari_accelerator_create(2, 6, 3, &set);
+    assert_non_null(a);
+    double x[2] = {999.9, 0.35}, g[2], now[5], angle = 0;
+    for (int step = 0; step < 5; step++, x[0] += 0.1, x[1] -= 0.07) {
+        double first = 0, size = 1;
+        int evaluations = 0;
+        spari_accelerator_begin(a, 1);
+        for (; evaluations < MOST; angle += 0.01) {
+            across(x, g);
+            evaluations++;
+            size = norm(x, g, 2);
+            first = evaluations == 1 ? size : first;
+            if (size < 1e-9 * first) {
+                break;
+            }
+            const double both[4] = {g[0] - x[0], g[1] - x[1], g[0], g[1]};
+            (void)image_turned(&angle, 2, both, now);
+            const spari_images images = {now, image_turned, &angle};
+            assert_int_equal(spari_accelerator_next(a, x, g, &images, x), SPAR_OK);
+        }
+        assert_true(evaluations <= (step == 0 ? 4 : step == 1 ? 3 : 2));
+        assert_true(spari_accelerator_scatter(a) < 1e-2);
+        spari_accelerator_accept(a);
+    }
+    assert_true(fabs(x[0] - 1000.1) < 1e-6 && fabs(x[1] - 0.18) < 1e-6); /* what the loop adds after the last */
+    spari_accelerator_free(&a);
+}
+
 /* ---- save and load ---- */
 
 /* In the middle of a step: the copy goes on with the same bits. What is no state is refused. */
@@ -574,6 +630,7 @@ int main(void) {
         cmocka_unit_test(few_columns),
         cmocka_unit_test(empty),
         cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(flexibility_turns),
         cmocka_unit_test(state_moves),
         cmocka_unit_test(elastic_tube),
     };

@@ -43,6 +43,8 @@ struct spari_accelerator {
     double *x, *g;             /* of the iteration before */
     double *image;             /* [2 n] imaged: of its g - x and g */
     int imaged;                /* in the step: inner products are those of the images */
+    double *change, *answer;   /* [2][n + 1] of g - x and of g since the iteration before; their images */
+    int renewed;               /* images of columns, for the step under way or one that was rejected since */
     double scatter, scatter_accepted;
     double residual, residual_first, residual_least; /* in the norm of the images: now, and of the step */
     int rises;                                       /* iterations since it was far above the least */
@@ -81,8 +83,11 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
              (a->w = spari_zalloc(2 * m * n, sizeof *a->w)) && (a->q = spari_zalloc(m * n, sizeof *a->q)) &&
              (a->r = spari_zalloc(m * m, sizeof *a->r)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
              (a->order = spari_zalloc(m, sizeof *a->order)) && (a->image = spari_zalloc(2 * n, sizeof *a->image)) &&
-             (a->iv = spari_zalloc(2 * k * n, sizeof *a->iv)) && (a->iw = spari_zalloc(2 * k * n, sizeof *a->iw)) &&
-             (a->p = spari_zalloc(k * n, sizeof *a->p)) && (k == 0 || (a->secants = spari_secants_create(n, (int)k)));
+             (a->change = spari_zalloc(2 * n, sizeof *a->change)) &&
+             (a->answer = spari_zalloc(2 * n + 1, sizeof *a->answer)) &&
+             (a->iv = spari_zalloc(2 * k * n + 1, sizeof *a->iv)) &&
+             (a->iw = spari_zalloc(2 * k * n + 1, sizeof *a->iw)) && (a->p = spari_zalloc(k * n, sizeof *a->p)) &&
+             (k == 0 || (a->secants = spari_secants_create(n, (int)k)));
     if (!ok) {
         spari_accelerator_free(&a);
     }
@@ -94,7 +99,7 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    double *all[] = {a->x, a->g, a->image, a->v, a->w, a->iv, a->iw, a->q, a->r, a->p, a->alpha};
+    double *all[] = {a->x, a->g, a->image, a->change, a->answer, a->v, a->w, a->iv, a->iw, a->q, a->r, a->p, a->alpha};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -320,18 +325,18 @@ static void note_scatter(spari_accelerator *a, int last) {
 }
 
 /* The column of the last two iterations. */
-static void add_column(spari_accelerator *a, const double *x, const double *g, const double *image) {
+static void add_column(spari_accelerator *a) {
     limit_columns(a);
     int s = free_slot(a), moved = 0;
-    double *v = slot_v(a, s), *w = slot_w(a, s);
-    for (int64_t i = 0; i < a->n && a->imaged; i++) {
-        slot_iv(a, s)[i] = image[i] - a->image[i];
-        slot_iw(a, s)[i] = image[a->n + i] - a->image[a->n + i];
+    size_t bytes = (size_t)a->n * sizeof *a->change;
+    memcpy(slot_v(a, s), a->change, bytes);
+    memcpy(slot_w(a, s), a->change + a->n, bytes);
+    if (a->imaged) {
+        memcpy(slot_iv(a, s), a->answer, bytes);
+        memcpy(slot_iw(a, s), a->answer + a->n, bytes);
     }
     for (int64_t i = 0; i < a->n; i++) {
-        w[i] = g[i] - a->g[i];
-        v[i] = w[i] - (x[i] - a->x[i]);
-        moved |= v[i] != 0;
+        moved |= a->change[i] != 0;
     }
     if (!moved) { /* the residual stalls: the column says nothing */
         a->dropped++;
@@ -473,13 +478,13 @@ static void aitken_begin(spari_accelerator *a) {
 }
 
 /* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; where the residual stalls omega stays. */
-static void aitken_learn(spari_accelerator *a, const double *x, const double *g, const double *image) {
+static void aitken_learn(spari_accelerator *a) {
     double product[2] = {0, 0}, square[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
             int kind = k >= a->split;
-            double before = a->g[i + k] - a->x[i + k], change = (g[i + k] - x[i + k]) - before;
-            double answer = a->imaged ? image[i + k] - a->image[i + k] : change;
+            double before = a->g[i + k] - a->x[i + k], change = a->change[i + k];
+            double answer = a->imaged ? a->answer[i + k] : change;
             product[kind] += before * answer;
             square[kind] += change * answer;
         }
@@ -537,14 +542,12 @@ static tally join(const tally *a, double p, const tally *b, double q) {
 }
 
 /* -dx.dg / dx.dx of the last two iterations */
-static void estimate_ratio(spari_accelerator *a, const double *x, const double *g, const double *image) {
+static void estimate_ratio(spari_accelerator *a) {
     double product = 0, square = 0;
     for (int64_t i = 0; i < a->n; i++) {
-        double w = a->weight[i % a->period >= a->split], dx = x[i] - a->x[i], answer = w * w * dx;
-        if (a->imaged) {
-            answer = (image[a->n + i] - image[i]) - (a->image[a->n + i] - a->image[i]);
-        }
-        product -= answer * (g[i] - a->g[i]);
+        double w = a->weight[i % a->period >= a->split], dg = a->change[a->n + i], dx = dg - a->change[i];
+        double answer = a->imaged ? a->answer[a->n + i] - a->answer[i] : w * w * dx;
+        product -= answer * dg;
         square += answer * dx;
     }
     double ratio = product / square;
@@ -615,14 +618,64 @@ static void suspect(spari_accelerator *a) {
     }
 }
 
-static void learn(spari_accelerator *a, const double *x, const double *g, const double *image) {
-    estimate_ratio(a, x, g, image);
-    if (a->scheme->learn) {
-        a->scheme->learn(a, x, g, image);
+/* What has changed since the iteration before. Its images are taken by the flexibility as it is now: that of the
+   iteration before may be another one, and the difference of two images then is one of flexibilities times whole loads,
+   which may be many times as large. */
+static int learn(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
+    for (int64_t i = 0; i < a->n; i++) {
+        a->change[a->n + i] = g[i] - a->g[i];
+        a->change[i] = a->change[a->n + i] - (x[i] - a->x[i]);
     }
+    if (a->imaged) {
+        SPARI_TRY(images->of(images->context, 2, a->change, a->answer));
+    }
+    estimate_ratio(a);
+    if (a->scheme->learn) {
+        a->scheme->learn(a);
+    }
+    return SPAR_OK;
 }
 
-void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const double *image, double *next) {
+/* Whether column and image in slot s belong to another flexibility S than g - x and g with theirs: v . S y is not
+   y . S v. */
+static int is_of_another(const spari_accelerator *a, int s, const double *x, const double *g, const double *image) {
+    static const double OFF = 0.01;
+    const double *v = slot_v(a, s), *iv = slot_iv(a, s);
+    double square = dot(v, iv, a->n), r = 0, whole = 0, residual = 0, size = 0;
+    for (int64_t i = 0; i < a->n; i++) {
+        r += (g[i] - x[i]) * iv[i] - v[i] * image[i];
+        whole += g[i] * iv[i] - v[i] * image[a->n + i];
+        residual += (g[i] - x[i]) * image[i];
+        size += g[i] * image[a->n + i];
+    }
+    return !(r * r <= OFF * OFF * square * residual) || !(whole * whole <= OFF * OFF * square * size);
+}
+
+/* The columns of earlier steps in the norm of this one, anew where the structure has turned, or stiffened, so far that
+   it tells. */
+static int renew_images(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
+    int other = a->renewed;
+    for (int s = 0; s < a->slots && !other; s++) {
+        other = a->column[s].state == LIVE && is_of_another(a, s, x, g, images->now);
+    }
+    if (!other) {
+        return SPAR_OK;
+    }
+    size_t bytes = (size_t)a->n * sizeof *a->v;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == FREE) {
+            memset(slot_v(a, s), 0, bytes);
+            memset(slot_w(a, s), 0, bytes);
+        }
+    }
+    a->renewed = 1;
+    SPARI_TRY(images->of(images->context, a->slots, a->v, a->iv));
+    return images->of(images->context, a->slots, a->w, a->iw);
+}
+
+int spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
+                           double *next) {
+    const double *image = images ? images->now : NULL;
     set_norm(a, image && a->set.imaged);
     a->iteration++;
     int reweighed = weigh(a, x, g);
@@ -630,15 +683,16 @@ void spari_accelerator_next(spari_accelerator *a, const double *x, const double 
         factor_columns(a);
     }
     if (a->iteration == 1 && a->imaged && a->slots > 0) {
+        SPARI_TRY(renew_images(a, x, g, images));
         factor_columns(a);
     }
     measure(a, x, g, image);
     if (a->iteration > 1) {
-        learn(a, x, g, image);
+        SPARI_TRY(learn(a, x, g, images));
         suspect(a);
     }
     if (a->n == 0) {
-        return;
+        return SPAR_OK;
     }
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memcpy(a->g, g, (size_t)a->n * sizeof *g);
@@ -646,6 +700,7 @@ void spari_accelerator_next(spari_accelerator *a, const double *x, const double 
         memcpy(a->image, image, (size_t)(2 * a->n) * sizeof *image);
     }
     compute_next(a, a->x, a->g, next);
+    return SPAR_OK;
 }
 
 static int oldest_live(const spari_accelerator *a, int *count) {
@@ -681,6 +736,7 @@ void spari_accelerator_accept(spari_accelerator *a) {
     a->most_weight = 0;
     a->scatter_accepted = a->scatter;
     a->used = 0;
+    a->renewed = 0;
     a->step++;
 }
 
@@ -729,7 +785,7 @@ double spari_accelerator_scatter(const spari_accelerator *a) {
 
 /* ---- save and load ---- */
 
-enum { HEAD = 30, COLUMN_HEAD = 5 };
+enum { HEAD = 31, COLUMN_HEAD = 5 };
 
 /* Vectors of length n that are kept of the iteration before, and of each column. */
 static int64_t kept(const spari_accelerator *a) {
@@ -778,7 +834,8 @@ void spari_accelerator_save(const spari_accelerator *a, double *state) {
                                a->ratios_before.square,
                                a->ratios_before.sum,
                                a->ratios_before.sum2,
-                               a->most_weight};
+                               a->most_weight,
+                               a->renewed};
     size_t bytes = (size_t)a->n * sizeof *state;
     memcpy(state, head, sizeof head);
     memcpy(state += HEAD, a->x, bytes);
@@ -843,7 +900,7 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
         return 0;
     }
     if (!whole_below(state[15], a->set.imaged ? 2 : 1) || !whole_below(state[20], INT_MAX) ||
-        !are_columns(a, state + HEAD + kept(a) * a->n, occupied, state[1])) {
+        !whole_below(state[30], 2) || !are_columns(a, state + HEAD + kept(a) * a->n, occupied, state[1])) {
         return 0;
     }
     for (int64_t j = count - used; j < count; j++) {
@@ -870,6 +927,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     a->ratios = (tally){state[21], state[22], state[23], state[24]};
     a->ratios_before = (tally){state[25], state[26], state[27], state[28]};
     a->most_weight = state[29];
+    a->renewed = (int)state[30];
     memcpy(a->x, state += HEAD, bytes);
     memcpy(a->g, state += a->n, bytes);
     state += a->n;

@@ -7,7 +7,8 @@
    al. (2016): the newest columns first, each kept only if enough of it is independent of those before.
 
    Inner products are those of the images: <a, b> = a . S b, S symmetric and positive (semidefinite), where the caller
-   gives S (g - x) and S g with x and g. A fluid whose answers contradict each other (noise, or inner iterations that
+   gives S (g - x) and S g with x and g, and those of other loads when asked: S may be another one in each iteration. A
+   fluid whose answers contradict each other (noise, or inner iterations that
    have not ended) is then found by what the columns of the step say of its next answer, and its derivative is fitted
    to all columns instead (secants.h).
 
@@ -27,8 +28,8 @@ typedef struct spari_coupling_scheme {
     int iterates;     /* 0: the step is solved once, and there is no accelerator */
     int columns;      /* it keeps difference columns, and there is memory for them */
     void (*begin)(spari_accelerator *a);
-    /* What the last two iterations show; x, g, image are those of the last. */
-    void (*learn)(spari_accelerator *a, const double *x, const double *g, const double *image);
+    /* What the last two iterations show by their difference. */
+    void (*learn)(spari_accelerator *a);
     int (*next)(spari_accelerator *a, const double *x, const double *g, double *next); /* 0: no loads */
 } spari_coupling_scheme;
 
@@ -58,9 +59,18 @@ void spari_accelerator_free(spari_accelerator **accelerator);
 
 /* A step begins. Columns of steps with another dt (by more than a tenth) rest while it lasts: dt is in the map. */
 void spari_accelerator_begin(spari_accelerator *a, double dt);
-/* From x and g the next x; next may be x. The caller has found x not converged: g - x is not zero. image [2 n]: of g -
-   x and of g; NULL, or not imaged: without. */
-void spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const double *image, double *next);
+typedef struct spari_images {
+    const double *now; /* [2 n] of g - x and of g */
+    /* Of others, by the S of these: x [count][n] in, image [count][n] out, with room for one more. What is zero costs
+       nothing. The same on all ranks; a status. */
+    int (*of)(void *context, int64_t count, const double *x, double *image);
+    void *context;
+} spari_images;
+
+/* From x and g the next x; next may be x. The caller has found x not converged: g - x is not zero. images NULL, or not
+   imaged: without. A status: that of images->of. */
+int spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
+                           double *next);
 /* The step is accepted: its columns may serve the next ones. */
 void spari_accelerator_accept(spari_accelerator *a);
 /* The step is given up: all is as before it began. Its columns go, for what made the host reject the step (a failed

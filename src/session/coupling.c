@@ -277,6 +277,10 @@ static int not_converged(spar_session *s, const char *call) {
                       call, s->iteration, c->residual[last], c->size[last], motion, mass);
 }
 
+static spari_weighed weighed(const spari_coupling *c) {
+    return (spari_weighed){c->n, c->unit, c->x, c->g, c->shift, c->image, c->room};
+}
+
 /* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
 static int weigh_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
@@ -285,7 +289,7 @@ static int weigh_residual(spar_session *s, double size, double *residual) {
     /* a step that has gone over to the loads' own norm stays with it */
     if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
-        const spari_weighed w = {c->n, c->unit, c->x, c->g, c->shift, c->image, c->room};
+        const spari_weighed w = weighed(c);
         SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));
         if (c->weighed) {
             *residual = whole > 0 ? size * (motion / whole) : 0;
@@ -316,14 +320,22 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     return SPAR_OK;
 }
 
-void spari_coupling_next(spar_session *s) {
+static int image_loads(void *session, int64_t count, const double *loads, double *image) {
+    spar_session *s = session;
+    const spari_weighed w = weighed(s->own->coupling);
+    return spari_weigh_images(s, &w, count, loads, image);
+}
+
+int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
+    const spari_images images = {c->image, image_loads, s};
     stack(s);
-    spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? c->image : NULL, c->x);
+    SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
     c->report[SPAR_REPORT_DROPPED] = spari_accelerator_dropped(c->accelerator);
+    return SPAR_OK;
 }
 
 /* Told each time, and no more often than the option coupling.patience says on end. */
@@ -362,8 +374,7 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
         return accept_unconverged(s, call);
     }
     *done = 0;
-    spari_coupling_next(s);
-    return SPAR_OK;
+    return spari_coupling_next(s);
 }
 
 /* ---- what an accepted step shows ---- */

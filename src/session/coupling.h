@@ -48,7 +48,7 @@ void spari_coupling_begin(spar_session *session);
 /* After the loads have been exchanged: whether they agree with those used, as the tolerances have it; and the next
    loads to use, of a scheme that iterates. SPAR_ERR_NUMERIC: they are beyond numbers. */
 int spari_coupling_compare(spar_session *session, int *agreed);
-void spari_coupling_next(spar_session *session);
+int spari_coupling_next(spar_session *session);
 /* Both, as a step wants it: done where they agree, or where it goes on with what there is. */
 int spari_coupling_check(spar_session *session, const char *call, int *done);
 /* The structure could not be solved with the loads: says so where these have grown from iteration to iteration.

@@ -473,7 +473,7 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
             return not_settled(s, call, SPAR_ERR_NUMERIC, NULL);
         }
         if (!agreed) {
-            spari_coupling_next(s);
+            SPARI_TRY(spari_coupling_next(s));
         }
     }
     warn_of_divergence(s, call);

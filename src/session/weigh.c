@@ -77,6 +77,29 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     return SPAR_OK;
 }
 
+static int is_zero(const double *x, int64_t n) {
+    int64_t i = 0;
+    while (i < n && x[i] == 0) {
+        i++;
+    }
+    return i == n;
+}
+
+int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, const double *loads, double *image) {
+    int rank = spari_comm_rank(s->comm), k = 0;
+    int64_t at = 0;
+    memset(image, 0, (size_t)(count * c->n + 1) * sizeof *image);
+    for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
+        for (int64_t j = 0; j < count && m->owner == rank && m->row->answer; j++) {
+            const double *x = loads + j * c->n;
+            if (!is_zero(x + at, 6 * m->nodes) && answer_stacked(c, m, c->unit[k], at, x, NULL, image + j * c->n)) {
+                image[0] = NAN; /* not after spari_weigh found all well */
+            }
+        }
+    }
+    return spari_comm_sum(s->comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
+}
+
 /* Into image [n], what this rank's members answer to the loads that the prediction has missed. 1: there is none. */
 static int answer_miss(spar_session *s, double *image, double *room) {
     int rank = spari_comm_rank(s->comm), singular = 0;

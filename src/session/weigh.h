@@ -24,6 +24,11 @@ int spari_weighs_motion(const spar_session *session);
    symmetric. */
 int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
 
+/* image [count][n] with room for one more := the motions that `count` loads [count][n] call for, stacked as w->x, of
+   which it takes n, unit and room. All ranks. */
+int spari_weigh_images(spar_session *session, const spari_weighed *w, int64_t count, const double *loads,
+                       double *image);
+
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:
    what another iteration would move. 0 of members that the library does not solve; infinite where the matrix is
    singular. n: 6 of each node of all members; image [n + 1]: room, and for the ranks' status; room: for 6

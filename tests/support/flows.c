@@ -34,7 +34,7 @@ typedef struct flow {
     double axes[2][3]; /* in flow, across */
 
     /* at t^n, and of the last push in the step under way */
-    double v0[MOST_CELLS][3], v[MOST_CELLS][3];
+    double v0[MOST_CELLS][3], v[MOST_CELLS][3], x[MOST_CELLS][3];
     wake wake0, wake;
     double p[2][RINGS + 2 > CELLS + 2 ? RINGS + 2 : CELLS + 2];
     double viscous[2];
@@ -145,7 +145,9 @@ static int build_cylinder(flow *f) {
 
 static double inlet(const flow *f, double t) {
     double T = 0.2;
-    (void)f;
+    if (f->c->scene == FLOW_FLAG) {
+        return f->c->swing * fmin(t, 1) * sin(2.6 * pi * t);
+    }
     return t <= 0 ? 0 : t < T ? pow(sin(pi * t / T), 2) : 0;
 }
 
@@ -157,11 +159,26 @@ static void correct_cells(const flow *f, const double *source, double *p) {
     }
 }
 
+/* Along the wall in cell i, its length; of the channel as it was built. */
+static void tangent(const flow *f, int i, double along[2]) {
+    int a = i > 0 ? i - 1 : i, b = i < CELLS - 1 ? i + 1 : i;
+    for (int k = 0; k < 2; k++) {
+        along[k] = f->c->scene == FLOW_FLAG ? (f->x[b][k] - f->x[a][k]) / (b - a) : (k == 0) * (1.0 / CELLS);
+    }
+}
+
 static int answer_channel(flow *f, double t, double dt) {
-    const double friction = 1, area = 1.0 / CELLS;
-    double source[CELLS + 2] = {0}, force[CELLS][3], size = 0;
+    const double friction = 1, drag = f->c->scene == FLOW_FLAG ? f->c->drag : 0;
+    double source[CELLS + 2] = {0}, force[CELLS][3], size = 0, along[2];
     for (int i = 0; i < CELLS; i++) {
-        source[i + 1] = f->wall * ((f->v[i][1] - f->v0[i][1]) / dt + friction * f->v[i][1]);
+        tangent(f, i, along);
+        double length = hypot(along[0], along[1]), v = 0, a = 0;
+        for (int k = 0; k < 2; k++) {
+            double normal = (k == 0 ? -along[1] : along[0]) / length;
+            v += f->v[i][k] * normal;
+            a += (f->v[i][k] - f->v0[i][k]) / dt * normal;
+        }
+        source[i + 1] = f->wall * (a + friction * v);
     }
     f->p[0][0] = inlet(f, t + dt);
     for (int k = 0; k < corrections(f); k++) {
@@ -172,8 +189,11 @@ static int answer_channel(flow *f, double t, double dt) {
     }
     f->force[0] = 0, f->force[1] = 0;
     for (int i = 0; i < CELLS; i++) {
-        force[i][0] = force[i][2] = 0;
-        force[i][1] = area * (f->p[0][i + 1] + f->c->noise * sqrt(size) * draw(f));
+        double p = f->p[0][i + 1] + f->c->noise * sqrt(size) * draw(f);
+        tangent(f, i, along);
+        force[i][0] = drag * along[0] - p * along[1];
+        force[i][1] = drag * along[1] + p * along[0];
+        force[i][2] = 0;
         f->force[1] += force[i][1];
     }
     return spar_fluid_push_forces(f->fluid, &force[0][0], NULL);
@@ -188,7 +208,7 @@ static int build_channel(flow *f) {
     f->wall = dx * dx / height;
     f->factor = 2 / (1 + sin(pi / (CELLS + 1)));
     for (int i = 0; i < 6; i++) {
-        K[7 * i] = i < 3 ? 1e4 * EI : EI;
+        K[7 * i] = i < 3 ? (f->c->scene == FLOW_FLAG ? 3e4 : 1e4) * EI : EI;
         M[7 * i] = i < 3 ? mass : 1e-4 * mass;
     }
     for (int i = 0; i < CELLS; i++) {
@@ -212,7 +232,7 @@ static int answer(spar_session *s, double t, double dt, int iteration, void *con
     flow *f = context;
     (void)s;
     (void)iteration;
-    TRY(spar_fluid_pull_motion(f->fluid, 1, NULL, &f->v[0][0]));
+    TRY(spar_fluid_pull_motion(f->fluid, 1, &f->x[0][0], &f->v[0][0]));
     return f->c->scene == FLOW_CYLINDER ? answer_cylinder(f, t, dt) : answer_channel(f, t, dt);
 }
 

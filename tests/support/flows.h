@@ -9,13 +9,17 @@
    channel:  a cantilever of length 1 is a wall of a channel of height 0.1, filled with an inviscid fluid of unit
              density with friction: rho/H (w'' + c w') = p_xx in 10 cells, driven by a pulse of pressure at the inlet.
 
+   flag:     the channel's cantilever, far more slender, swings far: velocity and pressure count across it as it stands,
+             a traction `drag` pulls along it; the pressure at the inlet is swing sin(2.6 pi t), which comes on within
+             1 s (alone in the fluid the flag has 1 Hz).
+
    Local, serial, deterministic. No function writes or aborts. */
 #ifndef FLOWS_H
 #define FLOWS_H
 
 #include <spar/spar.h>
 
-enum { FLOW_CYLINDER = 0, FLOW_CHANNEL = 1, FLOW_STEPS = 400, FLOW_OPTIONS = 8 };
+enum { FLOW_CYLINDER = 0, FLOW_CHANNEL = 1, FLOW_FLAG = 2, FLOW_STEPS = 400, FLOW_OPTIONS = 8 };
 
 typedef struct flow_case {
     int scene;
@@ -23,6 +27,7 @@ typedef struct flow_case {
     double noise; /* of each push, relative to its size */
     int inner;    /* corrections of the pressure in each push; 0: solved exactly */
     double drag;  /* drag coefficient of the cylinder; 1.2 is a circular one's */
+    double swing; /* of the flag's inlet */
     double angle; /* the whole cylinder scene is turned by so much about the span: no axis is the lift's */
     int ramp;     /* the stream starts over so many steps; 0: at once */
     int pushed;   /* loads are pushed at t = 0 */
