@@ -18,9 +18,12 @@ extern "C" {
 #endif
 
 /* A committed member where it is now: its nodes as points, its line through them drawn in finer pieces. At every
-   point displacement, section_x, _y, _z (axes of the section), velocity, angular_velocity, acceleration,
-   angular_acceleration; node (its number, -1 between nodes); at the nodes nodal_force and nodal_moment (lumped loads
-   in use; 0 between nodes). For the whole: reaction_force, _moment. */
+   point displacement; deflection, the way from where the root, moving as one rigid body, would have carried the place
+   (a rotor's blades without the rotor's turn; in global axes); rotation (vector, from the reference, below half a
+   turn), section_x, _y, _z (axes of the section), velocity, angular_velocity, acceleration, angular_acceleration; node
+   (its number, -1 between nodes); at the nodes nodal_force and nodal_moment (lumped loads in use; 0 between nodes). Of
+   a beam that spar solves for section_force and section_moment (spar_beam_get_section, in section axes). For the whole:
+   reaction_force, _moment. */
 SPAR_API int spar_member_write_vtk(const spar_member *member, const char *path);
 /* This rank's nodes of a mapped fluid where they are now, each joined to its foot on the line by a connector, so that a
    wrong map is seen at once. At every node velocity, section_x, _y, _z (the turned axes of the line at the foot), xi,

@@ -4,6 +4,7 @@
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "vtk.h"
+#include <math.h>
 #include <spar/spar_output.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,22 @@
 enum { SPARI_PIECES = 4 };
 
 /* Columns of the table of samples, and the fields made of them. */
-enum { X, U = 3, AXES = 6, V = 15, OMEGA = 18, A = 21, ALPHA = 24, FORCE = 27, MOMENT = 30, NODE = 33, COLUMNS = 34 };
+enum {
+    X,
+    U = 3,
+    AXES = 6,
+    V = 15,
+    OMEGA = 18,
+    A = 21,
+    ALPHA = 24,
+    FORCE = 27,
+    MOMENT = 30,
+    NODE = 33,
+    BENT = 34,
+    TURN = 37,
+    INNER = 40,
+    COLUMNS = 46
+};
 static const struct {
     const char *name;
     int column, components;
@@ -27,12 +43,18 @@ static const struct {
                 {"angular_acceleration", ALPHA, 3},
                 {"nodal_force", FORCE, 3},
                 {"nodal_moment", MOMENT, 3},
-                {"node", NODE, 1}};
+                {"node", NODE, 1},
+                {"deflection", BENT, 3},
+                {"rotation", TURN, 3},
+                {"section_force", INNER, 3},
+                {"section_moment", INNER + 3, 3}}; /* these two where spar knows the sections' forces */
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
 typedef struct sampled {
     int64_t n;     /* samples */
     double *table; /* [COLUMNS][n], each field as VTK wants it: at table + column * n, [n][components] */
+    double
+        *eta; /* [n] along the whole beam; the first of an element a little within, for a joint is the one before's */
     int64_t *node; /* [nodes] the sample at each node */
     int64_t *end;  /* [elements] */
 } sampled;
@@ -45,6 +67,7 @@ typedef struct nodal {
     double *q, *v, *a, *load; /* [nodes][7], [6], [6], [6] */
     double *chain, *frame;    /* [nodes][4]: q and the reference orientation, signs chained along each element */
     double reaction[6];
+    int inner; /* whether it has sections whose forces are known */
 } nodal;
 
 static void put_columns(const sampled *s, int column, int components, int64_t sample, const double *value) {
@@ -66,13 +89,30 @@ static void put_axes(const sampled *s, int64_t sample, int n, const double *phi,
     double turn[4], at_rest[4], now[4];
     blend(n, phi, 4, chain, 4, turn);
     blend(n, phi, 4, frame, 4, at_rest);
+    spari_quat_normalise(turn);
     spari_quat_mul(turn, at_rest, now);
     spari_quat_normalise(now);
+    double angle[3];
+    spari_quat_log(turn, angle);
+    put_columns(s, TURN, 3, sample, angle);
     for (int i = 0; i < 3; i++) {
         double axis[3];
         spari_rotate(now, unit[i], axis);
         put_columns(s, AXES + 3 * i, 3, sample, axis);
     }
+}
+
+/* What is bent: the way from where the root, moving as one rigid body, would have carried the place. */
+static void put_deflection(const sampled *s, const nodal *at, const double *x, const double *u, int64_t sample) {
+    double arm[3], turned[3], bent[3];
+    for (int i = 0; i < 3; i++) {
+        arm[i] = x[i] - u[i] - at->xr[i];
+    }
+    spari_rotate(at->q + 3, arm, turned);
+    for (int i = 0; i < 3; i++) {
+        bent[i] = x[i] - at->xr[i] - at->q[i] - turned[i];
+    }
+    put_columns(s, BENT, 3, sample, bent);
 }
 
 /* One sample of the element whose nodes begin at `first`. node: its number where there is one, else -1. */
@@ -89,6 +129,7 @@ static void put_sample(const sampled *s, const nodal *at, int64_t first, const d
     }
     put_columns(s, X, 3, sample, x);
     put_columns(s, U, 3, sample, u);
+    put_deflection(s, at, x, u, sample);
     put_axes(s, sample, n, phi, at->chain + 4 * first, at->frame + 4 * first);
     blend(n, phi, 6, at->v + 6 * first, 6, rate);
     put_columns(s, V, 3, sample, rate);
@@ -116,10 +157,22 @@ static void sample_member(const sampled *s, const nodal *at) {
                     s->node[first + k] = sample;
                 }
                 put_sample(s, at, first, phi, piece == 0 ? first + k : -1, sample);
+                s->eta[sample] = fmin(1, (e + (k + piece == 0 ? 1e-14 * (e + 1) : 0.5 * (1 + xi))) / at->elements);
             }
         }
         s->end[e] = sample;
     }
+}
+
+static int sample_sections(const sampled *s, const spar_member *m) {
+    double *force = spari_zalloc(6 * s->n, sizeof *force);
+    int status = force ? spar_beam_get_section(m, s->n, s->eta, NULL, force, NULL, NULL) : SPAR_ERR_MEMORY;
+    for (int64_t i = 0; i < s->n && status == SPAR_OK; i++) {
+        put_columns(s, INNER, 3, i, force + 6 * i);
+        put_columns(s, INNER + 3, 3, i, force + 6 * i + 3);
+    }
+    free(force);
+    return status;
 }
 
 static int fill_nodal(const spar_member *m, nodal *at) {
@@ -147,7 +200,7 @@ static int write_member(const sampled *s, const nodal *at, spar_session *session
                                  .vert = s->node,
                                  .lines = at->per_element > 1 ? at->elements : 0,
                                  .line_end = s->end,
-                                 .fields = FIELDS - 1,
+                                 .fields = FIELDS - 1 - (at->inner ? 0 : 2),
                                  .field = field + 1,
                                  .facts = 2,
                                  .fact = fact};
@@ -159,7 +212,13 @@ static int write_member(const sampled *s, const nodal *at, spar_session *session
 static int size_up(const spar_member *member, nodal *at) {
     SPARI_TRY(spar_member_get_count(member, &at->n));
     at->elements = at->per_element = 1;
-    SPARI_TRY(at->n > 1 ? spar_beam_get_elements(member, &at->elements, &at->per_element) : SPAR_OK);
+    if (at->n > 1) {
+        int external, fidelity;
+        SPARI_TRY(spar_beam_get_elements(member, &at->elements, &at->per_element));
+        SPARI_TRY(spar_member_get_external(member, &external));
+        SPARI_TRY(spar_member_get_fidelity(member, &fidelity, NULL));
+        at->inner = !external && fidelity != SPAR_FIDELITY_PRESCRIBED;
+    }
     return spar_member_get_reference(member, NULL, NULL);
 }
 
@@ -171,17 +230,23 @@ static int write_picture(const spar_member *member, nodal *at, spar_session *ses
     at->q = work, at->v = work + 7 * n, at->a = work + 13 * n, at->load = work + 19 * n, at->chain = work + 25 * n;
     at->frame = work + 29 * n, at->xr = work + 33 * n, at->qr = work + 36 * n;
     s.table = spari_zalloc(COLUMNS * s.n, sizeof *s.table);
+    s.eta = spari_zalloc(s.n, sizeof *s.eta);
     s.node = spari_zalloc(n, sizeof *s.node);
     s.end = spari_zalloc(at->elements, sizeof *s.end);
-    int status = work && s.table && s.node && s.end ? fill_nodal(member, at)
-                                                    : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for '%s'",
-                                                                 call, spar_member_get_name(member));
+    int status =
+        work && s.table && s.eta && s.node && s.end
+            ? fill_nodal(member, at)
+            : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, spar_member_get_name(member));
     if (status == SPAR_OK) {
         sample_member(&s, at);
+        status = at->inner ? sample_sections(&s, member) : SPAR_OK;
+    }
+    if (status == SPAR_OK) {
         status = write_member(&s, at, session, path, call);
     }
     free(work);
     free(s.table);
+    free(s.eta);
     free(s.node);
     free(s.end);
     return status;
