@@ -369,14 +369,30 @@ static void put_blades(const rotor_report *r, FILE *file, const char *name, cons
     fprintf(file, "unset multiplot\n");
 }
 
+/* A panel's range of a column: what it spans, and a twentieth of its mean either way at least, so that ripples look
+ * small. */
+static void put_range(FILE *file, const char *name, int column, double scale) {
+    fprintf(file,
+            "stats 'history.csv' every ::1 using ($%d*%g) nooutput name 's'\n"
+            "wide = 0.05 * abs(s_mean) + 1e-3\n"
+            "%s_low = s_min < s_mean - wide ? s_min : s_mean - wide\n"
+            "%s_high = s_max > s_mean + wide ? s_max : s_mean + wide\n",
+            column + 1, scale, name, name);
+}
+
 static void put_power(const rotor_report *r, FILE *file) {
-    fprintf(file, "\nset output 'power.png'\nset multiplot layout 2,1 title 'Thrust and power: '.scene font ',15'\n");
+    put_range(file, "thrust", ROTOR_THRUST, 1e-3);
+    put_range(file, "power", ROTOR_POWER, 1e-6);
+    fprintf(file, "\nset output 'power.png'\nset multiplot layout 2,1 title 'Thrust and power: '.scene font ',15'\n"
+                  "set yrange [thrust_low:thrust_high]\n");
     put_panel(r, file, 0, "thrust (kN)");
     fprintf(file, "  'history.csv' using 1:($%d*1e-3) with lines linecolor rgb word(shade,1) notitle\n",
             ROTOR_THRUST + 1);
+    fprintf(file, "set yrange [power_low:power_high]\n");
     put_panel(r, file, 1, "power (MW)");
     fprintf(file,
-            "  'history.csv' using 1:($%d*1e-6) with lines linecolor rgb word(shade,2) notitle\nunset multiplot\n",
+            "  'history.csv' using 1:($%d*1e-6) with lines linecolor rgb word(shade,2) notitle\nunset multiplot\n"
+            "set autoscale y\n",
             ROTOR_POWER + 1);
 }
 
