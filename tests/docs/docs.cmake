@@ -1,4 +1,6 @@
 # Figures quoted in docs/ are those that the programs print.
+add_test(NAME docs_faq COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/faq")
+spar_set_test(docs_faq docs 30)
 find_program(SPAR_AWK awk)
 mark_as_advanced(SPAR_AWK)
 if(NOT SPAR_AWK OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
