@@ -145,12 +145,14 @@ module spar
     procedure :: save => session_save
     procedure :: load => session_load
     procedure :: step_begin => session_step_begin
+    procedure :: step_begin_start => session_step_begin_start
     procedure :: step_solve => session_step_solve
     procedure :: step_check => session_step_check
     procedure :: step_accept => session_step_accept
     procedure :: step_reject => session_step_reject
     procedure :: step => session_step
     procedure :: solve_static => session_solve_static
+    procedure :: start => session_start
     procedure, private :: session_try_64, session_try_32
     generic :: try => session_try_64, session_try_32
     procedure, private :: session_report_effects_64, session_report_effects_32
@@ -954,6 +956,15 @@ contains
     call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
   end subroutine session_step_begin
 
+  subroutine session_step_begin_start(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin_start(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin_start
+
   subroutine session_step_solve(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(out), optional :: stat
@@ -1014,6 +1025,22 @@ contains
     if (present(iterations)) iterations = n
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_step
+
+  ! The balanced start before the first step, of dt: solve as in step, with dt = 0, called until the loads agree.
+  subroutine session_start(self, dt, solve, context, iterations, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer(c_int), intent(inout), optional :: iterations
+    integer(c_int), intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(self, record, to_solver, to_before, solve, context=context)
+    call finish(spar_session_start(self%handle, dt, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
+  end subroutine session_start
 
   ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
   ! default 1.

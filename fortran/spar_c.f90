@@ -1061,6 +1061,23 @@ module spar_calls
       integer(c_int) :: status
     end function spar_step
 
+    function spar_session_start(session, dt, solve, context, iterations) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_session_start
+
+    function spar_step_begin_start(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int) :: status
+    end function spar_step_begin_start
+
     function spar_session_solve_static(session, load_steps, solve, context, iterations) bind(c) result(status)
       import :: c_funptr, c_int, c_ptr
       type(c_ptr), value :: session

@@ -190,6 +190,8 @@ call spar_step_check int session|session|value| done|int|out|
 call spar_step_accept int session|session|value|
 call spar_step_reject int session|session|value|
 call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_session_start int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_step_begin_start int session|session|value| dt|double|value|
 call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]

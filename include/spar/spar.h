@@ -1008,6 +1008,32 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
      iterations: out, how many it took, NULL: not wanted */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
+/* The balanced start: accelerations at t = 0 of all members, and the fluid's loads there that answer to them. Places
+   and velocities stay. A fluid that has an added mass gives loads by accelerations, and these follow from the loads:
+   pushed for the accelerations of 0 that there are before a run, or not at all, loads at t = 0 make it first order in
+   dt; after this call it is second order from the first step on. The fluid solver is called as in spar_step, iterated
+   by the session's coupling scheme (explicit: by IQN-ILS) until the loads agree within its tolerances, weighed by
+   themselves. From then on the accelerations are those that fluids pull and spar_member_get_motion gives, the loads
+   those at t^n, and joints carry theirs. Loads pushed between this and the first step take the place of those found.
+     dt: in, s, > 0, that of the first step: parts so light or stiff that it does not resolve their motion get the
+           accelerations that such a step gives them
+     solve: in, NULL: no fluid on this rank, loads pushed stay. In it t is the clock, dt 0 and iteration from 0; pulls
+           give the motion at t = 0 at any theta, and the host finds its loads in the flow as it stands. What it may not
+           call in a step it may not call here
+     context: in, handed to solve
+     iterations: out, calls of solve on each rank, also after a failure; NULL: not wanted
+   The place and velocity of a point or an external member are those that it has; its acceleration is what
+   spar_member_set_motion gave before, or gives in solve (under spar_member_get_loads, which have the joints' loads in
+   them). A guess of the added mass (spar_member_set_added_mass) has no part in it. Before the first step, again after
+   what changes the state there (loads kept, initial velocities). After a failure all is as it was. Collective.
+   SPAR_ERR_STATE: the clock has run; SPAR_ERR_NUMERIC: no convergence in max_iterations, or the mass is singular. */
+SPAR_API int spar_session_start(spar_session *session, double dt, spar_fluid_solver solve, void *context,
+                                int *iterations);
+/* Its beginning, for a host whose own loop runs the fluid: in place of spar_step_begin, before the first step. Then as
+   in a step: spar_step_solve finds the accelerations under the loads in use, pull, push, spar_step_check, until it is
+   done; spar_step_accept ends it, with the clock at t = 0 still, or spar_step_reject. dt: in, s, > 0. */
+SPAR_API int spar_step_begin_start(spar_session *session, double dt);
+
 /* Static equilibrium of all members with the fluid's answer: the shape under gravity, all kept loads and the loads that
    the fluid has on that shape (a wing's trim, a flag in steady flow). The fluid solver is called as in spar_step, and
    iterated by the session's coupling scheme until the loads agree within its tolerances; explicit: it is called once.

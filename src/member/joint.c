@@ -477,6 +477,11 @@ void spari_joint_balance(spar_joint *j) {
     j->now = j->after;
 }
 
+void spari_joint_end_start(spar_joint *j) {
+    j->now = j->after;
+    j->balanced = 0;
+}
+
 void spari_joint_reject(spar_joint *j) {
     if (j->balanced) {
         j->now = j->described;

@@ -74,6 +74,8 @@ void spari_joint_balance(spar_joint *joint);
 /* The step under way is accepted, or given up: the first one with the balance at t^0. */
 void spari_joint_accept(spar_joint *joint);
 void spari_joint_reject(spar_joint *joint);
+/* A balanced start has ended: what it found is that of t^0. */
+void spari_joint_end_start(spar_joint *joint);
 /* Where its two nodes are in the motion after. */
 void spari_joint_places(const spar_joint *joint, spari_place place[2]);
 /* The second rates of its coordinates in the motion after; 0 before it is placed. */
@@ -83,6 +85,9 @@ void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
 /* The same on all nodes [n][6] of an external member, of any other nothing: what its host solves it with, so that they
    are among the loads that the coupling iterates. */
 void spari_joints_on_external(const spar_member *member, double *load);
+/* Whether joints load external members: what they put on them is that of the motion which the host has just given, so
+   that where time stands the others are solved again. */
+int spari_joints_tie_external(const spar_session *session);
 void spari_joint_free(spar_joint *joint);
 
 #endif

@@ -44,6 +44,14 @@ void spari_joints_on_external(const spar_member *m, double *load) {
     }
 }
 
+int spari_joints_tie_external(const spar_session *s) {
+    int ties = 0;
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        ties = ties || j->member[0]->external || (j->member[1] && j->member[1]->external);
+    }
+    return ties;
+}
+
 void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
     spari_place place[2];
     double z[6], B[6][12], v[12] = {0}, a[12] = {0};

@@ -65,7 +65,9 @@ struct spar_member {
     spari_body *body; /* of members that are solved for */
 
     spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
-    spari_pose drive[2];     /* root at t^n and t^{n+1} */
+    double *begun; /* [nodes][6] accelerations that the balance at t^0 begins with, where a start has been asked for,
+                      until the first step is accepted; NULL: those of now */
+    spari_pose drive[2]; /* root at t^n and t^{n+1} */
 
     /* Nodal loads [n][6], global axes, in their lives:
                            between steps     step begun        solved               checked

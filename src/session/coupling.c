@@ -35,11 +35,11 @@ int spari_coupling_wants_motion(const spar_session *s) {
     return s->motion_atol > 0 || s->motion_rtol > 0;
 }
 
-static int make_vectors(const spar_session *s, spari_coupling *c) {
-    int iterated = spari_coupling_scheme_of(s->scheme)->iterates;
+static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
+    int iterated = spari_coupling_scheme_of(scheme)->iterates;
     int64_t n = iterated ? c->n : 0;
-    spari_accelerator_settings set = {s->scheme,         s->relaxation,      s->coupling_columns,
-                                      s->coupling_reuse, s->coupling_filter, c->weighs};
+    spari_accelerator_settings set = {
+        scheme, s->relaxation, s->coupling_columns, s->coupling_reuse, s->coupling_filter, c->weighs};
     int64_t largest = 0, images = c->weighs ? 2 * n : c->estimates ? c->n : 0, shifted = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         largest = m->nodes > largest ? m->nodes : largest;
@@ -74,16 +74,16 @@ int spari_coupling_fits(const spar_session *s) {
     return c && !s->coupling_stale && c->members == s->member_count && c->n == count_unknowns(s);
 }
 
-int spari_coupling_create(spar_session *s, int at_rest, spari_coupling **coupling) {
+int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupling **coupling) {
     spari_coupling *c = spari_zalloc(1, sizeof *c);
     if (c) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
-        int iterates = spari_coupling_scheme_of(s->scheme)->iterates;
-        c->estimates = !at_rest && !iterates && s->coupling_estimate;
-        c->weighs = !at_rest && iterates && spari_weighs_motion(s);
+        int iterates = spari_coupling_scheme_of(scheme)->iterates;
+        c->estimates = !standing && !iterates && s->coupling_estimate;
+        c->weighs = !standing && iterates && spari_weighs_motion(s);
     }
-    if (!c || !make_vectors(s, c)) {
+    if (!c || !make_vectors(s, scheme, c)) {
         spari_coupling_free(&c);
         return spari_fail(s, SPAR_ERR_MEMORY,
                           "no memory for the coupling; ask for fewer columns (option coupling.columns)");
@@ -101,7 +101,7 @@ int spari_coupling_create(spar_session *s, int at_rest, spari_coupling **couplin
 
 int spari_coupling_prepare(spar_session *s) {
     spari_coupling *c;
-    SPARI_TRY(spari_coupling_create(s, 0, &c));
+    SPARI_TRY(spari_coupling_create(s, s->scheme, 0, &c));
     if (s->own->coupling) {
         c->report[SPAR_REPORT_UNCONVERGED] = s->own->coupling->report[SPAR_REPORT_UNCONVERGED];
         c->in_row = s->own->coupling->in_row;
@@ -273,8 +273,9 @@ static int not_converged(spar_session *s, const char *call) {
     }
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
-                      "N%s%s); take a smaller relaxation, another scheme or a smaller dt, or reject the step",
-                      call, s->iteration, c->residual[last], c->size[last], motion, mass);
+                      "N%s%s); take a smaller relaxation, another scheme or %s, or reject the step",
+                      call, s->iteration, c->residual[last], c->size[last], motion, mass,
+                      s->standing ? "a larger tolerance" : "a smaller dt");
 }
 
 static spari_weighed weighed(const spari_coupling *c) {

@@ -37,10 +37,17 @@ typedef struct spari_coupling {
     int unconverged, in_row; /* the step under way is accepted though it has not converged; and those before it */
 } spari_coupling;
 
-/* Memory for the settings in force. at_rest: for an equilibrium, whose loads are weighed by themselves. Local. */
-int spari_coupling_create(spar_session *session, int at_rest, spari_coupling **coupling);
+/* Memory for the settings in force but for the scheme. standing: for a solution that is no step, whose loads are
+   weighed by themselves. Local. */
+int spari_coupling_create(spar_session *session, int scheme, int standing, spari_coupling **coupling);
 /* The same into the session; what there was goes. */
 int spari_coupling_prepare(spar_session *session);
+/* One for a solution that is no step takes the place of the session's, which waits. Collective; or all is as it was.
+   The solution was found: the state has been set anew, and the steps begin anew with their coupling. Or it was not:
+   they go on with what they had; what is told of the last iteration is that of this one. */
+int spari_coupling_lay_aside(spar_session *session, int scheme);
+void spari_coupling_keep(spar_session *session);
+void spari_coupling_take_back(spar_session *session);
 /* Whether the session's is of the settings in force and of the members there are now. Local, the same on every rank. */
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);

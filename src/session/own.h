@@ -18,6 +18,7 @@ struct spari_own {
     int64_t *first;           /* several ranks: where the block of each rank's members begins in `motion` */
     double *motion;           /* several ranks: motion of all solved members, by owner */
     spari_coupling *coupling; /* from the first step on */
+    spari_coupling *aside;    /* that of the steps, while a solution is under way that is none; NULL: there was none */
     spari_record *kept;       /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);
     spari_advised *advised; /* of spar_session_advise; NULL: none */

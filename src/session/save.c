@@ -396,7 +396,10 @@ static int write_file(spar_session *s, const double *all, const int64_t *first, 
 
 static int check_call(spar_session *s, const char *call, const char *path) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE, "%s: a static solution is under way; save or load after it", call);
+    SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE,
+                  "%s: a static solution or a start is under way; save or load "
+                  "after it",
+                  call);
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -543,7 +546,7 @@ static int check_coupling(spar_session *s, reading *l) {
     int own = spari_settings_of_coupling(s, settings);
     const uint64_t *saved = spari_image_get(&l->image, own);
     if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
-        SPARI_TRY(spari_coupling_create(s, 0, &l->coupling));
+        SPARI_TRY(spari_coupling_create(s, s->scheme, 0, &l->coupling));
         passage t = {&l->image, READ};
         pass_coupling(&t, l->coupling);
         if (l->coupling->accelerator) {

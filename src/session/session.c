@@ -80,6 +80,7 @@ void spar_session_destroy(spar_session **session) {
     }
     spari_comm_destroy(&s->comm);
     spari_coupling_free(&s->own->coupling);
+    spari_coupling_free(&s->own->aside);
     if (s->own->kept) {
         s->own->free_kept(s->own->kept);
     }

@@ -213,56 +213,6 @@ static int check_session_static(spar_session *s, const char *call, int load_step
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
-/* Columns and weights are of this solution alone: those of the steps know another map. What the steps had is put
-   aside. */
-static int prepare_coupling(spar_session *s, spari_coupling **of_steps) {
-    spari_coupling *own = NULL;
-    int status = spari_enter(s, "coupling", spari_coupling_create(s, 1, &own));
-    if (status != SPAR_OK) {
-        spari_coupling_free(&own);
-        return status;
-    }
-    *of_steps = s->own->coupling;
-    s->own->coupling = own;
-    return SPAR_OK;
-}
-
-/* The shape has been set anew, and the steps begin anew with their coupling. */
-static void keep_coupling(spar_session *s, spari_coupling *of_steps) {
-    if (of_steps) {
-        s->own->coupling->report[SPAR_REPORT_UNCONVERGED] = of_steps->report[SPAR_REPORT_UNCONVERGED];
-    }
-    spari_coupling_free(&of_steps);
-    s->coupling_stale = 1;
-}
-
-static void swap_lists(double **a, double **b) {
-    double *other = *a;
-    *a = *b;
-    *b = other;
-}
-
-/* The steps go on with what they had; what is told of the last iteration is that of this one. */
-static void restore_coupling(spar_session *s, spari_coupling *of_steps) {
-    spari_coupling *own = s->own->coupling;
-    if (!of_steps) {
-        s->coupling_stale = 1;
-        return;
-    }
-    int most = of_steps->most;
-    of_steps->most = own->most;
-    own->most = most;
-    of_steps->iterations = own->iterations;
-    swap_lists(&of_steps->residual, &own->residual);
-    swap_lists(&of_steps->size, &own->size);
-    for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
-        of_steps->report[i] = own->report[i];
-    }
-    of_steps->report[SPAR_REPORT_ADDED_MASS_SPREAD] = own->report[SPAR_REPORT_ADDED_MASS_SPREAD];
-    s->own->coupling = of_steps;
-    spari_coupling_free(&own);
-}
-
 /* Fluids may push and pull as in a step. */
 static int begin_static(spar_session *s) {
     static const double last[2] = {1, 1};
@@ -399,16 +349,6 @@ static int not_solved(spar_session *s, const char *call, int status) {
     return status == SPAR_ERR_COMM ? status : not_settled(s, call, status, why);
 }
 
-/* Whether joints load external members: what they put on them is that of the place where the host has just put them, so
-   the others are solved again. */
-static int ties_external(const spar_session *s) {
-    int ties = 0;
-    for (const spar_joint *j = s->joints; j; j = j->next) {
-        ties = ties || j->member[0]->external || (j->member[1] && j->member[1]->external);
-    }
-    return ties;
-}
-
 /* The fluid's loads on these shapes, from all ranks. */
 static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int status = spari_lend(s, call, solve, 0, context);
@@ -417,7 +357,7 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     }
     status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
     SPARI_TRY(spari_enter(s, call, status));
-    if (ties_external(s)) {
+    if (spari_joints_tie_external(s)) {
         status = solve_all(s, 1, 1);
         SPARI_TRY(status == SPAR_OK ? status : not_solved(s, call, status));
     }
@@ -489,11 +429,10 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     SPARI_TRY(spari_lend_refuse(s, __func__));
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, __func__, load_steps)));
-    spari_coupling *of_steps = NULL;
     double *aside = NULL;
     int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;
-    status = status == SPAR_OK ? prepare_coupling(s, &of_steps) : status;
+    status = status == SPAR_OK ? spari_coupling_lay_aside(s, s->scheme) : status;
     if (status != SPAR_OK) {
         free(aside);
         return spari_named(s, __func__, status);
@@ -505,10 +444,10 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     }
     if (status == SPAR_OK) {
         settle_all(s);
-        keep_coupling(s, of_steps);
+        spari_coupling_keep(s);
     } else {
         leave_as_it_was(s, aside);
-        restore_coupling(s, of_steps);
+        spari_coupling_take_back(s);
     }
     end_static(s);
     free(aside);

@@ -10,6 +10,7 @@
 #include "exchange.h"
 #include "lend.h"
 #include "own.h"
+#include "start.h"
 
 #include "../comm/enter.h"
 
@@ -121,6 +122,13 @@ int spar_step_begin(spar_session *session, double dt) {
     return SPAR_OK;
 }
 
+int spar_step_begin_start(spar_session *session, double dt) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_lend_refuse(session, __func__));
+    return spari_start_begin(session, __func__, dt);
+}
+
 /* ---- solve ---- */
 
 static int solve_member(spar_member *m, double dt) {
@@ -152,6 +160,9 @@ int spar_step_solve(spar_session *session) {
     SPARI_TRY(spari_lend_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
+    if (s->standing) {
+        return spari_start_solve(s, __func__);
+    }
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = m->assembly ? SPAR_OK : solve_member(m, s->dt);
     }
@@ -207,7 +218,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
-        if (m->added) {
+        if (m->added && !s->standing) {
             spari_added_correct(m, 1, m->load_pushed);
         }
     }
@@ -271,6 +282,10 @@ int spar_step_accept(spar_session *session) {
         status = spari_session_pushes(s, __func__);
     }
     SPARI_TRY(spari_enter(s, __func__, status));
+    if (s->standing) {
+        spari_start_accept(s);
+        return SPAR_OK;
+    }
     spari_coupling_accept(s);
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_work_of_joint(j);
@@ -296,6 +311,10 @@ int spar_step_accept(spar_session *session) {
 
 /* Local: what all ranks do where the step is to end on all of them. */
 static void reject(spar_session *s) {
+    if (s->standing) {
+        spari_start_reject(s);
+        return;
+    }
     spari_coupling_reject(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
@@ -326,33 +345,58 @@ int spar_step_reject(spar_session *session) {
 
 /* ---- the whole step ---- */
 
+static int solve_for(spar_session *s, const char *call) {
+    if (!s->standing) {
+        return spar_step_solve(s);
+    }
+    SPARI_TRY(spari_enter(s, call, SPAR_OK));
+    return spari_start_solve(s, call);
+}
+
 static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int done = 0;
     while (!done) {
-        SPARI_TRY(spar_step_solve(s));
-        int status = spari_lend(s, call, solve, s->dt, context);
+        SPARI_TRY(solve_for(s, call));
+        int status = spari_lend(s, call, solve, s->standing ? 0 : s->dt, context);
         if (status == SPAR_ERR_COMM) {
             return status;
+        }
+        if (s->standing && spari_joints_tie_external(s)) {
+            SPARI_TRY(spari_enter(s, call, status));
+            SPARI_TRY(spari_start_solve(s, call));
         }
         SPARI_TRY(check_iteration(s, call, status, &done));
     }
     return SPAR_OK;
 }
 
+/* What has been begun, to its end. */
+static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
+    int status = iterate(s, call, solve, context);
+    if (iterations) {
+        *iterations = s->iteration;
+    }
+    if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(s) != SPAR_OK) {
+        status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
+    }
+    status = status == SPAR_OK ? spar_step_accept(s) : status;
+    if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
+        reject(s);
+    }
+    return status;
+}
+
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     SPARI_QUIET;
     SPARI_TRY(session ? spari_lend_refuse(session, __func__) : SPAR_OK);
     SPARI_TRY(spar_step_begin(session, dt));
-    int status = iterate(session, __func__, solve, context);
-    if (iterations) {
-        *iterations = session->iteration;
-    }
-    if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(session) != SPAR_OK) {
-        status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
-    }
-    status = status == SPAR_OK ? spar_step_accept(session) : status;
-    if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
-        reject(session);
-    }
-    return status;
+    return run_begun(session, __func__, solve, context, iterations);
+}
+
+int spar_session_start(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_lend_refuse(session, __func__));
+    SPARI_TRY(spari_start_begin(session, __func__, dt));
+    return run_begun(session, __func__, solve, context, iterations);
 }

@@ -450,7 +450,12 @@ int spari_solver_answer(spari_solver *s, const spar_member *member, double *load
     return solve_turned(s, s->to.q, load, motion);
 }
 
+static const spari_integrand by_alpha = {start, begin_step, substep};
+
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
-    static const spari_integrand how = {start, begin_step, substep};
-    return spari_scheme_advance(&how, s, &s->steps, 6 * s->n, member, s->body->D != NULL, dt);
+    return spari_scheme_advance(&by_alpha, s, &s->steps, 6 * s->n, member, s->body->D != NULL, dt);
+}
+
+int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {
+    return spari_scheme_balance(&by_alpha, s, &s->steps, member, dt);
 }

@@ -334,6 +334,28 @@ static void look_at_links(spari_assembly *a, double dt) {
     }
 }
 
+int spari_assembly_balance(spari_assembly *a, double dt) {
+    int started = 1;
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    begin_links(a);
+    for (int i = 0; i < a->limbs; i++) {
+        started = a->limb[i].row->take(a->limb + i, dt / a->session->substeps) && started;
+    }
+    if (a->limbs > 0 && !started && !a->limb[0].scheme.still) {
+        SPARI_TRY(start_all(a));
+    }
+    for (int i = 0; i < a->links && a->limbs == 0; i++) {
+        spari_link_find(a->link + i, 0, 0, 1);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->begin(a->limb + i);
+        a->limb[i].member->row->publish(a->limb[i].member);
+    }
+    return SPAR_OK;
+}
+
 int spari_assembly_advance(spari_assembly *a, double dt) {
     if (!a->here) {
         return SPAR_OK;

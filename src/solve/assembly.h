@@ -39,7 +39,10 @@ void spari_assembly_load(spari_assembly *assembly, const double *state);
 /* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
    rank. */
 int spari_assembly_advance(spari_assembly *assembly, double dt);
-/* After that, on its owner, elsewhere it does nothing: what a little more of the loads in use adds to the motions
+/* Accelerations of its members and loads of its joints at t^0 under load_history[0], for steps dt: the motions after
+   are t^0 with them. Where it has been done already the joints' loads are those of now. */
+int spari_assembly_balance(spari_assembly *assembly, double dt);
+/* After a step, on its owner, elsewhere it does nothing: what a little more of the loads in use adds to the motions
    after, to first order and over the last substep. stacked: six of each node of all members of the session; of those
    that it solves the loads, and then the motions. The steps to come are the same, to the last bit. 0, or 1: there is no
    answer.

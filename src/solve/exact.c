@@ -63,6 +63,13 @@ static int exact_advance(spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+static int exact_balance(spar_member *m, double dt) {
+    exact_take_loads(m);
+    SPARI_TRY(spari_solver_balance(m->solution, m, dt));
+    exact_publish(m);
+    return SPAR_OK;
+}
+
 static void exact_accept(spar_member *m) {
     spari_solver_accept(m->solution);
 }
@@ -172,6 +179,7 @@ const spari_fidelity spari_fidelity_exact = {
     .renew = exact_renew,
     .restart = exact_restart,
     .advance = exact_advance,
+    .balance = exact_balance,
     .answer = exact_answer,
     .accept = exact_accept,
     .effort = exact_effort,

@@ -34,7 +34,10 @@ typedef struct spari_fidelity {
     /* from t^n to t^n + dt in the session's substeps, under dead loads, load_history[0] and load_used; leaves t^n
        alone, writes m->after and m->dissipated_step */
     int (*advance)(spar_member *m, double dt);
-    /* after that: what a little more of load_used, `load` [nodes][6], adds to m->after: `motion` [nodes][6],
+    /* accelerations at t^0 under dead loads and load_history[0], for steps dt; writes m->after, which is t^0 with them.
+       NULL: the host gives them */
+    int (*balance)(spar_member *m, double dt);
+    /* after a step: what a little more of load_used, `load` [nodes][6], adds to m->after: `motion` [nodes][6],
        displacements and small turns, global axes, to first order and over the last substep. 0, or 1: there is no
        answer. NULL: loads move nothing */
     int (*answer)(spar_member *m, const double *load, double *motion);

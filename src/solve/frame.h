@@ -66,6 +66,8 @@ typedef struct spari_frame {
 /* Takes the motion at t^n from member->now. */
 void spari_frame_restart(spari_frame *frame, const spar_member *member);
 int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
+/* Accelerations at t^0 under load_history[0], for steps dt; writes m->after. */
+int spari_frame_balance(spari_frame *frame, spar_member *member, double dt);
 /* As the row's. */
 int spari_frame_answer(spari_frame *frame, const spar_member *member, const double *load, double *motion);
 void spari_frame_accept(spari_frame *frame);

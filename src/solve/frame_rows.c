@@ -196,6 +196,10 @@ static int frame_advance(spar_member *m, double dt) {
     return spari_frame_advance(m->solution, m, dt);
 }
 
+static int frame_balance(spar_member *m, double dt) {
+    return spari_frame_balance(m->solution, m, dt);
+}
+
 static void frame_accept(spar_member *m) {
     spari_frame_accept(m->solution);
 }
@@ -291,12 +295,12 @@ static void frame_publish(spar_member *m) {
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
-    .free = frame_free, .restart = frame_restart, .advance = frame_advance, .answer = frame_answer,                    \
-    .accept = frame_accept, .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, \
-    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
-    .shape = frame_shape, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,              \
-    .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of,                       \
-    .publish = frame_publish
+    .free = frame_free, .restart = frame_restart, .advance = frame_advance, .balance = frame_balance,                  \
+    .answer = frame_answer, .accept = frame_accept, .effort = frame_effort, .rest = frame_rest,                        \
+    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
+    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .state_size = frame_state_size,        \
+    .save = frame_save, .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame,                     \
+    .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

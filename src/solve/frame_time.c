@@ -461,10 +461,18 @@ static int substep_of_frame(void *self, const spar_member *m, const spari_scheme
     return SPAR_OK;
 }
 
+static const spari_integrand in_frame = {start_frame, begin_frame, substep_of_frame};
+
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
-    static const spari_integrand how = {start_frame, begin_frame, substep_of_frame};
     spari_scheme_loads(m, &f->steps);
-    SPARI_TRY(spari_scheme_advance(&how, f, &f->steps, 6 * f->nodes, m, m->body->D != NULL, dt));
+    SPARI_TRY(spari_scheme_advance(&in_frame, f, &f->steps, 6 * f->nodes, m, m->body->D != NULL, dt));
+    spari_frame_publish(f, m, &f->to);
+    return SPAR_OK;
+}
+
+int spari_frame_balance(spari_frame *f, spar_member *m, double dt) {
+    spari_scheme_loads(m, &f->steps);
+    SPARI_TRY(spari_scheme_balance(&in_frame, f, &f->steps, m, dt));
     spari_frame_publish(f, m, &f->to);
     return SPAR_OK;
 }

@@ -49,14 +49,24 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
     memcpy(to->a, from->a, (size_t)m->nodes * 6 * sizeof *to->a);
 }
 
+/* Before the first step those accelerations count that a balanced start begins with, not those that it has found. */
 static void restart_solution(spar_member *m) {
+    double *found = m->now.a;
     if (m->row->restart && spari_fidelity_is_here(m)) {
+        m->now.a = m->begun ? m->begun : found;
         m->row->restart(m);
+        m->now.a = found;
     }
+}
+
+static void forget_begun(spar_member *m) {
+    free(m->begun);
+    m->begun = NULL;
 }
 
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
+    forget_begun(m);
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
         m->drive[k] = spari_pose_of(m->now.q, m->now.v, m->now.a);
@@ -94,6 +104,7 @@ void spari_member_accept(spar_member *m) {
     m->drive_given = m->motion_given = 0;
     m->dissipated += m->dissipated_step;
     m->dissipated_step = 0;
+    forget_begun(m);
     if (m->row->accept && spari_fidelity_is_here(m)) {
         m->row->accept(m);
     }
@@ -106,6 +117,34 @@ void spari_member_reject(spar_member *m) {
     m->dissipated_step = 0;
     if (m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
         restart_solution(m);
+    }
+}
+
+int spari_member_begin_start(spar_member *m) {
+    if (!m->begun) {
+        m->begun = spari_copy(m->now.a, 6 * m->nodes);
+        SPARI_REQUIRE(m->session, m->begun, SPAR_ERR_MEMORY, "no memory for the start of '%s'", m->name);
+    }
+    return SPAR_OK;
+}
+
+void spari_member_again(spar_member *m) {
+    if (m->row->moves) {
+        spari_member_reject(m);
+    } else if (m->motion_given) {
+        memcpy(m->now.a, m->after.a, (size_t)(6 * m->nodes) * sizeof(double));
+    }
+}
+
+void spari_member_end_start(spar_member *m, int found) {
+    const double *a = found ? m->after.a : m->row->moves ? m->now.a : m->begun;
+    memmove(m->now.a, a, (size_t)(6 * m->nodes) * sizeof(double));
+    if (found) {
+        copy_solved(m, 1, 0);
+    }
+    spari_member_reject(m);
+    if (found && m->work) {
+        spari_work_restart(m);
     }
 }
 
@@ -186,6 +225,7 @@ void spari_member_release(spar_member *m) {
         free(*spari_nodal_array(m, k));
         *spari_nodal_array(m, k) = NULL;
     }
+    forget_begun(m);
     spari_work_free(m->work);
     m->work = NULL;
     spari_added_free(m->added);
@@ -226,6 +266,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
     }
+    m->begun = NULL;
     m->work = NULL;
     m->added = NULL;
     m->applied = m->applied_next = NULL;

@@ -29,6 +29,11 @@ void spari_member_settle(spar_member *member);
 /* The step under way is accepted, or given up. */
 void spari_member_accept(spar_member *member);
 void spari_member_reject(spar_member *member);
+/* A balanced start: room for the accelerations that it begins with; back to these, but for what the host gives of an
+   external member; those found are those of t^0, or all is as it was. */
+int spari_member_begin_start(spar_member *member);
+void spari_member_again(spar_member *member);
+void spari_member_end_start(spar_member *member, int found);
 /* Puts the session's gravity in force. */
 void spari_member_gravity(spar_member *member);
 

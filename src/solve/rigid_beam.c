@@ -231,6 +231,13 @@ static void rigid_publish(spar_member *m) {
     spari_carried_move(m, &root, &m->after);
 }
 
+static int rigid_balance(spar_member *m, double dt) {
+    rigid_take_loads(m);
+    SPARI_TRY(spari_solver_balance(solver_of(m), m, dt));
+    rigid_publish(m);
+    return SPAR_OK;
+}
+
 /* ---- energy and modes ---- */
 
 /* A body that does not deform has no strain energy, to the last digit. */
@@ -308,6 +315,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .free = rigid_free,
     .restart = rigid_restart,
     .advance = rigid_advance,
+    .balance = rigid_balance,
     .answer = rigid_answer,
     .accept = rigid_accept,
     .effort = rigid_effort,

@@ -57,14 +57,26 @@ static int is_leap(double before, double h) {
     return before > 0 && h > 1.05 * before;
 }
 
+static int start_once(const spari_integrand *how, void *self, spari_steps *t, spar_member *m, const spari_scheme *c) {
+    if (!t->started && !c->still) {
+        SPARI_TRY(how->start(self, m, c));
+        t->started = 1;
+    }
+    return SPAR_OK;
+}
+
+int spari_scheme_balance(const spari_integrand *how, void *self, spari_steps *t, spar_member *m, double dt) {
+    const spari_scheme c = spari_scheme_of(m, 0, dt / m->session->substeps);
+    SPARI_TRY(start_once(how, self, t, m, &c));
+    (void)how->begin(self);
+    return SPAR_OK;
+}
+
 int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t, int loads, spar_member *m, int damped,
                          double dt) {
     int substeps = m->session->substeps;
     const spari_scheme c = spari_scheme_of(m, damped, dt / substeps);
-    if (!t->started && !c.still) {
-        SPARI_TRY(how->start(self, m, &c));
-        t->started = 1;
-    }
+    SPARI_TRY(start_once(how, self, t, m, &c));
     spari_part part = {.root = m->drive[0], .ratio = spari_scheme_ratio(t->h_begin, c.h)};
     part.leaps = !c.still && is_leap(t->h_begin, c.h);
     t->h_solved = c.h;

@@ -51,6 +51,8 @@ typedef struct spari_integrand {
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h);
 /* Loads at the ends of the step, fluid and dead ones, of the nodes. */
 void spari_scheme_loads(const spar_member *member, spari_steps *steps);
+/* Accelerations at t^0, for steps dt, under load0; then as a step begins. 0, or a status and a message of start. */
+int spari_scheme_balance(const spari_integrand *how, void *self, spari_steps *steps, spar_member *member, double dt);
 /* From t^n to t^n + dt in the session's substeps, under `loads` numbers between load0 and load1; writes
    member->dissipated_step. 0, or a status and a message of start or substep. */
 int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *steps, int loads, spar_member *member,

@@ -52,6 +52,8 @@ void spari_solver_restart(spari_solver *solver);
 /* From t^n to t^n + dt in the session's substeps, under steps.load0 and load1; leaves t^n alone, writes `to` and
    member->dissipated_step. */
 int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
+/* Accelerations at t^0 under steps.load0, for steps dt; `to` is the state there. */
+int spari_solver_balance(spari_solver *solver, spar_member *member, double dt);
 /* After that: what more load [n][6] on the nodes at the end adds to their motion [n][6], displacements and turns, to
    first order and over the last substep; load is spent. One back-substitution; a tangent is formed only where none is
    kept. 0, or 1: it is singular. */

@@ -65,6 +65,9 @@ static void carry_state(spar_member *old, spar_member *m) {
             spari_resample_loads(E, P, n, from, to);
         }
     }
+    if (old->begun) {
+        spari_resample_values(E, P, n, 6, -1, old->begun, m->now.a);
+    }
     spari_added_carry(old, m);
     spari_member_restart(m);
     memcpy(m->drive, old->drive, sizeof m->drive);

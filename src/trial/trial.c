@@ -13,6 +13,7 @@
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
+#include "../session/start.h"
 #include "../solve/life.h"
 #include "../solve/reaction.h"
 
@@ -425,11 +426,19 @@ static int share_costs(spar_session *s, spari_record *r) {
     return status;
 }
 
-/* The members and fluids there now are the trial's. */
-static int run_there(spar_session *s, const spari_run *run, spari_record *r) {
+/* As the host has begun its own run. */
+static int balance_start(spar_session *s, const spari_run *run, spari_record *r) {
+    int iterations = 0, status = spar_session_start(s, run->dt, run->solve, run->context, &iterations);
+    r->solutions += iterations;
+    return status;
+}
+
+/* The members and fluids there now are the trial's. balanced: the run begins with a balanced start. */
+static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
     sight w = {NULL, NULL};
     int status = record_create(s, r, &w);
     status = spari_session_seal(s, status);
+    status = status == SPAR_OK && balanced ? balance_start(s, run, r) : status;
     if (status == SPAR_OK) {
         look(s, w.start, w.start, NULL);
         status = march(s, run, &w, r);
@@ -470,13 +479,14 @@ static int share_failure(spar_session *s, int own) {
 
 int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
     stash t;
+    int balanced = spari_start_stands(s);
     *record = (spari_record){0};
     int status = stash_create(s, &t), away = status == SPAR_OK;
     status = away ? make_anew(s, &t, wish) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
     if (status == SPAR_OK) {
-        status = run_there(s, run, record);
+        status = run_there(s, run, balanced, record);
     }
     if (away) {
         go_back(s, &t);

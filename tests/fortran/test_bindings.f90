@@ -153,6 +153,8 @@ program test_bindings
   call refused(spar_step_accept(none), 'spar_step_accept')
   call refused(spar_step_reject(none), 'spar_step_reject')
   call refused(spar_step(none, 0.0_c_double, c_null_funptr, none), 'spar_step')
+  call refused(spar_session_start(none, 0.1_c_double, c_null_funptr, none), 'spar_session_start')
+  call refused(spar_step_begin_start(none, 0.1_c_double), 'spar_step_begin_start')
   call refused(spar_session_solve_static(none, 1_c_int, c_null_funptr, none), 'spar_session_solve_static')
   call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int, &
       0_c_int64_t), &

@@ -383,6 +383,21 @@ void do_spar_step(call *c) {
     RUN(c, spar_step(l->s, dt, solve, h, iterations));
 }
 
+void do_spar_session_start(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    spar_fluid_solver solve;
+    host *h = arg_host(c, &solve, NULL);
+    int *iterations = arg_out(c, sizeof *iterations, 1);
+    RUN(c, spar_session_start(l->s, dt, solve, h, iterations));
+}
+
+void do_spar_step_begin_start(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    RUN(c, spar_step_begin_start(l->s, dt));
+}
+
 void do_spar_session_solve_static(call *c) {
     live_session *l = arg_session(c);
     int load_steps = arg_limit(c, 1, 3);

@@ -171,6 +171,8 @@ enum {
     CALL(spar_step_accept, 250, FUZZ_CHANGES)                                                                          \
     CALL(spar_step_reject, 100, FUZZ_CHANGES)                                                                          \
     CALL(spar_step, 250, FUZZ_CHANGES)                                                                                 \
+    CALL(spar_session_start, 60, FUZZ_CHANGES)                                                                         \
+    CALL(spar_step_begin_start, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_session_solve_static, 60, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_save, 20, FUZZ_PURE)                                                                             \
     CALL(spar_session_load, 20, FUZZ_CHANGES)                                                                          \

@@ -95,7 +95,8 @@ static void blades(writer *w) {
 }
 
 static void step(writer *w) {
-    put(w, CALL_spar_step_begin, STYLE_GOOD | STYLE_RECENT);
+    part(w, 10, CALL_spar_session_start);
+    put(w, roll(w, 20) == 0 ? CALL_spar_step_begin_start : CALL_spar_step_begin, STYLE_GOOD | STYLE_RECENT);
     for (int k = 1 + (roll(w, 4) == 0) * roll(w, 4); k > 0; k--) {
         put(w, CALL_spar_step_solve, STYLE_GOOD | STYLE_RECENT);
         part(w, 50, CALL_spar_fluid_pull_motion);

@@ -240,7 +240,8 @@ static void check_state(const call *c) {
         }
         parts[2] = c->index != CALL_spar_aero_solve;
     }
-    if (c->index == CALL_spar_step || c->index == CALL_spar_session_solve_static) {
+    if (c->index == CALL_spar_step || c->index == CALL_spar_session_start ||
+        c->index == CALL_spar_session_solve_static) {
         parts[1] = parts[2] = 0;
     }
     parts[2] = parts[2] && !(flags & FUZZ_TRIAL);

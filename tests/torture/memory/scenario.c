@@ -610,6 +610,12 @@ static void act_equilibrium(void) {
             h.fluid[k] = begin_fluid(b, k ? "m" : "e", 10, &h.n[k], h.x[k]);
             CALL(spar_fluid_map, h.fluid[k]);
         }
+        int calls = 0;
+        CALL(spar_session_start, s, 0.02, solve, &h, &calls);
+        note(&calls, sizeof calls);
+        CALL(spar_step_begin_start, s, 0.02);
+        CALL(spar_step_solve, s);
+        CALL(spar_step_reject, s);
         for (int k = 0; k < 2; k++) {
             int iterations = 0;
             CALL(spar_session_solve_static, s, 2, solve, &h, &iterations);

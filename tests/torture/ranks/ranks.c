@@ -234,6 +234,12 @@ static int make_step(scene *c, const arguments *a) {
 static int make_equilibrium(scene *c, const arguments *a) {
     return spar_session_solve_static(c->session, a->load_steps, a->solve, c, NULL);
 }
+static int make_start(scene *c, const arguments *a) {
+    return spar_session_start(c->session, a->dt, a->solve, c, NULL);
+}
+static int make_begin_start(scene *c, const arguments *a) {
+    return spar_step_begin_start(c->session, a->dt);
+}
 static int make_save(scene *c, const arguments *a) {
     return spar_session_save(c->session, a->path);
 }
@@ -305,6 +311,8 @@ static const struct call {
     {"spar_fluid_check_total", make_check_total, IDLE, POINT | SETTINGS},
     {"spar_step", make_step, IDLE, DT | SETTINGS},
     {"spar_session_solve_static", make_equilibrium, FIRST, LOAD_STEPS | SETTINGS},
+    {"spar_session_start", make_start, FIRST, DT | SETTINGS},
+    {"spar_step_begin_start", make_begin_start, FIRST, DT | SETTINGS},
     {"spar_session_save", make_save, IDLE, PATH | SETTINGS},
     {"spar_session_load", make_load, IDLE, PATH | SETTINGS},
     {"spar_session_try", make_try, IDLE, TRIAL | COMPARE},
@@ -321,7 +329,8 @@ enum {
     BEGIN = 5,
     STEP = 12,
     STATIC = 13,
-    TRY = 16,
+    BEGIN_START = 15,
+    TRY = 18,
     CALLS = sizeof calls / sizeof *calls
 };
 
@@ -916,7 +925,7 @@ static void inner_calls(void) {
                     }
                     start(INNER, "%s from a callback of %s on rank %d", calls[i].name, calls[outer].name, bad);
                     hit.inner = rank == bad ? where + i : 0;
-                    int status = calls[outer].make(&hit, &a), own = where == 1 && BEGIN <= i && i <= STATIC;
+                    int status = calls[outer].make(&hit, &a), own = where == 1 && BEGIN <= i && i <= BEGIN_START;
                     (void)alike(status, spar_session_message(hit.session));
                     if (own && rank == bad && hit.answer != SPAR_ERR_STATE) {
                         fail_case("does to what is under way what is its lender's", hit.answer, "");

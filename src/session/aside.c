@@ -1,0 +1,54 @@
+/* The coupling of a solution that is no step: columns and weights are of it alone, those of the steps know another map
+   and wait. */
+#include "coupling.h"
+
+#include "../comm/enter.h"
+#include "own.h"
+
+int spari_coupling_lay_aside(spar_session *s, int scheme) {
+    spari_coupling *own = NULL;
+    int status = spari_enter(s, "coupling", spari_coupling_create(s, scheme, 1, &own));
+    if (status != SPAR_OK) {
+        spari_coupling_free(&own);
+        return status;
+    }
+    s->own->aside = s->own->coupling;
+    s->own->coupling = own;
+    return SPAR_OK;
+}
+
+void spari_coupling_keep(spar_session *s) {
+    const spari_coupling *of_steps = s->own->aside;
+    if (of_steps) {
+        s->own->coupling->report[SPAR_REPORT_UNCONVERGED] = of_steps->report[SPAR_REPORT_UNCONVERGED];
+    }
+    spari_coupling_free(&s->own->aside);
+    s->coupling_stale = 1;
+}
+
+static void swap_lists(double **a, double **b) {
+    double *other = *a;
+    *a = *b;
+    *b = other;
+}
+
+void spari_coupling_take_back(spar_session *s) {
+    spari_coupling *own = s->own->coupling, *of_steps = s->own->aside;
+    if (!of_steps) {
+        s->coupling_stale = 1;
+        return;
+    }
+    int most = of_steps->most;
+    of_steps->most = own->most;
+    own->most = most;
+    of_steps->iterations = own->iterations;
+    swap_lists(&of_steps->residual, &own->residual);
+    swap_lists(&of_steps->size, &own->size);
+    for (int i = 0; i <= SPAR_REPORT_DROPPED; i++) {
+        of_steps->report[i] = own->report[i];
+    }
+    of_steps->report[SPAR_REPORT_ADDED_MASS_SPREAD] = own->report[SPAR_REPORT_ADDED_MASS_SPREAD];
+    s->own->coupling = of_steps;
+    s->own->aside = NULL;
+    spari_coupling_free(&own);
+}

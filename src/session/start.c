@@ -1,0 +1,157 @@
+/* The balanced start: accelerations and fluid loads at t^0 that belong together, M a + ... = F(q, v, a). It is iterated
+   as a step is, with the members' balance of forces at t^0 in place of their way to t^{n+1}; time stands meanwhile. */
+#include "start.h"
+
+#include "../comm/enter.h"
+#include "../fluid/fluid.h"
+#include "../member/joint.h"
+#include "../solve/assembly.h"
+#include "../solve/fidelity.h"
+#include "../solve/life.h"
+#include "coupling.h"
+#include "exchange.h"
+#include "own.h"
+
+#include <math.h>
+#include <string.h>
+
+static int check_start(spar_session *s, const char *call, double dt) {
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+                  call);
+    SPARI_REQUIRE(s, s->step == 0, SPAR_ERR_STATE,
+                  "%s: the clock has run to t = %g; a start is balanced before the first step", call, s->time);
+    SPARI_REQUIRE(s, isfinite(dt) && dt > 0, SPAR_ERR_ARGUMENT, "%s: dt is %g; give that of the first step, in seconds",
+                  call, dt);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
+                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
+    }
+    return spari_session_pushes(s, call);
+}
+
+static int room_for_start(spar_session *s) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        SPARI_TRY(spari_member_begin_start(m));
+    }
+    return SPAR_OK;
+}
+
+static void copy_start_loads(const spar_member *m, const double *from, double *to) {
+    memcpy(to, from, (size_t)(6 * m->nodes) * sizeof *to);
+}
+
+int spari_start_begin(spar_session *s, const char *call, double dt) {
+    static const double last[2] = {1, 1};
+    const spari_alike alike[] = {spari_real("dt", dt)};
+    SPARI_TRY(spari_enter_alike(s, call, alike, 1, check_start(s, call, dt)));
+    if (s->joints) {
+        SPARI_TRY(spari_named(s, call, spari_assemblies_make(s, call)));
+    }
+    SPARI_TRY(spari_named(s, call, spari_session_seal(s, room_for_start(s))));
+    SPARI_TRY(spari_session_exchange_loads(s, NULL));
+    int scheme = spari_coupling_scheme_of(s->scheme)->iterates ? s->scheme : SPAR_COUPLING_IQN_ILS;
+    SPARI_TRY(spari_named(s, call, spari_coupling_lay_aside(s, scheme)));
+    for (spar_member *m = s->members; m; m = m->next) {
+        copy_start_loads(m, m->load_pushed, m->load_before);
+        spari_session_take_loads(s, m, m->load_used);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_begin(f, 0, 1, last);
+    }
+    s->dt = dt;
+    s->iteration = s->iterating = s->failed = 0;
+    spari_coupling_begin(s);
+    s->started = s->standing = 1;
+    s->phase = SPARI_BEGUN;
+    return SPAR_OK;
+}
+
+/* From the same state every time. */
+static int balance_members(spar_session *s) {
+    int status = SPAR_OK;
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_reject(j);
+    }
+    for (spar_member *m = s->members; m; m = m->next) {
+        copy_start_loads(m, m->load_used, m->load_history[0]);
+        spari_member_again(m);
+    }
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        int own = !m->assembly && m->row->balance && spari_fidelity_is_here(m);
+        status = own ? m->row->balance(m, s->dt) : SPAR_OK;
+    }
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
+        status = spari_assembly_balance(a, s->dt);
+    }
+    return status;
+}
+
+int spari_start_solve(spar_session *s, const char *call) {
+    int status = balance_members(s);
+    for (const spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        int finite = spari_first_nonfinite(m->after.a, 6 * m->nodes) < 0;
+        status = finite
+                     ? SPAR_OK
+                     : spari_fail(s, SPAR_ERR_NUMERIC,
+                                  "member '%s': its accelerations are beyond the range of numbers at the start; look "
+                                  "at its loads, or at their units",
+                                  m->name);
+    }
+    status = spari_session_share_motion(s, status);
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (status == SPAR_OK) {
+            spari_member_solved(m, m->load_used);
+        } else { /* the half-solved iterate */
+            spari_member_again(m);
+        }
+    }
+    s->failed = 0;
+    s->phase = status == SPAR_OK ? SPARI_SOLVED : SPARI_BEGUN;
+    return spari_coupling_solve_failed(s, call, spari_named(s, call, status));
+}
+
+static void end_start(spar_session *s) {
+    s->phase = SPARI_IDLE;
+    s->started = s->standing = 0;
+}
+
+void spari_start_accept(spar_session *s) {
+    int checked = s->phase == SPARI_CHECKED;
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (!checked) {
+            copy_start_loads(m, m->load_used, m->load_pushed);
+        }
+        copy_start_loads(m, m->load_pushed, m->load_history[0]);
+        copy_start_loads(m, m->load_pushed, m->load_before);
+        spari_member_end_start(m, 1);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_end_start(j);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_settle(f);
+    }
+    spari_coupling_keep(s);
+    s->past = 0;
+    end_start(s);
+}
+
+void spari_start_reject(spar_session *s) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        copy_start_loads(m, m->load_before, m->load_pushed);
+        copy_start_loads(m, m->load_before, m->load_history[0]);
+        spari_member_end_start(m, 0);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_reject(j);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_reject(f);
+    }
+    spari_coupling_take_back(s);
+    end_start(s);
+}
+
+int spari_start_stands(const spar_session *s) {
+    return s->phase == SPARI_IDLE && s->members && s->members->begun;
+}
