@@ -24,13 +24,14 @@ typedef struct options {
     double wind, shear, gust, gust_start, gust_length, seconds, dt, mean, vtk_every;
     double elements, nodes, rho_inf, tolerance;
     double rpm, pitch; /* where the run begins; not finite: the published steady state of the wind */
+    double blade_modes, tower_modes;
     double no_plots, quiet, help;
-    const char *out, *data;
+    const char *out, *data, *blades, *tower;
 } options;
 
 static const struct {
     const char *name, *value;
-    size_t at; /* a number; of `out` and `data` a text; no value: a flag */
+    size_t at; /* a number; `most` 0: a text; no value: a flag */
     double least, most;
     const char *help;
 } table[] = {
@@ -46,6 +47,10 @@ static const struct {
     {"pitch", "DEG", offsetof(options, pitch), 0, 90, "pitch at the start [published, for the wind]"},
     {"elements", "N", offsetof(options, elements), 0, 1000, "beam elements of a blade, 0: rigid blades [1]"},
     {"nodes", "N", offsetof(options, nodes), 2, 24, "nodes of an element [10]"},
+    {"blades", "NAME", offsetof(options, blades), 0, 0, "how blades are solved: exact, linear, modal [exact]"},
+    {"blade-modes", "N", offsetof(options, blade_modes), 1, 1000, "of a modal blade [8]"},
+    {"tower", "NAME", offsetof(options, tower), 0, 0, "how the tower is solved: exact, linear, modal [exact]"},
+    {"tower-modes", "N", offsetof(options, tower_modes), 1, 1000, "of a modal tower [6]"},
     {"rho-inf", "R", offsetof(options, rho_inf), 0, 1, "spectral radius of generalised-alpha [0.8]"},
     {"tolerance", "R", offsetof(options, tolerance), 0, 1,
      "change of the loads that ends the coupling's iteration [1e-6]"},
@@ -87,9 +92,38 @@ static int read_option(options *o, int i, const char *text) {
     return 0;
 }
 
+/* SPAR_FIDELITY_* of a name; -1 with a line on stderr. */
+static int fidelity_of(const char *option, const char *name) {
+    for (int kind = SPAR_FIDELITY_LINEAR; kind <= SPAR_FIDELITY_EXACT; kind++) {
+        if (strcmp(name, rotor_fidelity_name(kind)) == 0) {
+            return kind;
+        }
+    }
+    fprintf(stderr, "turbine: --%s %s: exact, linear or modal is wanted\n", option, name);
+    return -1;
+}
+
 static int read_options(options *o, int argc, char **argv) {
-    *o = (options){8,  0,   6,    20,  20,  60, 0.02, 20, 0.5,           1,
-                   10, 0.8, 1e-6, NAN, NAN, 0,  0,    0,  "turbine-out", SPAR_DATA_DIR "/nrel5mw"};
+    *o = (options){.wind = 8,
+                   .gust = 6,
+                   .gust_start = 20,
+                   .gust_length = 20,
+                   .seconds = 60,
+                   .dt = 0.02,
+                   .mean = 20,
+                   .vtk_every = 0.5,
+                   .elements = 1,
+                   .nodes = 10,
+                   .rho_inf = 0.8,
+                   .tolerance = 1e-6,
+                   .rpm = NAN,
+                   .pitch = NAN,
+                   .blade_modes = 8,
+                   .tower_modes = 6,
+                   .out = "turbine-out",
+                   .data = SPAR_DATA_DIR "/nrel5mw",
+                   .blades = "exact",
+                   .tower = "exact"};
     for (int k = 1; k < argc; k++) {
         int i = 0;
         while (i < OPTIONS && (strncmp(argv[k], "--", 2) != 0 || strcmp(argv[k] + 2, table[i].name) != 0)) {
@@ -107,7 +141,7 @@ static int read_options(options *o, int argc, char **argv) {
             return 1;
         }
     }
-    return 0;
+    return fidelity_of("blades", o->blades) < 0 || fidelity_of("tower", o->tower) < 0;
 }
 
 /* ---- the scene ---- */
@@ -162,7 +196,18 @@ static int set_up(scene *s) {
     rotor_operating_point(o->wind, &rpm, &pitch);
     rpm = isfinite(o->rpm) ? o->rpm : rpm;
     pitch = (isfinite(o->pitch) ? o->pitch : pitch) * pi / 180;
-    const turbine_options how = {o->data, (int)o->elements, (int)o->nodes, 1, 8, pitch, s->rank, s->ranks, 0, 0};
+    const turbine_options how = {.data = o->data,
+                                 .elements = (int)o->elements,
+                                 .nodes = (int)o->nodes,
+                                 .tower_elements = 1,
+                                 .tower_nodes = 8,
+                                 .pitch = pitch,
+                                 .rank = s->rank,
+                                 .ranks = s->ranks,
+                                 .blades = fidelity_of("blades", o->blades),
+                                 .tower = fidelity_of("tower", o->tower),
+                                 .blade_modes = (int)o->blade_modes,
+                                 .tower_modes = (int)o->tower_modes};
     TRY(ranks_create_session(s->ranks, &s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, 1));
