@@ -153,7 +153,9 @@ enum {
     SPAR_REPORT_COLUMNS = 2,     /* IQN-ILS: columns in the last least-squares problem */
     SPAR_REPORT_DROPPED = 3,     /* IQN-ILS: nearly dependent columns filtered out in this step */
     SPAR_REPORT_ERROR = 4,       /* last accepted step: |final loads - predicted loads| / |final loads| */
-    SPAR_REPORT_ADVISED_DT = 5,  /* dt at which that error is option coupling.target, within 0.1 to 2 of dt */
+    SPAR_REPORT_ADVISED_DT = 5,  /* dt, within 0.1 to 2 of this step's, with which that error stays below option
+                                    coupling.target in 95 % of the steps: a run that follows it keeps it so, once it has
+                                    some tens of steps behind it; it says nothing of a single step */
     SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
     SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
     SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
@@ -245,7 +247,7 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
      coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also goes on until the nodes move from one
                             iteration to the next by no more than atol + rtol times their way since t^n (root of the
                             sum of squares; turns count times the member's length)
-     coupling.target        1e-15 to 1, default 0.01: the error that the advised dt aims at
+     coupling.target        1e-15 to 1, default 0.01: the error that the advised dt keeps
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
                             (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING

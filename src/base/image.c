@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { VERSION = 5, HEAD_BYTES = 24, CHECK_BYTES = 8 };
+enum { VERSION = 6, HEAD_BYTES = 24, CHECK_BYTES = 8 };
 
 static const char magic[8] = {'s', 'p', 'a', 'r', '-', 'r', 'u', 'n'};
 
