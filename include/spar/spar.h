@@ -191,7 +191,8 @@ SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
            that spins at Omega without a driven root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5
            Omega dt
      substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
-           default 1 */
+           default 1. More than one: fluids pull means of accelerations (spar_fluid_pull_sections)
+   SPAR_ERR_MEMORY: all is as before. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
 /* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
@@ -870,7 +871,9 @@ SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, 
 /* At the same nodes and time. Each NULL: not wanted.
      q[n][4]: out, orientation of the section now, scalar part >= 0
      omega[n][3]: out, rad/s
-     accel[n][3]: out, acceleration of the node, m/s^2 */
+     accel[n][3]: out, acceleration of the node, m/s^2; with substeps, of a member without a guess of the added mass,
+   the mean over the step carried on to its end by the mean before, (T20), of second order too: one that an added mass
+   may answer to */
 SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
 /* All of a section's motion at once, for blade element hosts, at the motion nodes. Each NULL: not wanted.
      x[n][3]: out, m

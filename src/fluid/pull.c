@@ -1,6 +1,7 @@
 /* Motion of members, out to the fluid's nodes. */
 #include "../base/quiet.h"
 #include "../math/rotation.h"
+#include "../member/means.h"
 #include "state.h"
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
    geodesic of rotations. */
 static void blend_motion(const spar_member *m, int64_t first, double theta, double (*q)[7], double (*v)[6],
                          double (*a)[6]) {
-    const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first;
+    const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first, *a0 = spari_means_seen(m, 0),
+                 *a1 = spari_means_seen(m, 1);
     for (int l = 0; l < m->per_element; l++, q0 += 7, q1 += 7) {
         double back[4], turn[4], psi[3];
         for (int i = 0; i < 3; i++) {
@@ -40,7 +42,7 @@ static void blend_motion(const spar_member *m, int64_t first, double theta, doub
         for (int i = 0; i < 6; i++) {
             int64_t k = 6 * (first + l) + i;
             v[l][i] = (1 - theta) * m->now.v[k] + theta * m->after.v[k];
-            a[l][i] = (1 - theta) * m->now.a[k] + theta * m->after.a[k];
+            a[l][i] = (1 - theta) * a0[k] + theta * a1[k];
         }
     }
 }
@@ -56,10 +58,12 @@ static void fill_blended(const spar_fluid *fluid, double theta, int upto) {
     }
 }
 
-static void fill_one(const spar_fluid *fluid, const spari_motion *at, int upto, double *field) {
+/* At t^n (after: 0), or after. */
+static void fill_one(const spar_fluid *fluid, int after, int upto, double *field) {
     const spar_member *m = fluid->member;
-    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, at->q, at->v, at->a,
-                     field);
+    const spari_motion *at = after ? &m->after : &m->now;
+    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, at->q, at->v,
+                     spari_means_seen(m, after), field);
 }
 
 static int is_between(double theta) {
@@ -71,7 +75,7 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
     const spar_member *m = fluid->member;
     share[0] = 1, share[1] = 0;
     if (!is_between(theta)) {
-        fill_one(fluid, theta == 0 ? &m->now : &m->after, upto, fluid->field[0]);
+        fill_one(fluid, theta != 0, upto, fluid->field[0]);
         return 1;
     }
     if (m->session->theta_on_group) {
@@ -79,8 +83,8 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
         return 1;
     }
     share[0] = theta, share[1] = 1 - theta;
-    fill_one(fluid, &m->after, upto, fluid->field[0]);
-    fill_one(fluid, &m->now, upto, fluid->field[1]);
+    fill_one(fluid, 1, upto, fluid->field[0]);
+    fill_one(fluid, 0, upto, fluid->field[1]);
     return 2;
 }
 
@@ -401,8 +405,8 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     SPARI_TRY(need_second(fluid, __func__));
     states t = {.n = 2, .buf = {a, second_tile(fluid)}};
     if (s && s->n > 0) {
-        fill_one(fluid, &fluid->member->now, SPARI_UPTO_PLACE, fluid->field[0]);
-        fill_one(fluid, &fluid->member->after, SPARI_UPTO_PLACE, fluid->field[1]);
+        fill_one(fluid, 0, SPARI_UPTO_PLACE, fluid->field[0]);
+        fill_one(fluid, 1, SPARI_UPTO_PLACE, fluid->field[1]);
     }
     for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
         for (int i = 0; i < t.n; i++) {

@@ -25,6 +25,7 @@ typedef struct spari_assembly spari_assembly; /* src/solve/tied.h: members that 
 typedef struct spari_work spari_work;         /* src/solve/work.h: the work done on a member */
 typedef struct spari_applied spari_applied;   /* src/member/applied.h: follower loads and loads along the line */
 typedef struct spari_remake spari_remake;     /* src/trial/remake.h: a member made anew for a trial */
+typedef struct spari_means spari_means;       /* src/member/means.h: accelerations over a step of several substeps */
 typedef struct spari_added spari_added;       /* src/member/added.h: a guess of the fluid's added mass */
 typedef struct spari_body spari_body;         /* src/member/body.h: what of it is solved, on every rank */
 
@@ -94,6 +95,7 @@ struct spar_member {
     spari_assembly *assembly;           /* it is solved with others; NULL: alone */
     spari_work *work;                   /* NULL: not asked for */
     spari_added *added;   /* NULL: no guess of the added mass; else the loads above have lives of their own */
+    spari_means *means;   /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
     spari_remake *advice; /* of spar_session_advise; NULL: none */
 };
 

@@ -17,6 +17,7 @@
 #include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
+#include "../member/means.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 
@@ -129,6 +130,29 @@ static void pass_added(passage *t, spar_member *m) {
     }
 }
 
+/* Where there are substeps: in the file if there were any, and taken if there are here. */
+static void pass_means(passage *t, spar_member *m) {
+    spari_means none = {0}, *k = m->means ? m->means : &none;
+    double head[3] = {k->has[0], k->has[1], k->dt};
+    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, head, 3);
+    if (t->mode == CHECK && !t->image->failed) {
+        memcpy(head, in_file, sizeof head);
+        t->image->failed = (head[0] != 0 && head[0] != 1) || (head[1] != 0 && head[1] != 1) || !isfinite(head[2]);
+    }
+    if (head[0] != 0 || head[1] != 0) {
+        if (t->mode == CHECK) {
+            pass_numbers(t, NULL, 18 * m->nodes);
+        } else {
+            pass_kept(t, k->mean, 18 * m->nodes);
+        }
+    }
+    if (t->mode == READ) {
+        k->has[0] = head[0] != 0, k->has[1] = head[1] != 0;
+        k->dt = head[2];
+    }
+}
+
 static void pass_member(passage *t, spar_member *m) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         const spari_nodal *row = spari_nodal_table + k;
@@ -146,6 +170,7 @@ static void pass_member(passage *t, spar_member *m) {
     if (m->added) {
         pass_added(t, m);
     }
+    pass_means(t, m);
     if (t->mode == WRITE) {
         spari_applied_save(m, t->image);
     } else if (t->mode == CHECK) {

@@ -6,6 +6,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
+#include "../member/means.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
 #include "accelerate.h"
@@ -240,7 +241,18 @@ int spar_session_get_gravity(const spar_session *session, double g[3]) {
 }
 
 int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
-    return set(session, __func__, INTEGRATOR, (const double[]){rho_inf, substeps});
+    SPARI_QUIET;
+    const double given[] = {rho_inf, substeps};
+    SPARI_TRY(check_given(session, __func__, INTEGRATOR, given));
+    int status = SPAR_OK, before = session->substeps;
+    session->substeps = substeps;
+    for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
+        status = m->committed ? spari_means_keep(m) : SPAR_OK;
+    }
+    session->substeps = before;
+    SPARI_TRY(spari_named(session, __func__, status));
+    store_given(session, INTEGRATOR, given);
+    return SPAR_OK;
 }
 
 int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps) {

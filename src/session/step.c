@@ -2,6 +2,7 @@
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
 #include "../member/added.h"
+#include "../member/means.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
@@ -187,6 +188,9 @@ int spar_step_solve(spar_session *session) {
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_solved(m, m->load_used);
+        if (m->means) {
+            spari_means_find(m);
+        }
         if (m->added) {
             spari_added_see(m);
             spari_added_correct(m, -1, m->load_solved[1]);

@@ -9,6 +9,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
+#include "../member/means.h"
 #include "fidelity.h"
 #include "work.h"
 
@@ -67,6 +68,7 @@ static void forget_begun(spar_member *m) {
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
+    spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
         m->drive[k] = spari_pose_of(m->now.q, m->now.v, m->now.a);
@@ -98,6 +100,9 @@ void spari_member_accept(spar_member *m) {
     if (m->work) {
         spari_work_step(m);
     }
+    if (m->means) {
+        spari_means_accept(m);
+    }
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     m->drive[0] = m->drive[1];
@@ -115,6 +120,9 @@ void spari_member_reject(spar_member *m) {
     copy_solved(m, 0, 1);
     m->motion_given = 0;
     m->dissipated_step = 0;
+    if (m->means) {
+        spari_means_reject(m);
+    }
     if (m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
         restart_solution(m);
     }
@@ -230,6 +238,8 @@ void spari_member_release(spar_member *m) {
     m->work = NULL;
     spari_added_free(m->added);
     m->added = NULL;
+    spari_means_free(m->means);
+    m->means = NULL;
     spari_applied_free(m->applied);
     spari_applied_free(m->applied_next);
     m->applied = m->applied_next = NULL;
@@ -269,6 +279,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     m->begun = NULL;
     m->work = NULL;
     m->added = NULL;
+    m->means = NULL;
     m->applied = m->applied_next = NULL;
     m->solution = NULL;
     m->body = NULL;
@@ -309,6 +320,7 @@ int spari_member_build(spar_member *m) {
     if (m->row->solved) {
         SPARI_TRY(build_body(m));
         SPARI_TRY(spari_added_create(m, m->row->whole));
+        SPARI_TRY(spari_means_keep(m));
     }
     if (m->row->create) {
         int status = m->row->create(m);

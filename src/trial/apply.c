@@ -8,6 +8,7 @@
 #include "../math/predictor.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
+#include "../member/means.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
 #include "../solve/work.h"
@@ -96,6 +97,7 @@ static int remake_members(spar_session *s, change *c) {
         if (is_as_advised(m) && !(tied && spari_member_is_tied(m))) {
             SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
+            SPARI_TRY(spari_means_keep(m));
             continue;
         }
         anew *a = &c->made[c->count++];

@@ -7,6 +7,7 @@
 #include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
+#include "../member/means.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
 
@@ -70,6 +71,7 @@ static void carry_state(spar_member *old, spar_member *m) {
     }
     spari_added_carry(old, m);
     spari_member_restart(m);
+    spari_means_carry(old, m);
     memcpy(m->drive, old->drive, sizeof m->drive);
 }
 
