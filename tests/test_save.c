@@ -173,8 +173,12 @@ static void same_bits(void **state) {
         spar_session_destroy(&r.session);
         create(&r, scheme, mass);
         p = (place){0, 0};
+        int part = calls / 25 + 1, k = 0, at = 0; /* one call of each part: 25 or a few less of each scheme */
         while (p.step < STEPS) {
-            if (rand() % calls < 25) { /* 25 or so of each scheme */
+            if (k % part == 0) {
+                at = k + rand() % part;
+            }
+            if (k++ == at) {
                 run fresh;
                 OK(r.session, spar_session_save(r.session, file));
                 create(&fresh, scheme, mass);
