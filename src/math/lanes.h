@@ -1,6 +1,8 @@
-/* What code needs that is compiled once for each width of vectors: see point_lanes.h and transfer/kernel.h. */
+/* What code needs that is compiled once for each width of vectors: see width.h. */
 #ifndef SPARI_LANES_H
 #define SPARI_LANES_H
+
+#include <string.h>
 
 #if defined(__GNUC__)
 #define SPARI_ALWAYS_INLINE __attribute__((always_inline))
@@ -9,5 +11,28 @@
 #define SPARI_ALWAYS_INLINE
 #define SPARI_UNROLL
 #endif
+
+/* SPARI_PLAIN_LANES (1, 2, 4, 8) builds the portable kernels alone at a width of choice, so that every width can be
+   tried on any processor. */
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <immintrin.h>
+#if !defined(SPARI_PLAIN_LANES)
+#define SPARI_X86 1
+#endif
+#endif
+
+/* How wide the vectors are that this processor has kernels for, `most` at most: 8, 4, or 0 for the portable ones. */
+static inline int spari_lanes_here(int most) {
+#ifdef SPARI_X86
+    if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+        return 8;
+    }
+    if (most >= 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        return 4;
+    }
+#endif
+    (void)most;
+    return 0;
+}
 
 #endif

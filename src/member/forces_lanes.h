@@ -1,8 +1,6 @@
 /* Forces of an element's points for one vector width: fields of the nodes summed to the points, what the points give
-   back, and its sum onto the nodes. Included by lanes.c once per width with the macros of point_lanes.h and
-     MADD(a,b,c) a b + c, rounded once where the processor can
-     SPLAT(p)    *p in every lane
-   No include guard: this is a body, not an interface. */
+   back, and its sum onto the nodes. Included by lanes.c once per width with the macros of math/width.h. No include
+   guard: this is a body, not an interface. */
 #include "point_lanes.h"
 
 /* ---- from nodes to points: lanes are points ---- */
@@ -186,7 +184,3 @@ TARGET static void NAME(collect)(int sloped, int P, int n, const double *phi, co
         NAME(sum_points)(0, P, n, phi, dphi, back, g);
     }
 }
-
-#undef L
-#undef HERE
-#undef ROW_OF

@@ -2,71 +2,19 @@
 #include "../math/basis.h"
 #include "point.h"
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#include <immintrin.h>
-#if !defined(SPARI_PLAIN_LANES)
-#define SPARI_X86 1
-#endif
-#endif
-
-/* Two lanes are in every processor that has lanes at all; more are asked for at run time. SPARI_PLAIN_LANES (1, 2, 4,
-   8) builds the portable kernel alone at a width of choice, so that every width can be tried on any processor. */
-#if defined(SPARI_PLAIN_LANES)
-#define W SPARI_PLAIN_LANES
-#elif defined(__GNUC__)
-#define W 2
-#else
-#define W 1
-#endif
-#define NAME(x) x##_plain
-#define TARGET
-#define MADD(a, b, c) ((a) * (b) + (c))
-#if W == 1
-#define SPLAT(p) (*(p))
-#else
-#define SPLAT(p) ((lanes_plain){0} + *(p))
-#endif
-#if W == 2 && defined(__SSE2__)
-#define ROOT(x) _mm_sqrt_pd(x)
-#endif
+#define SPARI_WIDTH 2
+#include "../math/width.h"
 #include "forces_lanes.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef ROOT
-#undef SPLAT
-
 #ifdef SPARI_X86
-
-#define W 4
-#define NAME(x) x##_avx2
-#define TARGET __attribute__((target("avx2,fma")))
-#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
-#define ROOT(x) _mm256_sqrt_pd(x)
-#define SPLAT(p) _mm256_broadcast_sd(p)
+#define SPARI_WIDTH 4
+#include "../math/width.h"
 #include "forces_lanes.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef ROOT
-#undef SPLAT
-
-#define W 8
-#define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f,avx512dq")))
-#define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
-#define ROOT(x) _mm512_sqrt_pd(x)
-#define SPLAT(p) _mm512_set1_pd(*(p))
+#define SPARI_WIDTH 8
+#include "../math/width.h"
 #include "forces_lanes.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef ROOT
-#undef SPLAT
 #endif
+#define SPARI_WIDTH 0
+#include "../math/width.h"
 
 /* The kernels of one instruction set; forces by what of its mass a section shows. */
 typedef struct force_kernels {
@@ -86,12 +34,14 @@ static const force_kernels avx2 = KERNELS(avx2), avx512 = KERNELS(avx512);
 /* For so many points, or nodes, side by side: no wider than they are many. */
 static const force_kernels *kernels_for(const spari_body *body, int count) {
 #ifdef SPARI_X86
-    int most = body->lanes ? body->lanes : SPARI_LANES;
-    if (most >= 8 && count > 4 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+    int most = body->lanes ? body->lanes : SPARI_LANES, fit = count > 4 ? 8 : count > 2 ? 4 : 2;
+    switch (spari_lanes_here(most < fit ? most : fit)) {
+    case 8:
         return &avx512;
-    }
-    if (most >= 4 && count > 2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    case 4:
         return &avx2;
+    default:
+        break;
     }
 #endif
     (void)body, (void)count;

@@ -76,15 +76,10 @@ void spari_lanes_collect(const spari_body *body, int e, const double *back, doub
 
 /* ---- one point ---- */
 
-#define W 1
-#define NAME(x) x##_one
-#define TARGET
+#define SPARI_WIDTH 1
+#include "../math/width.h"
 #include "point_lanes.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef L
-#undef HERE
-#undef ROW_OF
+#define SPARI_WIDTH 0
+#include "../math/width.h"
 
 #endif

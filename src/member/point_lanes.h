@@ -1,30 +1,8 @@
-/* What happens at quadrature points, W of them at once: one in each lane of a vector. Included once per width, with
-     W           points in a vector
-     NAME(x)     the name of x at this width
-     TARGET      function attributes of the instruction set
-     ROOT(x)     square root, where there is an instruction for it
-   and left with L, the vector, and HERE, how its functions begin, defined. With W = 1 it is plain C for one point.
-   No include guard: this is a body, not an interface. docs/theory.md, "The beam".
+/* What happens at quadrature points, W of them at once: one in each lane of a vector. Included once per width with the
+   macros of math/width.h. With W = 1 it is plain C for one point. No include guard: this is a body, not an interface.
+   docs/theory.md, "The beam".
 
    Lanes do not see each other and nothing is fused: a point's numbers have the same bits at every width. */
-
-#if W > 1
-typedef double NAME(lanes) __attribute__((vector_size(8 * W)));
-#else
-typedef double NAME(lanes);
-#endif
-#define L NAME(lanes)
-#define HERE TARGET static inline SPARI_ALWAYS_INLINE
-
-HERE L NAME(get)(const double *p) {
-    L v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
-HERE void NAME(put)(double *p, L v) {
-    memcpy(p, &v, sizeof v);
-}
 
 HERE L NAME(root)(L x) {
 #ifdef ROOT
@@ -40,6 +18,7 @@ HERE L NAME(root)(L x) {
 }
 
 /* Row i of a block: fields of points, or their properties. */
+#undef ROW_OF
 #define ROW_OF(block, i) NAME(get)((block) + SPARI_LANES * (i))
 
 HERE void NAME(rows)(const int n, const double *block, L *x) {

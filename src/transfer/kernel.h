@@ -1,40 +1,21 @@
-/* The transfer kernels for one vector width. Included by transfer.c once per width with
-     W           nodes in a vector
-     NAME(x)     the name of x at this width
-     TARGET      function attributes of the instruction set
-     MADD(a,b,c) a b + c, rounded once where the processor can
-     SPLAT(p)    *p in every lane
-   Without GNU vector types W is 1 and everything below is plain C. No include guard: this is a body, not an interface.
+/* The transfer kernels for one vector width. Included by transfer.c once per width with the macros of math/width.h; W
+   nodes are in a vector. Without GNU vector types W is 1 and everything below is plain C. No include guard: this is a
+   body, not an interface.
 
    Two vectors are worked on side by side (PAIR nodes): the chains of multiply-adds are then long enough apart to hide
    their latency, and each coefficient is spread over the lanes once for both. */
 
 #if W > 1
-typedef double NAME(lanes) __attribute__((vector_size(8 * W)));
 typedef int64_t NAME(bits) __attribute__((vector_size(8 * W)));
-#else
-typedef double NAME(lanes);
 #endif
-#define L NAME(lanes)
 #define PAIR (2 * W)
 #ifdef SPARI_SHUFFLEVECTOR /* lanes of a and of b, counted through */
 #define MIX(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
 #define MIX(a, b, ...) __builtin_shuffle(a, b, (NAME(bits)){__VA_ARGS__})
 #endif
-#define SPARI_INLINE TARGET static inline SPARI_ALWAYS_INLINE
 
-SPARI_INLINE L NAME(get)(const double *p) {
-    L v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
-SPARI_INLINE void NAME(put)(double *p, L v) {
-    memcpy(p, &v, sizeof v);
-}
-
-SPARI_INLINE L NAME(less)(L a, L b) {
+HERE L NAME(less)(L a, L b) {
 #if W > 1
     NAME(bits) m = a < b;
     return (L)(((NAME(bits))a & m) | ((NAME(bits))b & ~m));
@@ -44,7 +25,7 @@ SPARI_INLINE L NAME(less)(L a, L b) {
 }
 
 /* The lanes added in one fixed order. */
-SPARI_INLINE double NAME(total)(L v) {
+HERE double NAME(total)(L v) {
     double t[W], s = 0;
     memcpy(t, &v, sizeof v);
     for (int i = 0; i < W; i++) {
@@ -53,7 +34,7 @@ SPARI_INLINE double NAME(total)(L v) {
     return s;
 }
 
-SPARI_INLINE double NAME(least)(L v) {
+HERE double NAME(least)(L v) {
     double t[W], s;
     memcpy(t, &v, sizeof v);
     s = t[0];
@@ -66,7 +47,7 @@ SPARI_INLINE double NAME(least)(L v) {
 /* ---- triples in memory, rows in the tile ---- */
 
 /* W triples x0 y0 z0 x1 ... from three vectors, and back. */
-SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
+HERE void NAME(weave)(L x, L y, L z, double *out) {
 #if W == 2
     NAME(put)(out, MIX(x, y, 0, 2));
     NAME(put)(out + 2, MIX(z, x, 0, 3));
@@ -88,7 +69,7 @@ SPARI_INLINE void NAME(weave)(L x, L y, L z, double *out) {
 #endif
 }
 
-SPARI_INLINE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
+HERE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
 #if W == 2
     L a = NAME(get)(in), b = NAME(get)(in + 2), c = NAME(get)(in + 4);
     *x = MIX(a, b, 0, 3);
@@ -142,7 +123,7 @@ TARGET static void NAME(load_triples)(const double *in, int count, double (*row)
 /* ---- sums over the modes ---- */
 
 /* T_k of a pair of vectors, row k at t + k * stride. */
-SPARI_INLINE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stride) {
+HERE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stride) {
     static const double one = 1;
     L a0 = SPLAT(&one), b0 = a0, a1 = x[0], b1 = x[1], a2 = a1 + a1, b2 = b1 + b1;
     NAME(put)(t, a0);
@@ -156,7 +137,7 @@ SPARI_INLINE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdif
 }
 
 /* s[f] and s[n + f] = sum_k T_k c[k][f] for the first and the second vector. n is a constant where this is inlined. */
-SPARI_INLINE void NAME(sum)(const int n, int modes, const double *c, const double *t, const ptrdiff_t stride, L *s) {
+HERE void NAME(sum)(const int n, int modes, const double *c, const double *t, const ptrdiff_t stride, L *s) {
     L a[6], b[6];
     SPARI_UNROLL
     for (int f = 0; f < n; f++) {
@@ -180,17 +161,17 @@ SPARI_INLINE void NAME(sum)(const int n, int modes, const double *c, const doubl
 
 /* ---- rotations ---- */
 
-SPARI_INLINE void NAME(cross)(const L *a, const L *b, L *c) {
+HERE void NAME(cross)(const L *a, const L *b, L *c) {
     L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     c[0] = x, c[1] = y, c[2] = z;
 }
 
-SPARI_INLINE L NAME(square)(const L *q) {
+HERE L NAME(square)(const L *q) {
     return (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]);
 }
 
 /* r = R(Q / |Q|) c without a square root: c + 2 / |Q|^2 (w u x c + u x (u x c)) */
-SPARI_INLINE void NAME(turn)(const L *q, L over, const L *c, L *r) {
+HERE void NAME(turn)(const L *q, L over, const L *c, L *r) {
     L t[3], s[3], g = over + over;
     NAME(cross)(q + 1, c, t);
     NAME(cross)(q + 1, t, s);
@@ -200,7 +181,7 @@ SPARI_INLINE void NAME(turn)(const L *q, L over, const L *c, L *r) {
 }
 
 /* vector part of D Q* / |Q|^2: omega for D = 2 dQ/dt */
-SPARI_INLINE void NAME(spin)(const L *d, const L *q, L over, L *w) {
+HERE void NAME(spin)(const L *d, const L *q, L over, L *w) {
     L t[3];
     NAME(cross)(d + 1, q + 1, t);
     for (int i = 0; i < 3; i++) {
@@ -210,7 +191,7 @@ SPARI_INLINE void NAME(spin)(const L *d, const L *q, L over, L *w) {
 
 /* ---- motion out ---- */
 
-SPARI_INLINE void NAME(put_row)(int width, const L *x, double (*row)[SPARI_ROW], int at) {
+HERE void NAME(put_row)(int width, const L *x, double (*row)[SPARI_ROW], int at) {
     SPARI_UNROLL
     for (int i = 0; i < width; i++) {
         NAME(put)(row[i] + at, x[i]);
@@ -218,8 +199,8 @@ SPARI_INLINE void NAME(put_row)(int width, const L *x, double (*row)[SPARI_ROW],
 }
 
 /* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. */
-SPARI_INLINE void NAME(accelerate)(const int consistent, const L *q, L over, const L *r, const L *d, const L *w,
-                                   const L *wr, const L *accel, const L *twist, double (*buf)[SPARI_ROW], int at) {
+HERE void NAME(accelerate)(const int consistent, const L *q, L over, const L *r, const L *d, const L *w, const L *wr,
+                           const L *accel, const L *twist, double (*buf)[SPARI_ROW], int at) {
     L alpha[3], wt[3], ar[3];
     if (consistent) {
         L rate = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2] + d[3] * q[3]) * over;
@@ -239,8 +220,8 @@ SPARI_INLINE void NAME(accelerate)(const int consistent, const L *q, L over, con
 }
 
 /* PAIR nodes of one element; in: xi and con of either vector. Returns the lesser |Q|^2, lane by lane. */
-SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
-                          double (*buf)[SPARI_ROW], int at) {
+HERE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
+                  double (*buf)[SPARI_ROW], int at) {
     const int spins = consistent ? 4 : 3, upto = what & SPARI_UPTO, poses = what & SPARI_POSES;
     double t[SPARI_MAX_NODES * PAIR];
     const int linear = upto >= SPARI_UPTO_RATE ? 6 : 3; /* place, and velocity behind it */
@@ -291,7 +272,7 @@ SPARI_INLINE L NAME(move)(int modes, const double *c, const int consistent, cons
 }
 
 /* PAIR values of n rows; what lies beyond the end of a run repeats the last node, so that every lane is a real one. */
-SPARI_INLINE void NAME(fetch)(const double *const *from, const int n, int64_t p, int count, L (*to)[2]) {
+HERE void NAME(fetch)(const double *const *from, const int n, int64_t p, int count, L (*to)[2]) {
     if (count >= PAIR) {
         SPARI_UNROLL
         for (int f = 0; f < n; f++) {
@@ -308,8 +289,8 @@ SPARI_INLINE void NAME(fetch)(const double *const *from, const int n, int64_t p,
     }
 }
 
-SPARI_INLINE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
-                              const int what, double (*buf)[SPARI_ROW], int at) {
+HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
+                      const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     L least = SPLAT(&huge), in[4][2];
@@ -322,7 +303,7 @@ SPARI_INLINE double NAME(run)(const spari_nodes *s, int64_t first, int count, co
 
 /* ---- one node for all: a point, a rigid body; nothing of its motion is found node by node ---- */
 
-SPARI_INLINE void NAME(splat)(const int n, const double *from, L *to) {
+HERE void NAME(splat)(const int n, const double *from, L *to) {
     SPARI_UNROLL
     for (int i = 0; i < n; i++) {
         to[i] = SPLAT(from + i);
@@ -330,7 +311,7 @@ SPARI_INLINE void NAME(splat)(const int n, const double *from, L *to) {
 }
 
 /* r = R c */
-SPARI_INLINE void NAME(rotate)(const L *turn, const L *c, L *r) {
+HERE void NAME(rotate)(const L *turn, const L *c, L *r) {
     SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         r[i] = MADD(turn[3 * i + 2], c[2], MADD(turn[3 * i + 1], c[1], turn[3 * i] * c[0]));
@@ -338,7 +319,7 @@ SPARI_INLINE void NAME(rotate)(const L *turn, const L *c, L *r) {
 }
 
 /* Triples a + b of W nodes to the host's, of which `count` are there. */
-SPARI_INLINE void NAME(give)(const L *a, const L *b, int count, double *out) {
+HERE void NAME(give)(const L *a, const L *b, int count, double *out) {
     double part[3 * W];
     NAME(weave)(a[0] + b[0], a[1] + b[1], a[2] + b[2], count < W ? part : out);
     if (count < W) {
@@ -347,8 +328,8 @@ SPARI_INLINE void NAME(give)(const L *a, const L *b, int count, double *out) {
 }
 
 /* Places and velocities of all nodes to the host's triples, without a tile between them. */
-SPARI_INLINE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int places, const int rates, double *x,
-                                  double *v) {
+HERE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int places, const int rates, double *x,
+                          double *v) {
     L turn[9], place[3], rate[3], w[3];
     NAME(splat)(9, m->turn, turn);
     NAME(splat)(3, m->place, place);
@@ -387,8 +368,8 @@ TARGET static void NAME(carry_to)(const spari_nodes *s, const carrier *m, double
 }
 
 /* The rows of a tile. */
-SPARI_INLINE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
-                              double (*buf)[SPARI_ROW]) {
+HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
+                      double (*buf)[SPARI_ROW]) {
     const double *const *from = (const double *const *)s->con;
     const int upto = what & SPARI_UPTO;
     L turn[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
@@ -489,8 +470,8 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
 /* ---- loads in ---- */
 
 /* What the audit wants to know of one vector: totals of the fluid's side, largest sizes (as least negatives). */
-SPARI_INLINE void NAME(audit)(const int has_moment, const L *place, const L *r, const L *rate, const L *w, const L *f,
-                              const L *m, L *sums, L *tops) {
+HERE void NAME(audit)(const int has_moment, const L *place, const L *r, const L *rate, const L *w, const L *f,
+                      const L *m, L *sums, L *tops) {
     L x[3], v[3], xf[3];
     NAME(cross)(w, r, v);
     for (int i = 0; i < 3; i++) {
@@ -514,8 +495,8 @@ SPARI_INLINE void NAME(audit)(const int has_moment, const L *place, const L *r, 
 }
 
 /* Moments at the feet of PAIR nodes, into the rows g at `at`; their T_k into t. in: xi, con, force, moment. */
-SPARI_INLINE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
-                           const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
+HERE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
+                   const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
     const int spins = consistent ? 4 : 3;
     L quat[8], place[12], spin[8], least[2];
     NAME(chebyshev)(modes, in[0], t, SPARI_ROW);
@@ -562,8 +543,8 @@ SPARI_INLINE L NAME(lever)(int modes, const double *c, const int consistent, con
 }
 
 /* sum_k over one run: modal[k][f] += sum_i t[k][i] row_f[i]; two k at a time keep their sums in registers. */
-SPARI_INLINE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
-                                double (*g)[SPARI_ROW], int at, double *modal) {
+HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
+                        double (*g)[SPARI_ROW], int at, double *modal) {
     static const double zero = 0;
     for (int k = 0; k < modes; k += 2) {
         int k1 = k + 1 < modes ? k + 1 : k;
@@ -591,7 +572,7 @@ SPARI_INLINE void NAME(project)(const int rows, int modes, int count, double (*t
 }
 
 /* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
-SPARI_INLINE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int at, int count, L (*to)[2]) {
+HERE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int at, int count, L (*to)[2]) {
     const double *from[6] = {f[0], f[1], f[2], f[3], f[4], f[5]};
     NAME(fetch)(from, rows, at, count, to);
     if (count < PAIR) {
@@ -606,7 +587,7 @@ SPARI_INLINE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int 
     }
 }
 
-SPARI_INLINE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops) {
+HERE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops) {
     for (int i = 0; i < 9; i++) {
         spari_add(sums + 2 * i, NAME(total)(add[i]));
     }
@@ -617,7 +598,7 @@ SPARI_INLINE void NAME(add_audit)(const L *add, const L *top, double *sums, doub
 }
 
 /* What a tile gives a point or rigid body: the sum of its forces and of its moments, and the moment of R Z. */
-SPARI_INLINE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, const L *total, double *modal) {
+HERE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, const L *total, double *modal) {
     double z[9], load[6];
     SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
@@ -639,9 +620,8 @@ SPARI_INLINE void NAME(add_carried)(const carrier *m, const int has_moment, cons
 
 /* The loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T, in which the rotation waits
    until the sum over the tile is done. */
-SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m,
-                                     const int has_moment, double (*f)[SPARI_ROW], const int audited, double *modal,
-                                     double *sums, double *tops) {
+HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int has_moment,
+                             double (*f)[SPARI_ROW], const int audited, double *modal, double *sums, double *tops) {
     static const double zero = 0;
     const double *const *from = (const double *const *)s->con;
     const int rows = has_moment ? 6 : 3;
@@ -688,9 +668,9 @@ SPARI_INLINE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int co
     }
 }
 
-SPARI_INLINE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
-                                 const int has_moment, double (*f)[SPARI_ROW], int at, const int audited, double *modal,
-                                 double *sums, double *tops) {
+HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
+                         const int has_moment, double (*f)[SPARI_ROW], int at, const int audited, double *modal,
+                         double *sums, double *tops) {
     static const double huge = HUGE_VAL, zero = 0;
     double t[SPARI_MAX_NODES][SPARI_ROW], g[4][SPARI_ROW];
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
@@ -765,7 +745,5 @@ TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count,
 
 #include "kernel_bins.h"
 
-#undef L
 #undef PAIR
 #undef MIX
-#undef SPARI_INLINE

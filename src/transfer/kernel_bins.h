@@ -3,8 +3,7 @@
    every width. */
 
 /* phi_l of the nodes of a run, row by row; xi: their coordinates. */
-SPARI_INLINE void NAME(shape_rows)(int modes, int count, const double *modal, const double *xi,
-                                   double (*phi)[SPARI_ROW]) {
+HERE void NAME(shape_rows)(int modes, int count, const double *modal, const double *xi, double (*phi)[SPARI_ROW]) {
     static const double one = 1;
     for (int i = 0; i < count; i += W) {
         L t[SPARI_MAX_NODES], x = NAME(get)(xi + i);
@@ -24,8 +23,8 @@ SPARI_INLINE void NAME(shape_rows)(int modes, int count, const double *modal, co
 
 /* Moments at the feet of a run's nodes, into the rows g: 3, or 4 of the consistent kind. in: arm, force, moment, three
    rows each; q: the quaternions of the line's nodes, in one chain. Returns the least |Q|^2. */
-SPARI_INLINE double NAME(lever_rows)(int modes, int count, const double *q, const int consistent, const int has_moment,
-                                     double (*phi)[SPARI_ROW], const double *const *in, double (*g)[SPARI_ROW]) {
+HERE double NAME(lever_rows)(int modes, int count, const double *q, const int consistent, const int has_moment,
+                             double (*phi)[SPARI_ROW], const double *const *in, double (*g)[SPARI_ROW]) {
     static const double huge = HUGE_VAL;
     L least = SPLAT(&huge);
     for (int i = 0; i < count; i += W) {
@@ -65,7 +64,7 @@ SPARI_INLINE double NAME(lever_rows)(int modes, int count, const double *q, cons
 }
 
 /* Adds the numbers x[count], a whole count of vectors, to a sum. Returns 0 where one is not finite. */
-SPARI_INLINE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bins *sum) {
+HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bins *sum) {
     static const double zero = 0;
     spari_bins run;
     L least = SPLAT(&zero), part[SPARI_BINS], scale, shift[SPARI_BINS];
@@ -111,8 +110,8 @@ SPARI_INLINE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, s
 
 /* The run's shares in a node of the line, three rows: phi f, and the moment phi m or, of the consistent kind, phi times
    the vector part of g q*. */
-SPARI_INLINE void NAME(share_rows)(int count, const double *phi, const double *const *f, double (*g)[SPARI_ROW],
-                                   const double *q, const int consistent, double (*out)[SPARI_ROW]) {
+HERE void NAME(share_rows)(int count, const double *phi, const double *const *f, double (*g)[SPARI_ROW],
+                           const double *q, const int consistent, double (*out)[SPARI_ROW]) {
     for (int i = 0; i < count; i += W) {
         L p = NAME(get)(phi + i), m[3] = {NAME(get)(g[0] + i), NAME(get)(g[1] + i), NAME(get)(g[2] + i)}, t[3];
         if (consistent) {

@@ -44,60 +44,19 @@ static carrier carrier_of(const double *c) {
     return m;
 }
 
-/* Two lanes are in every processor that has lanes at all; more are asked for at run time. SPARI_PLAIN_LANES (1, 2, 4,
-   8) builds the portable kernel alone at a width of choice, so that every width can be tried on any processor. */
-#if defined(SPARI_PLAIN_LANES)
-#define W SPARI_PLAIN_LANES
-#elif defined(__GNUC__)
-#define W 2
-#else
-#define W 1
-#endif
-#define NAME(x) x##_plain
-#define TARGET
-#define MADD(a, b, c) ((a) * (b) + (c))
-#if W == 1
-#define SPLAT(p) (*(p))
-#elif W == 2
-#define SPLAT(p) ((lanes_plain){*(p), *(p)})
-#else
-#define SPLAT(p) ((lanes_plain){0} + *(p))
-#endif
+#define SPARI_WIDTH 2
+#include "../math/width.h"
 #include "kernel.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef SPLAT
-
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(SPARI_PLAIN_LANES)
-#define SPARI_X86 1
-#include <immintrin.h>
-
-#define W 4
-#define NAME(x) x##_avx2
-#define TARGET __attribute__((target("avx2,fma")))
-#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
-#define SPLAT(p) _mm256_broadcast_sd(p)
+#ifdef SPARI_X86
+#define SPARI_WIDTH 4
+#include "../math/width.h"
 #include "kernel.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef SPLAT
-
-#define W 8
-#define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f,avx512dq")))
-#define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
-#define SPLAT(p) _mm512_set1_pd(*(p))
+#define SPARI_WIDTH 8
+#include "../math/width.h"
 #include "kernel.h"
-#undef W
-#undef NAME
-#undef TARGET
-#undef MADD
-#undef SPLAT
 #endif
+#define SPARI_WIDTH 0
+#include "../math/width.h"
 
 /* The kernels of one instruction set. */
 typedef struct kernels {
@@ -113,17 +72,18 @@ typedef struct kernels {
 } kernels;
 
 static kernels choose_kernels(const spari_nodes *s) {
-    (void)s;
 #ifdef SPARI_X86
-    int most = s->lanes ? s->lanes : SPARI_LANES_MAX;
-    if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+    switch (spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX)) {
+    case 8:
         return (kernels){motion_avx512,   loads_avx512,         bins_avx512,
                          carry_to_avx512, store_triples_avx512, load_triples_avx512};
-    }
-    if (most >= 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    case 4:
         return (kernels){motion_avx2, loads_avx2, bins_avx2, carry_to_avx2, store_triples_avx2, load_triples_avx2};
+    default:
+        break;
     }
 #endif
+    (void)s;
     return (kernels){motion_plain, loads_plain, bins_plain, carry_to_plain, store_triples_plain, load_triples_plain};
 }
 

@@ -1,0 +1,85 @@
+/* One width of vectors for the code included next: in place of the width before, which ends here, defines for
+   SPARI_WIDTH 1 (plain C), 2 (portable: two lanes are in every processor that has lanes at all), 4 (AVX2), 8 (AVX-512)
+     W           lanes of a vector
+     NAME(x)     the name of x at this width
+     TARGET      function attributes of the instruction set
+     MADD(a,b,c) a b + c, rounded once where the processor can
+     SPLAT(p)    *p in every lane
+     ROOT(x)     square root, where there is an instruction for it
+     L           the vector; get and put take it from memory and bring it there
+     HERE        how a function begins that is inlined
+   and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_X86 alone. No include
+   guard: this is a body, not an interface. */
+#include "lanes.h"
+
+#undef W
+#undef NAME
+#undef TARGET
+#undef MADD
+#undef SPLAT
+#undef ROOT
+#undef L
+#undef HERE
+
+#if SPARI_WIDTH == 1
+#define W 1
+#define NAME(x) x##_one
+#elif SPARI_WIDTH == 2
+#if defined(SPARI_PLAIN_LANES)
+#define W SPARI_PLAIN_LANES
+#elif defined(__GNUC__)
+#define W 2
+#else
+#define W 1
+#endif
+#define NAME(x) x##_plain
+#elif SPARI_WIDTH == 4
+#define W 4
+#define NAME(x) x##_avx2
+#define TARGET __attribute__((target("avx2,fma")))
+#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define SPLAT(p) _mm256_broadcast_sd(p)
+#define ROOT(x) _mm256_sqrt_pd(x)
+#elif SPARI_WIDTH == 8
+#define W 8
+#define NAME(x) x##_avx512
+#define TARGET __attribute__((target("avx512f,avx512dq")))
+#define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define SPLAT(p) _mm512_set1_pd(*(p))
+#define ROOT(x) _mm512_sqrt_pd(x)
+#endif
+
+#if SPARI_WIDTH == 1 || SPARI_WIDTH == 2
+#define TARGET
+#define MADD(a, b, c) ((a) * (b) + (c))
+#if W == 1
+#define SPLAT(p) (*(p))
+#else
+#define SPLAT(p) (*(p) - (L){0}) /* less nothing, for that keeps the sign of a zero */
+#endif
+#if W == 2 && defined(__SSE2__)
+#define ROOT(x) _mm_sqrt_pd(x)
+#endif
+#endif
+
+#if SPARI_WIDTH > 0
+#if W > 1
+typedef double NAME(lanes) __attribute__((vector_size(8 * W)));
+#else
+typedef double NAME(lanes);
+#endif
+#define L NAME(lanes)
+#define HERE TARGET static inline SPARI_ALWAYS_INLINE
+
+HERE L NAME(get)(const double *p) {
+    L v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+HERE void NAME(put)(double *p, L v) {
+    memcpy(p, &v, sizeof v);
+}
+#endif
+
+#undef SPARI_WIDTH
