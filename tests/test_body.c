@@ -1,6 +1,7 @@
 /* The discretised member: forces against the energy they come from, the tangent against finite differences of the
    forces, invariance under rigid motion. Oracles: central differences (error h^2 + eps/h, so 1e-7 of the largest entry
-   at h = 1e-5), exact identities (1e-12), and for points side by side the same points one by one (1e-13). */
+   at h = 1e-5), exact identities (1e-12), and for points side by side the same points one by one, or two by two for the
+   tangent (1e-13). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -122,27 +123,37 @@ static void disturb(const state *s, int d, double h, double cm, double cv, state
     }
 }
 
-static void check_tangent(int elements, int P, int damped, int gyroscopic, double cm, double cv) {
-    spari_body *b = random_body(elements, P, P, damped, 0);
-    int n = b->unique, N = 6 * n, m = 6 * P;
+/* Which rates are given: none, velocities, accelerations too. */
+enum { AT_REST, WITH_V, WITH_A };
+
+typedef struct tangent_case {
+    int elements, P, points, damped, gyroscopic, rates;
+    double cm, cv;
+} tangent_case;
+
+static void check_tangent(tangent_case c) {
+    spari_body *b = random_body(c.elements, c.P, c.points, c.damped, 0);
+    int n = b->unique, N = 6 * n, m = 6 * c.P;
     state s, t;
     double *full = calloc((size_t)(N * N), sizeof *full), *S = calloc((size_t)(m * m), sizeof *S), r1[192], r2[192];
-    b->gyroscopic = gyroscopic;
+    b->gyroscopic = c.gyroscopic;
     random_state(n, 0.6, &s);
-    for (int e = 0; e < elements; e++) {
-        spari_body_tangent(b, e, s.q, s.v, s.a, 0.7, cm, cv, s.tinv, S);
+    for (int e = 0; e < c.elements; e++) {
+        spari_body_tangent(b, e, s.q, c.rates >= WITH_V ? s.v : NULL, c.rates >= WITH_A ? s.a : NULL, 0.7, c.cm, c.cv,
+                           s.tinv, S);
         for (int i = 0; i < m; i++) {
             for (int j = 0; j < m; j++) {
-                full[N * (6 * e * (P - 1) + i) + 6 * e * (P - 1) + j] += S[m * i + j];
+                full[N * (6 * e * (c.P - 1) + i) + 6 * e * (c.P - 1) + j] += S[m * i + j];
             }
         }
     }
     double worst = 0, big = 0, h = 1e-5;
     for (int d = 0; d < N; d++) {
-        disturb(&s, d, h, cm, cv, &t);
-        spari_body_residual(b, t.q, t.v, t.a, 0.7, r1, NULL);
-        disturb(&s, d, -h, cm, cv, &t);
-        spari_body_residual(b, t.q, t.v, t.a, 0.7, r2, NULL);
+        for (int side = 0; side < 2; side++) {
+            disturb(&s, d, side ? -h : h, c.cm, c.cv, &t);
+            spari_body_residual(b, t.q, c.rates >= WITH_V ? t.v : NULL, c.rates >= WITH_A ? t.a : NULL, 0.7,
+                                side ? r2 : r1, NULL);
+        }
         for (int i = 0; i < N; i++) {
             double fd = (r1[i] - r2[i]) / (2 * h);
             big = fmax(big, fabs(fd));
@@ -150,8 +161,8 @@ static void check_tangent(int elements, int P, int damped, int gyroscopic, doubl
         }
     }
     if (!(worst < 1e-7 * big)) {
-        print_error("elements %d P %d damped %d gyro %d cm %g cv %g: worst %g of %g\n", elements, P, damped, gyroscopic,
-                    cm, cv, worst, big);
+        print_error("elements %d P %d points %d damped %d gyro %d rates %d cm %g cv %g: worst %g of %g\n", c.elements,
+                    c.P, c.points, c.damped, c.gyroscopic, c.rates, c.cm, c.cv, worst, big);
     }
     assert_true(worst < 1e-7 * big);
     free(full);
@@ -161,12 +172,15 @@ static void check_tangent(int elements, int P, int damped, int gyroscopic, doubl
 
 static void test_tangent(void **unused) {
     (void)unused;
-    check_tangent(1, 2, 0, 1, 0, 0);
-    check_tangent(1, 4, 0, 1, 3, 0);
-    check_tangent(1, 4, 0, 1, 3, 2);
-    check_tangent(1, 4, 0, 0, 3, 2);
-    check_tangent(1, 5, 1, 1, 0, 2);
-    check_tangent(3, 4, 1, 1, 3, 2);
+    static const tangent_case cases[] = {
+        {1, 2, 2, 0, 1, WITH_A, 0, 0},  {1, 4, 4, 0, 1, WITH_A, 3, 0},   {1, 4, 4, 0, 1, WITH_A, 3, 2},
+        {1, 4, 4, 0, 0, WITH_A, 3, 2},  {1, 5, 5, 1, 1, WITH_A, 0, 2},   {3, 4, 4, 1, 1, WITH_A, 3, 2},
+        {1, 6, 6, 0, 1, AT_REST, 0, 0}, {1, 3, 3, 1, 1, AT_REST, 0, 0},  {2, 5, 7, 1, 1, WITH_V, 0, 2},
+        {1, 9, 11, 1, 1, WITH_A, 3, 2}, {1, 11, 10, 0, 1, WITH_A, 3, 2},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        check_tangent(cases[k]);
+    }
 }
 
 /* r . delta = d(strain energy - gravity work) for a virtual displacement of every node */
@@ -391,6 +405,50 @@ static void test_lanes(void **unused) {
     lanes = 0;
 }
 
+/* Tangents of one body in every regime, by the portable kernels and by wider ones: to 1e-13 of the largest entry. */
+static void check_tangent_lanes(spari_body *b) {
+    int m = 6 * b->per_element;
+    double *S[2] = {calloc((size_t)(m * m), sizeof(double)), calloc((size_t)(m * m), sizeof(double))};
+    state s;
+    random_state(b->unique, 0.6, &s);
+    for (int regime = 0; regime < 12; regime++) {
+        const double *v = regime > 3 ? s.v : NULL, *a = regime > 7 ? s.a : NULL, factor = regime % 2 ? 0.7 : 0;
+        double cm = regime % 4 > 1 ? 3 : 0, cv = regime % 4 > 1 ? 2 : 0, big = 0;
+        for (int wide = 4; wide <= SPARI_LANES; wide *= 2) {
+            for (int k = 0; k < 2; k++) {
+                b->lanes = k ? wide : 2;
+                spari_body_tangent(b, b->elements - 1, s.q, v, a, factor, cm, cv, s.tinv, S[k]);
+            }
+            for (int i = 0; i < m * m; i++) {
+                big = fmax(big, fabs(S[0][i]));
+            }
+            for (int i = 0; i < m * m; i++) {
+                assert_true(fabs(S[1][i] - S[0][i]) <= 1e-13 * big);
+            }
+        }
+    }
+    free(S[0]);
+    free(S[1]);
+}
+
+/* Every width against the portable kernels, on bodies as of test_lanes; 2 to 12 nodes, so that rows of pairs end in
+   one, two or three vectors. */
+static void test_tangent_lanes(void **unused) {
+    (void)unused;
+    for (int points = 1; points < 20; points++) {
+        spari_body *b = random_body(1 + points % 2, 2 + points % 11, points, points % 3 > 0, 0);
+        double *C = b->C, *D = b->D, *mass = b->mass;
+        b->gyroscopic = points % 5 > 0;
+        check_tangent_lanes(b);
+        b->mass = NULL;
+        check_tangent_lanes(b);
+        b->mass = mass, b->C = b->D = NULL;
+        check_tangent_lanes(b);
+        b->C = C, b->D = D;
+        spari_body_free(b);
+    }
+}
+
 /* Slots left over in an element's last block do not count: energies are sums over the points alone, and a body that
    is not finite in one element has finite forces in the others. */
 static void test_left_over_slots(void **unused) {
@@ -429,6 +487,7 @@ int main(void) {
         cmocka_unit_test(test_frame_indifference),
         cmocka_unit_test(test_power_balance),
         cmocka_unit_test(test_lanes),
+        cmocka_unit_test(test_tangent_lanes),
         cmocka_unit_test(test_left_over_slots),
         cmocka_unit_test(test_other_widths),
     };

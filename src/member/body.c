@@ -40,7 +40,7 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (!elastic || (body->C = spari_zalloc(slots * 36, sizeof *body->C)));
     ok = ok && (!damped || (body->D = spari_zalloc(slots * 36, sizeof *body->D)));
     ok = ok && (!massive || (body->mass = spari_zalloc(slots * 10, sizeof *body->mass)));
-    int64_t element = spari_body_scratch(per_element, most), nodes = 12 * (int64_t)body->unique;
+    int64_t element = spari_body_scratch(per_element, most, damped), nodes = 12 * (int64_t)body->unique;
     ok = ok && (body->scratch = spari_zalloc(element > nodes ? element : nodes, sizeof *body->scratch));
     if (!ok) {
         spari_body_free(body);

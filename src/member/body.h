@@ -43,7 +43,7 @@ typedef struct spari_body {
 } spari_body;
 
 /* Doubles of work space that an element with so many points takes. */
-int64_t spari_body_scratch(int per_element, int points);
+int64_t spari_body_scratch(int per_element, int points, int damped);
 /* Sizes the arrays for points[elements] quadrature points; elastic, damped, massive say which properties exist.
    Returns NULL when there is no memory. */
 spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive);

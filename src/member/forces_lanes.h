@@ -74,7 +74,17 @@ HERE void NAME(tally_most)(double *row, L x) {
     memcpy(row, b, sizeof b);
 }
 
-/* Times its weight: value (u, Q), slope (u', Q'), 14 rows; the sizes of forces and the power to the tally. */
+/* Value (u, Q) and slope (u', Q') of a point times its weight w, 14 rows. */
+HERE void NAME(give_back)(L w, const L *value, const L *slope, double *back) {
+    SPARI_UNROLL
+    for (int i = 0; i < 7; i++) {
+        NAME(put)(back + SPARI_LANES * i, w * value[i]);
+        NAME(put)(back + SPARI_LANES * (BACK + i), w * slope[i]);
+    }
+}
+
+/* What a point gives back, times its weight: value (u, Q), slope (u', Q'), 14 rows; the sizes of forces and the power
+ * to the tally. */
 HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t slot, const spari_regime *how,
                              const double *f, double *back, spari_tally *tally, int at) {
     const double *D = how->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL;
@@ -107,11 +117,7 @@ HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t sl
         NAME(tally_most)(tally->most + at, w * (NAME(norm)(force) + NAME(norm)(n.mb) * per_length));
     }
     NAME(tally_most)(tally->most + at, scale);
-    SPARI_UNROLL
-    for (int i = 0; i < 7; i++) {
-        NAME(put)(back + SPARI_LANES * i, w * value[i]);
-        NAME(put)(back + SPARI_LANES * (BACK + i), w * slope[i]);
-    }
+    NAME(give_back)(w, value, slope, back);
 }
 
 /* The n points from `slot` on: fields by way of the block f, into the blocks back. */

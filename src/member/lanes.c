@@ -1,38 +1,49 @@
-/* Forces of quadrature points side by side: the kernels for each width of vectors, and which of them serves. */
+/* Forces and tangents of quadrature points side by side: the kernels for each width of vectors, and which of them
+ * serves. */
 #include "../math/basis.h"
-#include "point.h"
+#include "tangent.h"
 
 #define SPARI_WIDTH 2
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "tangent_lanes.h"
 #ifdef SPARI_X86
 #define SPARI_WIDTH 4
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "tangent_lanes.h"
 #define SPARI_WIDTH 8
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "tangent_lanes.h"
 #endif
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 
 /* The kernels of one instruction set; forces by what of its mass a section shows. */
-typedef struct force_kernels {
+typedef struct lane_kernels {
     void (*interpolate)(int wanted, int P, const double *shape, const double *z, double *f);
     void (*forces[3])(const spari_body *body, int64_t slot, int n, const spari_regime *how, const double *z, double *f,
                       double *back, spari_tally *tally);
     void (*collect)(int sloped, int P, int n, const double *phi, const double *dphi, const double *back, double *g);
-} force_kernels;
+    void (*matrices)(const spari_body *body, int e, const spari_regime *how, const spari_tangent_work *t);
+    void (*products)(const spari_tangent_work *t, const double *phi, const double *dphi);
+    void (*sum)(const spari_tangent_work *t, int rows, const double *points, const double *product, double *pairs);
+    void (*project)(const spari_tangent_work *t, double *S);
+} lane_kernels;
 
 #define KERNELS(set)                                                                                                   \
-    { interpolate_block_##set, {massless_forces_##set, weighed_forces_##set, accelerated_forces_##set}, collect_##set }
-static const force_kernels plain = KERNELS(plain);
+    {                                                                                                                  \
+        interpolate_block_##set, {massless_forces_##set, weighed_forces_##set, accelerated_forces_##set},              \
+            collect_##set, element_matrices_##set, pair_products_##set, sum_pairs_##set, project_##set                 \
+    }
+static const lane_kernels plain = KERNELS(plain);
 #ifdef SPARI_X86
-static const force_kernels avx2 = KERNELS(avx2), avx512 = KERNELS(avx512);
+static const lane_kernels avx2 = KERNELS(avx2), avx512 = KERNELS(avx512);
 #endif
 
 /* For so many points, or nodes, side by side: no wider than they are many. */
-static const force_kernels *kernels_for(const spari_body *body, int count) {
+static const lane_kernels *kernels_for(const spari_body *body, int count) {
 #ifdef SPARI_X86
     int most = body->lanes ? body->lanes : SPARI_LANES, fit = count > 4 ? 8 : count > 2 ? 4 : 2;
     switch (spari_lanes_here(most < fit ? most : fit)) {
@@ -50,7 +61,7 @@ static const force_kernels *kernels_for(const spari_body *body, int count) {
 
 void spari_lanes_interpolate(const spari_body *body, int e, int wanted, const double *z, double *f) {
     int P = body->per_element, n = body->first[e + 1] - body->first[e];
-    const force_kernels *kernel = kernels_for(body, n);
+    const lane_kernels *kernel = kernels_for(body, n);
     for (int k = 0; k < n; k += SPARI_LANES) {
         kernel->interpolate(wanted, P, SPARI_BLOCK(body->shape, 2 * P, body->slot[e] + k), z,
                             SPARI_BLOCK(f, POINT_ROWS, k));
@@ -67,4 +78,22 @@ void spari_lanes_collect(const spari_body *body, int e, const double *back, doub
     int P = body->per_element, first = body->first[e];
     const double *phi = body->phi + (int64_t)first * P, *dphi = body->dphi + (int64_t)first * P;
     kernels_for(body, P)->collect(body->C != NULL, P, body->first[e + 1] - first, phi, dphi, back, g);
+}
+
+void spari_lanes_matrices(const spari_body *body, int e, const spari_regime *how, const spari_tangent_work *t) {
+    kernels_for(body, t->points)->matrices(body, e, how, t);
+}
+
+void spari_lanes_products(const spari_body *body, int e, const spari_tangent_work *t) {
+    int64_t first = (int64_t)body->first[e] * t->P;
+    kernels_for(body, t->P)->products(t, body->phi + first, body->dphi + first);
+}
+
+void spari_lanes_sum(const spari_body *body, const spari_tangent_work *t, int rows, const double *points, int product,
+                     double *pairs) {
+    kernels_for(body, (int)t->pairs)->sum(t, rows, points, t->products + product * t->stride, pairs);
+}
+
+void spari_lanes_project(const spari_body *body, const spari_tangent_work *t, double *S) {
+    kernels_for(body, t->P)->project(t, S);
 }

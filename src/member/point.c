@@ -3,15 +3,6 @@
 
 #include "../math/basis.h"
 
-/* Of a residual: z, then g [BACK][SPARI_MAX_NODES], a block of fields, blocks of what is given back; of a tangent: z,
-   blocks of fields, the nodes' 7 x 7 blocks of three matrices and the forces on Q, their first stages, the table. */
-int64_t spari_body_scratch(int P, int points) {
-    int64_t p = P, n = points, blocks = (n + SPARI_LANES - 1) / SPARI_LANES;
-    int64_t forces = BACK * SPARI_MAX_NODES + SPARI_LANES * (POINT_ROWS + blocks * BACK_ROWS);
-    int64_t tangent = SPARI_LANES * blocks * POINT_ROWS + 4 * p * p * 49 + 2 * n * p * 2 * 49 + n * 2 * p;
-    return p * ROW + (forces > tangent ? forces : tangent);
-}
-
 /* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
 void spari_point_gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
     int P = body->per_element;
