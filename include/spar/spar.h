@@ -253,6 +253,14 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
                             (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
+     ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks. All: all
+                            of it, each of them. Touched: a rank that solves no member (spar_member_get_owner), other
+                            than rank 0, knows the motion of the members that its fluids have nodes on, and of those
+                            that joints tie to them; loads and motion go between these and their owners, who iterate the
+                            coupling; the others get no message but of the status. Loads, reaction, work, the report
+                            and members that it does not touch are SPAR_ERR_STATE on such a rank, as is a map with
+                            nodes on another member after the first step; and so are statics, trials and advice on all
+                            ranks. A file of spar_session_save has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change
      advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than

@@ -71,6 +71,7 @@ struct spar_session {
     double horizon;                                        /* option advise.horizon */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
+    int touched;                                           /* option ranks.state = all (default) | touched */
     int coupling_stale;                                    /* settings of the coupling have changed since it was made */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
@@ -90,6 +91,8 @@ struct spar_session {
 
     const spari_setting *settings;
     int setting_count;
+    int apart;  /* ranks.state = touched, and the clock runs: ranks know different parts of the state, */
+    int aside;  /* and this one solves nothing: of members it knows what `away` of each leaves */
     int parted; /* the ranks were found to be at different things: nothing more is to be agreed on */
 
     spari_own *own; /* what is the session's alone (session.h) */

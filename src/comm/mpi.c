@@ -17,6 +17,7 @@ typedef struct mpi_comm {
     MPI_Datatype bins;
     MPI_Op merge;
     int gone; /* another rank has destroyed its session: there is nobody to talk to any more */
+    int part; /* of another communicator, which has the say */
 } mpi_comm;
 
 /* ---- failures of MPI itself ---- */
@@ -183,7 +184,7 @@ static void mpi_destroy(spari_comm *comm) {
     mpi_comm *c = (mpi_comm *)comm;
     if (mpi_is_up()) {
         int64_t mine[WORDS] = {LEAVING}, all[WORDS];
-        if (!c->gone) {
+        if (!c->gone && !c->part) {
             (void)MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle);
         }
         if (c->has_bins) {
@@ -196,6 +197,10 @@ static void mpi_destroy(spari_comm *comm) {
     free(c->offsets);
 }
 
+static int upto_most(const spari_comm *comm, int64_t n) {
+    return (int)(n < comm->most ? n : comm->most);
+}
+
 static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
     SPARI_TRY(check_up(c, message, size));
@@ -204,8 +209,8 @@ static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
     }
     x[n] = status != SPAR_OK;
     /* reduced to one rank and sent out again: MPI_Allreduce need not give the same bits on all ranks */
-    for (int64_t at = 0; at <= n; at += INT_MAX) {
-        int part = (int)(n + 1 - at < INT_MAX ? n + 1 - at : INT_MAX);
+    for (int64_t at = 0; at <= n; at += comm->most) {
+        int part = upto_most(comm, n + 1 - at);
         double *p = x + at;
         TRY_MPI(MPI_Reduce(comm->rank == 0 ? MPI_IN_PLACE : p, p, part, MPI_DOUBLE, MPI_SUM, 0, c->handle));
         TRY_MPI(MPI_Bcast(p, part, MPI_DOUBLE, 0, c->handle));
@@ -246,27 +251,38 @@ static int mpi_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, 
         memset(x, 0, (size_t)n * sizeof *x);
     }
     x[n] = (spari_bins){.part = {status != SPAR_OK}};
-    for (int64_t at = 0; at <= n; at += INT_MAX) { /* the same bits on all ranks, in whatever order they are added */
-        int part = (int)(n + 1 - at < INT_MAX ? n + 1 - at : INT_MAX);
+    for (int64_t at = 0; at <= n; at += comm->most) { /* the same bits on all ranks, in whatever order they are added */
+        int part = upto_most(comm, n + 1 - at);
         TRY_MPI(MPI_Allreduce(MPI_IN_PLACE, x + at, part, c->bins, c->merge, c->handle));
     }
     return x[n].part[0] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
 }
 
-static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
-    mpi_comm *c = (mpi_comm *)comm;
-    SPARI_TRY(check_up(c, message, size));
-    if (first[comm->size] > INT_MAX) { /* the same on all ranks */
-        (void)snprintf(message, size, "%lld numbers are more than MPI moves in one call; make the members smaller",
-                       (long long)first[comm->size]);
-        return SPAR_ERR_UNSUPPORTED;
+/* More than MPI moves in one call: each rank's block by itself, in messages that fit. */
+static int share_in_turn(mpi_comm *c, double *x, const int64_t *first, char *message, size_t size) {
+    for (int r = 0; r < c->base.size; r++) {
+        for (int64_t at = first[r]; at < first[r + 1]; at += c->base.most) {
+            TRY_MPI(MPI_Bcast(x + at, upto_most(&c->base, first[r + 1] - at), MPI_DOUBLE, r, c->handle));
+        }
     }
-    for (int r = 0; r < comm->size; r++) {
+    return SPAR_OK;
+}
+
+static int share_at_once(mpi_comm *c, double *x, const int64_t *first, char *message, size_t size) {
+    for (int r = 0; r < c->base.size; r++) {
         c->offsets[r] = (int)first[r];
         c->counts[r] = (int)(first[r + 1] - first[r]);
     }
-    x[first[comm->rank + 1] - 1] = status != SPAR_OK;
     TRY_MPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, c->counts, c->offsets, MPI_DOUBLE, c->handle));
+    return SPAR_OK;
+}
+
+static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    SPARI_TRY(check_up(c, message, size));
+    x[first[comm->rank + 1] - 1] = status != SPAR_OK;
+    SPARI_TRY(first[comm->size] > comm->most ? share_in_turn(c, x, first, message, size)
+                                             : share_at_once(c, x, first, message, size));
     for (int r = 0; r < comm->size; r++) {
         if (x[first[r + 1] - 1] != 0) {
             return tell_all(c, r, status, message, size);
@@ -278,15 +294,84 @@ static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int stat
 static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
     SPARI_TRY(check_up(c, message, size));
-    for (int64_t at = 0; at < bytes; at += INT_MAX) {
-        int part = (int)(bytes - at < INT_MAX ? bytes - at : INT_MAX);
+    for (int64_t at = 0; at < bytes; at += comm->most) {
+        int part = upto_most(comm, bytes - at);
         TRY_MPI(MPI_Bcast((char *)data + at, part, MPI_BYTE, 0, c->handle));
     }
     return SPAR_OK;
 }
 
+/* ---- parts of the ranks ---- */
+
+/* Calls under way. Ranks make them in one order, so that waiting for the first ones before the last ones are made keeps
+   nobody waiting for ever. */
+enum { POSTED = 64 };
+typedef struct posted {
+    MPI_Request request[POSTED];
+    int n;
+} posted;
+
+static int await(posted *p, char *message, size_t size) {
+    int n = p->n;
+    p->n = 0;
+    TRY_MPI(MPI_Waitall(n, p->request, MPI_STATUSES_IGNORE));
+    return SPAR_OK;
+}
+
+/* Where the next one goes. */
+static int next_posted(posted *p, MPI_Request **request, char *message, size_t size) {
+    if (p->n == POSTED) {
+        SPARI_TRY(await(p, message, size));
+    }
+    *request = p->request + p->n++;
+    **request = MPI_REQUEST_NULL;
+    return SPAR_OK;
+}
+
+static int mpi_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    posted p = {.n = 0};
+    SPARI_TRY(check_up(c, message, size));
+    size_t width = bins ? sizeof(spari_bins) : sizeof(double);
+    for (int i = 0; i < count; i++) {
+        const mpi_comm *part = (const mpi_comm *)pieces[i].part;
+        int root = part->base.rank == 0;
+        for (int64_t at = 0; at < pieces[i].n; at += comm->most) {
+            MPI_Request *request;
+            void *x = (char *)pieces[i].x + (size_t)at * width;
+            SPARI_TRY(next_posted(&p, &request, message, size));
+            TRY_MPI(MPI_Ireduce(root ? MPI_IN_PLACE : x, x, upto_most(comm, pieces[i].n - at),
+                                bins ? c->bins : MPI_DOUBLE, bins ? c->merge : MPI_SUM, 0, part->handle, request));
+        }
+    }
+    return await(&p, message, size);
+}
+
+static int mpi_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    posted p = {.n = 0};
+    MPI_Request *request;
+    SPARI_TRY(check_up(c, message, size));
+    int64_t mine = status == SPAR_OK ? NOBODY : comm->rank, failed = NOBODY;
+    SPARI_TRY(next_posted(&p, &request, message, size));
+    TRY_MPI(MPI_Iallreduce(&mine, &failed, 1, MPI_INT64_T, MPI_MIN, c->handle, request));
+    for (int i = 0; i < count; i++) {
+        const mpi_comm *part = (const mpi_comm *)pieces[i].part;
+        for (int64_t at = 0; at < pieces[i].n; at += comm->most) {
+            SPARI_TRY(next_posted(&p, &request, message, size));
+            TRY_MPI(MPI_Ibcast((double *)pieces[i].x + at, upto_most(comm, pieces[i].n - at), MPI_DOUBLE, 0,
+                               part->handle, request));
+        }
+    }
+    SPARI_TRY(await(&p, message, size));
+    return failed == NOBODY ? SPAR_OK : tell_all(c, (int)failed, status, message, size);
+}
+
+static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
+
 static const spari_comm_ops mpi_ops = {mpi_destroy,      mpi_agree,    mpi_enter, mpi_sum,
-                                       mpi_prepare_bins, mpi_sum_bins, mpi_share, mpi_broadcast};
+                                       mpi_prepare_bins, mpi_sum_bins, mpi_share, mpi_broadcast,
+                                       mpi_split,        mpi_collect,  mpi_spread};
 
 /* ---- create ---- */
 
@@ -328,6 +413,7 @@ static int set_up(mpi_comm *c, int status, mpi_comm **made, char *message, size_
     TRY_MPI(MPI_Comm_rank(c->handle, &c->base.rank));
     TRY_MPI(MPI_Comm_size(c->handle, &c->base.size));
     SPARI_TRY(status);
+    c->base.most = INT_MAX;
     c->counts = spari_zalloc(c->base.size, sizeof *c->counts);
     c->offsets = spari_zalloc(c->base.size, sizeof *c->offsets);
     *made = c->counts && c->offsets ? spari_zalloc(1, sizeof **made) : NULL;
@@ -357,6 +443,33 @@ int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *m
     }
     *made = c;
     *comm = &made->base;
+    return SPAR_OK;
+}
+
+static void drop_part(mpi_comm *c, mpi_comm *made) {
+    if (c->handle != MPI_COMM_NULL) {
+        (void)MPI_Comm_free(&c->handle);
+    }
+    free(c->counts);
+    free(c->offsets);
+    free(made);
+}
+
+/* What can fail on one rank alone is agreed on over the whole, after the part has been made. */
+static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size) {
+    mpi_comm *whole = (mpi_comm *)comm, *made = NULL;
+    mpi_comm c = {.base.ops = &mpi_ops, .part = 1, .handle = MPI_COMM_NULL};
+    SPARI_TRY(check_up(whole, message, size));
+    TRY_MPI(MPI_Comm_split(whole->handle, in ? 0 : MPI_UNDEFINED, comm->rank == root ? 0 : 1 + comm->rank, &c.handle));
+    int status = c.handle == MPI_COMM_NULL ? SPAR_OK : set_up(&c, SPAR_OK, &made, message, size);
+    c.base.most = comm->most;
+    status = mpi_agree(comm, status, message, size);
+    if (status != SPAR_OK || c.base.size < 2 || !made) {
+        drop_part(&c, made);
+        return status;
+    }
+    *made = c;
+    *part = &made->base;
     return SPAR_OK;
 }
 

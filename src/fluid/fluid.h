@@ -7,6 +7,8 @@
 
 /* What the session asks of a fluid; the public calls are in fluid.c. */
 
+/* Whether it has nodes here, or loads of a file. */
+int spari_fluid_touches(const spar_fluid *fluid);
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The same to reproducible sums. */

@@ -51,6 +51,8 @@ struct spar_joint {
 int spari_member_unique(const spar_member *member, int64_t node);
 /* Whether a joint ties it to something. */
 int spari_member_is_tied(const spar_member *member);
+/* Whether this rank knows the members that it ties; as spari_need_here. */
+int spari_joint_need_here(const spar_joint *joint, const char *call, int away);
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* Mask of the motions that a joint gives: those not free and the driven ones. */

@@ -97,7 +97,9 @@ struct spar_member {
     spari_added *added;   /* NULL: no guess of the added mass; else the loads above have lives of their own */
     spari_means *means;   /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
     spari_remake *advice; /* of spar_session_advise; NULL: none */
+    int away;             /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
 };
+enum { SPARI_LOADS_AWAY = 1, SPARI_ALL_AWAY = 2 }; /* loads, and what is made of them; motion and joints as well */
 
 /* The arrays over the nodes, in one table: all that makes, frees, saves, loads or carries over a member walks it. */
 typedef enum spari_nodal_kind { SPARI_NODAL_REFERENCE, SPARI_NODAL_MOTION, SPARI_NODAL_LOAD } spari_nodal_kind;

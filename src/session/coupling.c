@@ -225,6 +225,17 @@ static void record(spari_coupling *c, double residual, double size) {
     }
 }
 
+void spari_coupling_record(spar_session *s, double residual, double size) {
+    record(s->own->coupling, residual, size);
+}
+
+void spari_coupling_last(const spar_session *s, double *residual, double *size) {
+    const spari_coupling *c = s->own->coupling;
+    int last = c->iterations - 1;
+    *residual = last >= 0 ? c->residual[last] : 0;
+    *size = last >= 0 ? c->size[last] : 0;
+}
+
 /* By how much the residual has grown from iteration to iteration lately; 0: it has not. */
 static double grown_lately(const spari_coupling *c) {
     enum { LATELY = 3 };
@@ -554,13 +565,15 @@ int spar_session_get_iterations(const spar_session *session, int *iterations, in
 
 int spar_session_get_residual(const spar_session *session, double *residual, double *size) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    const spari_coupling *c = session->own->coupling;
-    int last = c ? c->iterations - 1 : -1;
+    double last[2] = {0, 0};
+    if (session->own->coupling) {
+        spari_coupling_last(session, &last[0], &last[1]);
+    }
     if (residual) {
-        *residual = last >= 0 ? c->residual[last] : 0;
+        *residual = last[0];
     }
     if (size) {
-        *size = last >= 0 ? c->size[last] : 0;
+        *size = last[1];
     }
     return SPAR_OK;
 }
@@ -569,6 +582,9 @@ int spar_session_get_report(const spar_session *session, int64_t capacity, doubl
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
+    SPARI_REQUIRE(session, !session->aside, SPAR_ERR_STATE,
+                  "%s: this rank solves no member and knows no loads (option ranks.state = touched); ask rank 0",
+                  __func__);
     const spari_coupling *c = session->own->coupling;
     spari_fill(capacity, report, c ? SPAR_REPORT_COUNT : 0, c ? c->report : NULL);
     return SPAR_OK;

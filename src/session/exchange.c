@@ -3,28 +3,20 @@
 
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
-#include "../member/body.h"
 #include "../member/structure.h"
 #include "../solve/assembly.h"
+#include "block.h"
 #include "own.h"
+#include "spread.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Of a damped member the energy dissipated in the step goes along. */
-static int is_damped(const spar_member *m) {
-    return (m->effects & SPAR_EFFECT_DAMPING) != 0;
-}
-
-static int64_t block_size(const spar_member *m) {
-    return m->body ? 19 * (int64_t)m->body->unique + is_damped(m) : 0;
-}
 
 /* What a rank tells the others, with its status. */
 static int64_t block_of_rank(const spar_session *s, int rank) {
     int64_t n = 1;
     for (const spar_member *m = s->members; m; m = m->next) {
-        n += m->owner == rank ? block_size(m) : 0;
+        n += m->owner == rank ? spari_block_size(m) : 0;
     }
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         n += spari_assembly_owner(a) == rank ? spari_assembly_share_size(a) : 0;
@@ -128,7 +120,23 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     return SPAR_OK;
 }
 
+/* Where ranks know different parts: whether anything was pushed is asked of all of them. */
+static int exchange_apart(spar_session *s, int *pushed) {
+    double pushes[2] = {0, 0};
+    for (const spar_fluid *f = s->fluids; f && pushed; f = spari_fluid_next(f)) {
+        pushes[0] += spari_fluid_has_loads(f);
+    }
+    if (pushed) {
+        SPARI_TRY(spari_comm_sum(s->comm, pushes, 1, SPAR_OK, s->message, sizeof s->message));
+        *pushed = pushes[0] > 0;
+    }
+    return spari_spread_loads(s);
+}
+
 int spari_session_exchange_loads(spar_session *s, int *pushed) {
+    if (s->apart) {
+        return exchange_apart(s, pushed);
+    }
     double *pushes = s->own->pack + s->own->pack_count;
     memset(s->own->pack, 0, (size_t)(s->own->pack_count + 2) * sizeof *s->own->pack);
     int64_t at = 0;
@@ -154,36 +162,15 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
-    memcpy(load, s->own->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
+    memcpy(load, s->apart ? spari_spread_loads_of(s, m) : s->own->pack + m->pack_at,
+           (size_t)(6 * m->nodes) * sizeof *load);
     spari_joints_on_external(m, load);
-}
-
-/* One member's block: unknowns' q, v, a; dissipation. */
-static void pack_member(spar_member *m, double *to) {
-    int64_t n = m->body->unique;
-    spari_member_to_unique(m, 7, m->after.q, to);
-    spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
-    spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
-    if (is_damped(m)) {
-        to[19 * n] = m->dissipated_step;
-    }
-}
-
-static void unpack_member(spar_member *m, const double *from) {
-    int64_t n = m->body->unique;
-    spari_member_from_unique(m, 7, from, m->after.q);
-    spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
-    spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
-    m->dissipated_step = is_damped(m) ? from[19 * n] : 0;
 }
 
 /* What this rank has found, into its block. */
 static void pack_own(spar_session *s, int rank, double *at) {
     for (spar_member *m = s->members; m; m = m->next) {
-        if (m->owner == rank && m->body) {
-            pack_member(m, at);
-            at += block_size(m);
-        }
+        at += m->owner == rank ? spari_block_pack(m, at) : 0;
     }
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         if (spari_assembly_owner(a) == rank) {
@@ -195,10 +182,7 @@ static void pack_own(spar_session *s, int rank, double *at) {
 
 static void unpack_peer(spar_session *s, int peer, const double *at) {
     for (spar_member *m = s->members; m; m = m->next) {
-        if (m->owner == peer && m->body) {
-            unpack_member(m, at);
-            at += block_size(m);
-        }
+        at += m->owner == peer ? spari_block_unpack(m, at) : 0;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         if (spari_assembly_owner(a) == peer) {
@@ -212,6 +196,9 @@ int spari_session_share_motion(spar_session *s, int status) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     if (ranks == 1) {
         return status;
+    }
+    if (s->apart) {
+        return spari_spread_motion(s, status);
     }
     if (status == SPAR_OK) {
         pack_own(s, rank, s->own->motion + s->own->first[rank]);

@@ -11,6 +11,7 @@
 #include "exchange.h"
 #include "own.h"
 #include "settings.h"
+#include "spread.h"
 
 #include "../comm/enter.h"
 
@@ -807,6 +808,7 @@ static int check_all_fluids(spar_session *s, reading *l) {
 static void put_in_force(spar_session *s, reading *l) {
     passage t = {&l->image, READ};
     int64_t at = 0, k = 0;
+    spari_spread_end(s);
     l->image.at = l->common;
     pass_clock(&t, s);
     for (spar_member *m = s->members; m; m = m->next, k++) {

@@ -2,6 +2,7 @@
 #include "coupling.h"
 #include "own.h"
 #include "settings.h"
+#include "spread.h"
 
 #include "../base/quiet.h"
 #include "../comm/comm.h"
@@ -65,6 +66,7 @@ void spar_session_destroy(spar_session **session) {
         return;
     }
     spar_session *s = *session;
+    spari_spread_end(s);
     for (spar_fluid *f = s->fluids, *next; f; f = next) {
         next = spari_fluid_next(f);
         spari_fluid_free(f);

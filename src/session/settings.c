@@ -94,6 +94,7 @@ static const spari_setting settings[] = {
     OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_ALIKE),
     OPTION_WORD("fluid.far", far_refuse, "take", "refuse", 0),
     OPTION_WORD("fluid.audit", audit_off, "on", "off", 0),
+    OPTION_WORD("ranks.state", touched, "all", "touched", SPARI_ALIKE),
     OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),

@@ -13,6 +13,7 @@
 #include "exchange.h"
 #include "lend.h"
 #include "own.h"
+#include "spread.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -44,6 +45,7 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
                   call, m->name);
     SPARI_TRY(check_held(m, call));
+    SPARI_TRY(spari_spread_refuse(s, call));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
@@ -210,6 +212,7 @@ static int check_session_static(spar_session *s, const char *call, int load_step
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, call));
     }
+    SPARI_TRY(spari_spread_refuse(s, call));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 

@@ -11,6 +11,7 @@
 #include "exchange.h"
 #include "lend.h"
 #include "own.h"
+#include "spread.h"
 #include "start.h"
 
 #include "../comm/enter.h"
@@ -42,6 +43,11 @@ static int check_begin(spar_session *s, const char *call, double dt) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
+    SPARI_REQUIRE(
+        s, !s->apart || s->touched, SPAR_ERR_STATE,
+        "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
+        "it to touched again, or save, and load into a session with ranks.state = all",
+        call);
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
@@ -70,6 +76,29 @@ static void hold_root(spar_member *m) {
     }
 }
 
+/* Memory for what the ranks exchange in the steps to come. */
+static int prepare_exchange(spar_session *s) {
+    if (s->apart || (s->touched && spari_comm_size(s->comm) > 1)) {
+        return s->apart ? spari_spread_prepare(s) : spari_spread_begin(s);
+    }
+    return s->started && spari_session_is_sealed(s) ? SPAR_OK : spari_session_seal(s, SPAR_OK);
+}
+
+/* Loads pushed before the clock runs are those at t^0. */
+static int begin_loads(spar_session *s) {
+    int pushed = 0;
+    SPARI_TRY(spari_session_exchange_loads(s, &pushed));
+    s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
+    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
+        spari_session_take_loads(s, m, m->load_history[0]);
+        memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+        if (m->work) {
+            spari_work_begin(m);
+        }
+    }
+    return SPAR_OK;
+}
+
 int spar_step_begin(spar_session *session, double dt) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
@@ -85,26 +114,16 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
-    if (s->started && !spari_session_is_sealed(s)) {
-        SPARI_TRY(spari_named(s, __func__, spari_session_seal(s, SPAR_OK)));
-    }
-    if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
-        SPARI_TRY(spari_session_seal(s, SPAR_OK));
-        int pushed = 0;
-        SPARI_TRY(spari_session_exchange_loads(s, &pushed));
-        s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
-        for (spar_member *m = s->members; m; m = m->next) {
-            spari_session_take_loads(s, m, m->load_history[0]);
-            memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
-            if (m->work) {
-                spari_work_begin(m);
-            }
-        }
+    SPARI_TRY(spari_named(s, __func__, prepare_exchange(s)));
+    if (!s->started) {
+        SPARI_TRY(begin_loads(s));
     }
     int order = s->past > 0 ? s->past : 0;
     for (spar_member *m = s->members; m; m = m->next) {
         hold_root(m);
-        predict_loads(m, order, dt, s->dt_last);
+        if (!s->aside) {
+            predict_loads(m, order, dt, s->dt_last);
+        }
     }
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_hold(j);
@@ -186,7 +205,7 @@ int spar_step_solve(spar_session *session) {
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
-    for (spar_member *m = s->members; m; m = m->next) {
+    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
         spari_member_solved(m, m->load_used);
         if (m->means) {
             spari_means_find(m);
@@ -202,6 +221,22 @@ int spar_step_solve(spar_session *session) {
 }
 
 /* ---- check ---- */
+
+/* The ranks that know the loads compare them, all are told what they have found. */
+static int check_apart(spar_session *s, const char *call, int *ended) {
+    spari_found found = {.ended = 1};
+    int status = SPAR_OK;
+    if (!s->aside) {
+        status = spari_coupling_check(s, call, &found.ended);
+        spari_coupling_last(s, &found.residual, &found.size);
+    }
+    status = spari_spread_found(s, status, &found);
+    if (s->aside) {
+        spari_coupling_record(s, found.residual, found.size);
+    }
+    *ended = found.ended;
+    return status;
+}
 
 /* status: of what this rank's host has done since the solution */
 static int check_iteration(spar_session *s, const char *call, int status, int *done) {
@@ -220,7 +255,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->failed = 1; /* until all below has gone well */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
-    for (spar_member *m = s->members; m; m = m->next) {
+    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
         if (m->added && !s->standing) {
             spari_added_correct(m, 1, m->load_pushed);
@@ -228,7 +263,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->iteration++;
     s->phase = SPARI_CHECKED;
-    SPARI_TRY(spari_coupling_check(s, call, &ended));
+    SPARI_TRY(s->apart ? check_apart(s, call, &ended) : spari_coupling_check(s, call, &ended));
     s->failed = 0;
     s->iterating = !ended;
     *done = ended;
@@ -268,6 +303,17 @@ static void shift_history(spar_session *s, spar_member *m) {
     spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
 }
 
+/* What is made of the loads. */
+static void accept_loads(spar_session *s) {
+    spari_coupling_accept(s);
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_work_of_joint(j);
+    }
+    for (spar_member *m = s->members; m; m = m->next) {
+        shift_history(s, m);
+    }
+}
+
 int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
@@ -290,12 +336,10 @@ int spar_step_accept(spar_session *session) {
         spari_start_accept(s);
         return SPAR_OK;
     }
-    spari_coupling_accept(s);
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_work_of_joint(j);
+    if (!s->aside) {
+        accept_loads(s);
     }
     for (spar_member *m = s->members; m; m = m->next) {
-        shift_history(s, m);
         spari_member_accept(m);
     }
     for (spar_joint *j = s->joints; j; j = j->next) {
@@ -319,7 +363,9 @@ static void reject(spar_session *s) {
         spari_start_reject(s);
         return;
     }
-    spari_coupling_reject(s);
+    if (!s->aside) {
+        spari_coupling_reject(s);
+    }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
@@ -334,6 +380,9 @@ static void reject(spar_session *s) {
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
     s->past = s->past > 0 ? s->past : 0;
+    if (!s->started) { /* as all ranks know it */
+        spari_spread_end(s);
+    }
 }
 
 int spar_step_reject(spar_session *session) {

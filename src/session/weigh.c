@@ -7,6 +7,8 @@
 #include "../member/structure.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
+#include "spread.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -67,7 +69,7 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     if (singular) { /* its numbers would make the sums none, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(spari_spread_core(s), c->image, images, SPAR_OK, s->message, sizeof s->message));
     double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, bare, c->shift, c->n);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n)) : all;
     *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0) &&
@@ -97,7 +99,7 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
             }
         }
     }
-    return spari_comm_sum(s->comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
+    return spari_comm_sum(spari_spread_core(s), image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* Into image [n], what this rank's members answer to the loads that the prediction has missed. 1: there is none. */
@@ -126,7 +128,7 @@ int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, do
     if (answer_miss(s, image, room)) {
         image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(spari_spread_core(s), image, n, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < n; i += 6) {
         double way = image[i] * image[i] + image[i + 1] * image[i + 1] + image[i + 2] * image[i + 2];
         square = isfinite(way) ? fmax(square, way) : INFINITY;

@@ -11,6 +11,7 @@
 #include "../member/means.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
+#include "../session/spread.h"
 #include "../solve/work.h"
 #include "remake.h"
 #include "retie.h"
@@ -182,6 +183,7 @@ static void confirm(spar_session *s, change *c) {
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_TRY(spari_spread_refuse(s, call));
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,

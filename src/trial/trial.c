@@ -13,6 +13,7 @@
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
+#include "../session/spread.h"
 #include "../session/start.h"
 #include "../solve/life.h"
 #include "../solve/reaction.h"
@@ -508,6 +509,7 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_TRY(spari_spread_refuse(s, call));
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     for (const spar_member *m = s->members; m; m = m->next) {

@@ -186,7 +186,7 @@ void do_spar_session_set_option(call *c) {
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
                                        "coupling.motion_rtol", "coupling.target", "advise.horizon",
                                        "advise.fluid_cost",    "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate"};
+                                       "coupling.estimate",    "ranks.state"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -205,7 +205,8 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1", "1e-6"},
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
-                                            {"off", "on", "on"}};
+                                            {"off", "on", "on"},
+                                            {"all", "touched", "touched"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);

@@ -272,6 +272,7 @@ static void settings(spar_session *s) {
                                             {"fluid.theta", "group"},
                                             {"fluid.far", "take"},
                                             {"fluid.audit", "on"},
+                                            {"ranks.state", "all"},
                                             {"advise.horizon", "0"},
                                             {"advise.fluid_cost", "0"},
                                             {"advise.coupling", "vary"}};

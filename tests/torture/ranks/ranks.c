@@ -719,6 +719,7 @@ static const struct setting {
     {"coupling.motion_atol", "coupling.motion_atol", "1", "0"},
     {"coupling.motion_rtol", "coupling.motion_rtol", "1", "0"},
     {"fluid.theta", "fluid.theta", "group", "average"},
+    {"ranks.state", "ranks.state", "touched", "all"},
     {"advise.dt", "advise.dt", "keep", "vary"},
     {"advise.nodes", "advise.nodes", "vary", "keep"},
     {"advise.fidelity", "advise.fidelity", "vary", "keep"},
