@@ -130,6 +130,7 @@ module spar
     procedure :: set_log => session_set_log
     procedure :: get_time => session_get_time
     procedure :: get_phase => session_get_phase
+    procedure :: get_balance => session_get_balance
     procedure :: sum => session_sum
     procedure :: get_iterations => session_get_iterations
     procedure :: get_residual => session_get_residual
@@ -492,6 +493,23 @@ contains
     call hand(status, c_phase, phase)
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_phase
+
+  ! Of arrays of different lengths as many ranks as the shortest has. One call, which is collective.
+  subroutine session_get_balance(self, members, expected, counted, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
+    real(c_double), contiguous, intent(inout), optional :: expected(:), counted(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: capacity
+
+    capacity = huge(capacity)
+    if (present(members)) capacity = min(capacity, ubound(members, 1, c_int64_t))
+    if (present(expected)) capacity = min(capacity, ubound(expected, 1, c_int64_t))
+    if (present(counted)) capacity = min(capacity, ubound(counted, 1, c_int64_t))
+    if (capacity == huge(capacity)) capacity = 0
+    call finish(spar_session_get_balance(self%handle, capacity, members, expected, counted), self%handle, stat, errmsg)
+  end subroutine session_get_balance
 
   ! status: what this rank has failed with, left out: nothing.
   subroutine session_sum(self, x, status, stat, errmsg)

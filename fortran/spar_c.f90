@@ -202,6 +202,15 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_report
 
+    function spar_session_get_balance(session, capacity, members, expected, counted) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      integer(c_int64_t), intent(inout), optional :: members(*)
+      real(c_double), intent(inout), optional :: expected(*), counted(*)
+      integer(c_int) :: status
+    end function spar_session_get_balance
+
     function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session

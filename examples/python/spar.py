@@ -61,6 +61,7 @@ call spar_session_get_option int session|session|value| key|char|in|[] capacity|
 call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]
 call spar_session_get_residual int session|session|value| residual|double|out| size|double|out|
 call spar_session_get_report int session|session|value| capacity|int64_t|value| report|double|out|[SPAR_REPORT_COUNT]
+call spar_session_get_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
 call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
 constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_SOLVED=3 SPAR_PHASE_CHECKED=4
 call spar_session_get_phase int session|session|value| phase|int|out|

@@ -287,6 +287,16 @@ SPAR_API int spar_session_get_residual(const spar_session *session, double *resi
 /* What the coupling says of itself; the same on all ranks. report[capacity]: out, by SPAR_REPORT_*, NULL: not wanted.
    Local. */
 SPAR_API int spar_session_get_report(const spar_session *session, int64_t capacity, double *report);
+/* Who solves how much, by rank (spar_member_set_owner). Collective; ranks may want different things of it.
+     capacity: in, of the arrays; as many as there are ranks are filled, 0 behind them
+     members[capacity]: out, how many members each rank solves
+     expected[capacity]: out, what an iteration of all of these is expected to take, instructions, by nodes, fidelity and
+           joints: owners are spread by it
+     counted[capacity]: out, what solving them has taken since they were made, instructions, by counted iterations and
+           tangents at the prices of advice; of joints it has nothing
+   Each NULL: not wanted. */
+SPAR_API int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
+                                      double *counted);
 /* The clock. Each NULL: not wanted. Local.
      t: out, t^n in s, the time of the last accepted step, from 0
      step: out, steps accepted
@@ -495,10 +505,12 @@ SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, i
      x0[3]: in, m; v0[3]: in, m/s; omega[3]: in, rad/s; each NULL: 0 */
 SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                               const double omega[3]);
-/* rank: in, who solves the member. Default: spread over the ranks in order of creation; members that joints tie are
-   solved by one rank, at the first step the one with least to do, unless one of them is given an owner here. Local. */
+/* rank: in, who solves the member; it needs no fluid nodes. Default: at the first step or static solution members go to
+   the rank that has least to do by then, the dearest first, by what nodes, fidelity and joints lead one to expect
+   (spar_session_get_balance); those that joints tie are solved by one rank, and an owner given here is that of all of
+   them. Local. */
 SPAR_API int spar_member_set_owner(spar_member *member, int rank);
-/* rank: out, who solves it. Local. */
+/* rank: out, who solves it; before the first step, or static solution, who would. Local. */
 SPAR_API int spar_member_get_owner(const spar_member *member, int *rank);
 /* Checks the description, that it is the same on every rank (SPAR_ERR_COMM if not), and takes all memory; nothing of
    it can be changed afterwards. Needed before anything below. Collective. */

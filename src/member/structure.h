@@ -41,7 +41,8 @@ struct spar_member {
     spar_member *next; /* in order of creation, the same on every rank */
     char *name;
     int kind, external, root, owner, committed;
-    int owner_given;                  /* by the host: else joints may move it to another rank */
+    int owner_given;                  /* by the host: else it goes to the rank that has least to do, */
+    int settled;                      /* where it is now */
     int effects;                      /* SPAR_EFFECT_*: asked for; after commit what is in force */
     int effects_given;                /* 0: besides these what the description implies */
     int effects_asked;                /* as given, whatever of it serves the fidelity of now */

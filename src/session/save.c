@@ -866,7 +866,7 @@ int spar_session_load(spar_session *session, const char *path) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
+    status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? fetch(s, &l, path) : status;
     if (status == SPAR_OK) {
         status = agree(s, check_image(s, &l));

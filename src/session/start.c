@@ -44,9 +44,7 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     static const double last[2] = {1, 1};
     const spari_alike alike[] = {spari_real("dt", dt)};
     SPARI_TRY(spari_enter_alike(s, call, alike, 1, check_start(s, call, dt)));
-    if (s->joints) {
-        SPARI_TRY(spari_named(s, call, spari_assemblies_make(s, call)));
-    }
+    SPARI_TRY(spari_named(s, call, spari_solvers_place(s, call)));
     SPARI_TRY(spari_named(s, call, spari_session_seal(s, room_for_start(s))));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     int scheme = spari_coupling_scheme_of(s->scheme)->iterates ? s->scheme : SPAR_COUPLING_IQN_ILS;

@@ -188,7 +188,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_member_enter(member, __func__, alike, 1, check_member_static(member, __func__, load_steps)));
     double *aside = NULL;
-    int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
+    int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, member, &aside)) : status;
     if (status == SPAR_OK) {
         for (spar_member *m = s->members; m; m = m->next) {
@@ -433,7 +433,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, __func__, load_steps)));
     double *aside = NULL;
-    int status = s->joints ? spari_assemblies_make(s, __func__) : SPAR_OK;
+    int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;
     status = status == SPAR_OK ? spari_coupling_lay_aside(s, s->scheme) : status;
     if (status != SPAR_OK) {

@@ -107,8 +107,8 @@ int spar_step_begin(spar_session *session, double dt) {
     int anew = !spari_coupling_fits(s);
     const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, __func__, dt)));
-    if (!s->started && s->joints) {
-        SPARI_TRY(spari_named(s, __func__, spari_assemblies_make(s, __func__)));
+    if (!s->started) {
+        SPARI_TRY(spari_named(s, __func__, spari_solvers_place(s, __func__)));
     }
     if (anew) { /* what the coupling reports is lost: after all that may be refused for what the host said */
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));

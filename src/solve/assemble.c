@@ -4,6 +4,7 @@
 #include "assembly.h"
 #include "fidelity.h"
 #include "life.h"
+#include "owners.h"
 #include "tied.h"
 
 #include <stdio.h>
@@ -116,76 +117,7 @@ static int make_system(spari_assembly *a) {
     return spari_tied_room(a);
 }
 
-/* ---- who solves it ---- */
-
-/* What a member takes to solve: enough to spread assemblies over the ranks. */
-static double cost_of(const spar_member *m) {
-    double nodes = m->body && !m->row->whole ? m->body->unique : 1;
-    return !m->row->solved ? 0 : m->row->takes_modes ? (double)m->modes / 6 : nodes * m->per_element;
-}
-
-static double cost_of_all(const spari_assembly *a) {
-    double sum = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        sum += cost_of(a->limb[i].member);
-    }
-    return sum;
-}
-
-/* The owner that the host has given its members; -1: none. */
-static int find_given_owner(spari_assembly *a) {
-    const spar_member *by = NULL;
-    a->owner = -1;
-    for (int i = 0; i < a->limbs; i++) {
-        const spar_member *m = a->limb[i].member;
-        if (!m->owner_given) {
-            continue;
-        }
-        SPARI_REQUIRE(a->session, !by || by->owner == m->owner, SPAR_ERR_ARGUMENT,
-                      "members '%s' and '%s' are tied by joints, and their owners are ranks %d and %d: they are solved "
-                      "on one; give them one owner, or none",
-                      by->name, m->name, by->owner, m->owner);
-        by = m;
-        a->owner = m->owner;
-    }
-    return SPAR_OK;
-}
-
-/* The dearest one that has no owner yet; NULL: all have. */
-static spari_assembly *dearest_left(const spar_session *s) {
-    spari_assembly *found = NULL;
-    for (spari_assembly *a = s->assemblies; a; a = a->next) {
-        if (a->owner < 0 && (!found || cost_of_all(a) > cost_of_all(found))) {
-            found = a;
-        }
-    }
-    return found;
-}
-
-/* Those that the host gives no owner go to the rank that has least to do, the dearest first; alike on all ranks. */
-static int choose_owners(spar_session *s) {
-    int ranks = spari_comm_size(s->comm);
-    double *busy = spari_zalloc(ranks, sizeof *busy);
-    int status = busy ? SPAR_OK : SPAR_ERR_MEMORY;
-    for (const spar_member *m = s->members; m && busy; m = m->next) {
-        busy[m->owner] += m->committed && !m->assembly ? cost_of(m) : 0;
-    }
-    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
-        status = find_given_owner(a);
-        if (status == SPAR_OK && a->owner >= 0) {
-            busy[a->owner] += cost_of_all(a);
-        }
-    }
-    for (spari_assembly *a = NULL; status == SPAR_OK && (a = dearest_left(s)) != NULL;) {
-        a->owner = 0;
-        for (int r = 1; r < ranks; r++) {
-            a->owner = busy[r] < busy[a->owner] ? r : a->owner;
-        }
-        busy[a->owner] += cost_of_all(a);
-    }
-    free(busy);
-    return status;
-}
+/* ---- where it is solved ---- */
 
 /* Its members' solvers on its owner; what they had waits. */
 static int move_members(spari_assembly *a) {
@@ -290,7 +222,7 @@ int spari_joints_place(spar_session *s) {
 static int make_all(spar_session *s) {
     SPARI_TRY(spari_joints_place(s));
     int status = gather_all(s);
-    status = status == SPAR_OK ? choose_owners(s) : status;
+    status = status == SPAR_OK ? spari_owners_of_assemblies(s) : status;
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
         status = move_members(a);
         status = status == SPAR_OK ? make_system(a) : status;
@@ -309,6 +241,11 @@ static int agree_on_joints(const spar_session *s, const char *call, int status) 
         SPARI_TRY(status);
     }
     return SPAR_OK;
+}
+
+int spari_solvers_place(spar_session *s, const char *call) {
+    SPARI_TRY(s->joints ? spari_assemblies_make(s, call) : SPAR_OK);
+    return s->started ? SPAR_OK : spari_owners_settle(s);
 }
 
 int spari_assemblies_make(spar_session *s, const char *call) {

@@ -13,6 +13,8 @@
    Before the first step, collective where there are joints; where they are made already it does nothing. call: in whose
    name. */
 int spari_assemblies_make(spar_session *session, const char *call);
+/* That, where there are joints; and before the first step owners for the members without (owners.h). */
+int spari_solvers_place(spar_session *session, const char *call);
 /* What is solved for members that joints tie, made for the joints that there are where it depends on them; where that
    is done it does nothing. Local; a status and a message. */
 int spari_members_retie(spar_session *session);

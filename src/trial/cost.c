@@ -36,7 +36,7 @@ double spari_cost_members(const spar_session *s) {
     double sum = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         spari_effort e = {0};
-        if (m->row->effort && spari_fidelity_is_here(m)) {
+        if (m->committed && m->row->effort && spari_fidelity_is_here(m)) {
             m->row->effort(m, &e);
         }
         sum += (double)e.iterations * whole(iteration_cost(&e)) + (double)e.tangents * whole(tangent_cost(&e));

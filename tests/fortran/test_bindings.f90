@@ -31,6 +31,7 @@ program test_bindings
   call refused(spar_session_set_option(none), 'spar_session_set_option')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
   call refused(spar_session_get_phase(none), 'spar_session_get_phase')
+  call refused(spar_session_get_balance(none, 0_c_int64_t), 'spar_session_get_balance')
   call refused(spar_session_sum(none, 0_c_int, 0_c_int64_t), 'spar_session_sum')
   call refused(spar_member_get_session(none), 'spar_member_get_session')
   call refused(spar_fluid_get_member(none), 'spar_fluid_get_member')

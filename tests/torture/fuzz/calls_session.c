@@ -289,6 +289,15 @@ void do_spar_session_sum(call *c) {
     RUN(c, spar_session_sum(l->s, status, n, x));
 }
 
+void do_spar_session_get_balance(call *c) {
+    live_session *l = arg_session(c);
+    int64_t n = arg_count(c, 0, 6);
+    int64_t *members = arg_out(c, length(n) * (int64_t)sizeof *members, 1);
+    double *expected = arg_out(c, length(n) * (int64_t)sizeof *expected, 1);
+    double *counted = arg_out(c, length(n) * (int64_t)sizeof *counted, 1);
+    RUN(c, spar_session_get_balance(l->s, n, members, expected, counted));
+}
+
 void do_spar_session_get_option(call *c) {
     static const char *const keys[] = {"coupling.unconverged", "fluid.audit",   "coupling.columns",
                                        "coupling.filter",      "coupling.norm", "coupling.patience",

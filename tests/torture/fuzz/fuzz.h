@@ -66,6 +66,7 @@ enum {
     CALL(spar_fluid_get_interpolation, 20, FUZZ_PURE)                                                                  \
     CALL(spar_session_get_phase, 20, FUZZ_PURE)                                                                        \
     CALL(spar_session_sum, 20, FUZZ_PURE)                                                                              \
+    CALL(spar_session_get_balance, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_session, 20, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_name, 10, FUZZ_PURE | FUZZ_TEXT)                                                              \
     CALL(spar_fluid_get_member, 20, FUZZ_PURE)                                                                         \

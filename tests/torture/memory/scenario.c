@@ -369,6 +369,7 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
 /* An exact beam with all its loads under the calls of one step, and what a step can be asked. */
 static void act_step(void) {
     host h = {.fluids = 1, .members = 1, .at = 1};
+    int64_t solved[2];
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
@@ -423,6 +424,7 @@ static void act_step(void) {
     CALL(spar_fluid_get_member, h.fluid[0], &owner);
     CALL(spar_member_get_session, owner, &whole);
     CALL(spar_session_sum, whole, SPAR_OK, 6, load);
+    CALL(spar_session_get_balance, whole, 2, solved, load, NULL);
     CALL(spar_fluid_fail, h.fluid[0], SPAR_ERR_NUMERIC, "between steps nobody waits for it");
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);

@@ -266,6 +266,10 @@ static int make_sum(scene *c, const arguments *a) {
     double x[] = {1, 2};
     return spar_session_sum(c->session, SPAR_OK, 2, a->no_out ? NULL : x);
 }
+static int make_balance(scene *c, const arguments *a) {
+    int64_t members[2];
+    return spar_session_get_balance(c->session, a->no_out ? -1 : 2, members, NULL, NULL);
+}
 static int make_aero(scene *c, const arguments *a) {
     return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
                                     a->no_out ? -1 : SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, out);
@@ -321,6 +325,7 @@ static const struct call {
     {"spar_session_apply_advice", make_apply, IDLE, SETTINGS},
     {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
     {"spar_session_sum", make_sum, IDLE, OUT | SETTINGS},
+    {"spar_session_get_balance", make_balance, IDLE, OUT},
 };
 enum {
     CREATE = 0,

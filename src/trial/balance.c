@@ -1,0 +1,60 @@
+/* Who solves how much. */
+#include "../base/quiet.h"
+#include "../comm/enter.h"
+#include "../solve/assembly.h"
+#include "../solve/fidelity.h"
+#include "../solve/owners.h"
+#include "cost.h"
+
+#include <stdlib.h>
+
+enum { BALANCE_MEMBERS, BALANCE_EXPECTED, BALANCE_COUNTED, BALANCE_COLUMNS };
+
+/* Of this rank, from what it solves. */
+static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
+    int rank = spari_comm_rank(s->comm);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        if (m->committed && m->row->solved && m->owner == rank) {
+            own[BALANCE_MEMBERS]++;
+            own[BALANCE_EXPECTED] += m->assembly ? 0 : spari_member_expected(m);
+        }
+    }
+    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        own[BALANCE_EXPECTED] += spari_assembly_owner(a) == rank ? spari_assembly_expected(a) : 0;
+    }
+    own[BALANCE_COUNTED] = spari_cost_members(s);
+}
+
+int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
+                             double *counted) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
+    int64_t ranks = spari_comm_size(s->comm);
+    double *all = NULL;
+    int status = spari_need_capacity(s, __func__, capacity);
+    if (status == SPAR_OK) {
+        all = spari_zalloc(BALANCE_COLUMNS * ranks + 1, sizeof *all);
+        status = all ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the figures of the ranks", __func__);
+    }
+    status = spari_enter(s, __func__, status);
+    if (status == SPAR_OK && all) {
+        find_balance(s, all + BALANCE_COLUMNS * spari_comm_rank(s->comm));
+        status = spari_named(
+            s, __func__, spari_comm_sum(s->comm, all, BALANCE_COLUMNS * ranks, SPAR_OK, s->message, sizeof s->message));
+    }
+    for (int64_t r = 0; r < capacity && status == SPAR_OK && all; r++) {
+        const double *of = r < ranks ? all + BALANCE_COLUMNS * r : NULL;
+        if (members) {
+            members[r] = of ? (int64_t)of[BALANCE_MEMBERS] : 0;
+        }
+        if (expected) {
+            expected[r] = of ? of[BALANCE_EXPECTED] : 0;
+        }
+        if (counted) {
+            counted[r] = of ? of[BALANCE_COUNTED] : 0;
+        }
+    }
+    free(all);
+    return status;
+}
