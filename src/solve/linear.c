@@ -3,6 +3,7 @@
 #include "../base/blas.h"
 
 #include "../base/status.h"
+#include "../math/lanes.h"
 
 #include <gsl/gsl_cblas.h>
 #include <gsl/gsl_errno.h>
@@ -10,6 +11,20 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define SPARI_WIDTH 2
+#include "../math/width.h"
+#include "linear_lanes.h"
+#ifdef SPARI_X86
+#define SPARI_WIDTH 4
+#include "../math/width.h"
+#include "linear_lanes.h"
+#define SPARI_WIDTH 8
+#include "../math/width.h"
+#include "linear_lanes.h"
+#endif
+#define SPARI_WIDTH 0
+#include "../math/width.h"
 
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
    it got any. */
@@ -200,19 +215,36 @@ int spari_linear_definite(spari_linear *s) {
     return status == GSL_SUCCESS;
 }
 
+typedef struct linear_kernels {
+    void (*dense)(int64_t n, const double *A, double *x);
+    void (*band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap, double *x);
+} linear_kernels;
+
+static linear_kernels kernels_here(void) {
+#ifdef SPARI_X86
+    switch (spari_lanes_here(8)) {
+    case 8:
+        return (linear_kernels){solve_dense_avx512, solve_band_avx512};
+    case 4:
+        return (linear_kernels){solve_dense_avx2, solve_band_avx2};
+    default:
+        break;
+    }
+#endif
+    return (linear_kernels){solve_dense_plain, solve_band_plain};
+}
+
 int spari_linear_solve(spari_linear *s, double *x) {
-    int n = (int)s->n;
+    int64_t n = (int64_t)s->n;
     if (s->elements == 1) {
-        for (int i = 0; i < n; i++) {
+        for (int64_t i = 0; i < n; i++) {
             double there = x[s->swap[i] - 1];
             x[s->swap[i] - 1] = x[i];
             x[i] = there;
         }
-        SPARI_BLAS(cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, n, s->A->data, n, x, 1));
-        SPARI_BLAS(cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n, s->A->data, n, x, 1));
+        kernels_here().dense(n, s->A->data, x);
     } else {
-        gsl_vector_view v = gsl_vector_view_array(x, s->n);
-        SPARI_BLAS(gsl_linalg_LU_band_svx(s->band, s->band, s->A, s->band_swap, &v.vector));
+        kernels_here().band(n, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, s->band_swap->data, x);
     }
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }
