@@ -228,6 +228,24 @@ double spari_alpha_correct(const spari_solver *s, const spar_member *member, con
     return largest;
 }
 
+/* A place goes by its node's increment and, in the term of Magnus' series, by its velocity: what that loses the
+   increment gets. */
+void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
+                             double b) {
+    for (int i = 0; i < s->n; i++) {
+        double turn[3];
+        spari_cross(s->dx + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+        for (int k = 0; k < 3; k++) {
+            s->increment[6 * i + 3 + k] += v * c->h * c->h / 12 * turn[k];
+        }
+        for (int k = 6 * i; k < 6 * i + 6; k++) {
+            e->to.v[k] -= v * s->dx[k];
+            e->to.a[k] -= a * s->dx[k];
+            e->to.b[k] -= b * s->dx[k];
+        }
+    }
+}
+
 double spari_alpha_size(const spari_solver *s, const double *x) {
     double largest = 0;
     for (int i = 0; i < s->n; i++) {

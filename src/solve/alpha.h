@@ -28,6 +28,9 @@ void spari_alpha_turn_forth(const spari_solver *s, double *dx);
 /* x -= correction dx, in global axes and shortened to `longest`; its size. */
 double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
                            double longest, double *x, double *dx);
+/* The corrections, times v, a and b, come off velocities and accelerations at the end while the places stay. */
+void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
+                             double b);
 /* The size of increments: by the member's length, in radians. */
 double spari_alpha_size(const spari_solver *s, const double *x);
 /* Whether a kept tangent's coefficient is near enough. */

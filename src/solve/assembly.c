@@ -2,6 +2,7 @@
 #include "assembly.h"
 
 #include "../base/scene.h"
+#include "../math/rotation.h"
 #include "fidelity.h"
 #include "tied.h"
 
@@ -58,6 +59,15 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
+/* Takes as much of the links' corrections off their loads. */
+static void correct_loads(spari_assembly *a, double cut) {
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->link[i].joint->after.load[k] -= cut * a->link[i].correction[k];
+        }
+    }
+}
+
 /* Takes the corrections off, all shortened alike; their size before. */
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
@@ -68,12 +78,37 @@ static double correct(spari_assembly *a, double longest) {
     for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->correct(a->limb + i, cut);
     }
+    correct_loads(a, cut);
+    return largest;
+}
+
+/* Brings the rates onto the constraints' while the places stay: what the correction before it, for the places' sake,
+   leaves of the rates' gaps as they were then. *size: at least that of what it takes off. */
+static int correct_rates(spari_assembly *a, double cut, double *size) {
+    double most = 0;
     for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
         for (int k = 0; k < 6; k++) {
-            a->link[i].joint->after.load[k] -= cut * a->link[i].correction[k];
+            l->gap[k] = l->row[k] >= 0 ? spari_link_rate_gap(l, k) / a->limb[0].scheme.rate - l->gap[k] : 0;
+            most = fmax(most, fabs(l->gap[k]));
         }
     }
-    return largest;
+    if (!(most > 0)) {
+        return 0;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->clear(a->limb + i);
+    }
+    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_scheme *c = &a->limb[i].scheme;
+        *size = fmax(*size, a->limb[i].row->change(a->limb + i));
+        a->limb[i].row->shift_rates(a->limb + i, cut * c->rate, cut * c->cm, cut * c->cb);
+    }
+    correct_loads(a, cut);
+    return 0;
 }
 
 static double tolerance(const spari_assembly *a) {
@@ -134,6 +169,9 @@ static const char *attempt_all(spari_assembly *a, effort how, double s, double d
             return "found a singular tangent";
         }
         double correction = correct(a, longest);
+        if (a->violent && correct_rates(a, correction > longest ? longest / correction : 1, &correction)) {
+            return "found a singular tangent";
+        }
         a->moved += correction;
         a->standing = a->standing && a->moved < near_tied;
         double theta = last > 0 ? correction / last : 0;
@@ -181,34 +219,45 @@ static int project(spari_assembly *a, double s, double dt) {
             return 1;
         }
         for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].row->shift_rates(a->limb + i);
+            a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
         }
     }
     return 0;
 }
 
-/* The states at the end of a substep, by attempts that get more careful. */
-static int newton_all(spari_assembly *a, double s, double dt) {
+/* By attempts that get more careful. NULL, or what went wrong in the last. */
+static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
     static const effort attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
                                       {0, 0, SPARI_KEEP_ACCELERATION},
                                       {0, 1, SPARI_KEEP_VELOCITY},
                                       {0, 1, SPARI_KEEP_PLACE}};
     const char *wrong = NULL;
+    for (size_t k = kept_serves(a) ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
+        predict(a, attempts[k].stays);
+        wrong = attempt_all(a, attempts[k], s, dt, iterations);
+        if (!wrong) {
+            return NULL;
+        }
+    }
+    return wrong;
+}
+
+/* The states at the end of a substep. */
+static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
     for (int i = 0; i < a->links; i++) {
         a->link[i].begin = a->link[i].joint->after;
     }
-    for (size_t k = kept_serves(a) ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
-        predict(a, attempts[k].stays);
-        wrong = attempt_all(a, attempts[k], s, dt, &iterations);
-        if (!wrong) {
-            return SPAR_OK;
-        }
+    const char *wrong = attempts_of(a, s, dt, &iterations);
+    if (wrong && !a->violent && !a->limb[0].scheme.still) {
+        a->violent = 1;
+        wrong = attempts_of(a, s, dt, &iterations);
     }
-    return spari_fail(a->session, SPAR_ERR_NUMERIC,
-                      "the members that joint '%s' ties together: Newton %s (%d iterations) in the step from t = %g; "
-                      "take a smaller dt or more substeps, or look at the loads",
-                      a->link[0].joint->name, wrong, iterations, a->session->time);
+    SPARI_REQUIRE(a->session, !wrong, SPAR_ERR_NUMERIC,
+                  "the members that joint '%s' ties together: Newton %s (%d iterations) in the step from t = %g; "
+                  "take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
+                  a->link[0].joint->name, wrong, iterations, a->session->time);
+    return SPAR_OK;
 }
 
 /* ---- the start ---- */
@@ -266,11 +315,7 @@ static int start_all(spari_assembly *a) {
         for (int i = 0; i < a->limbs && !singular; i++) {
             a->limb[i].row->correct_start(a->limb + i);
         }
-        for (int i = 0; i < a->links; i++) {
-            for (int n = 0; n < 6; n++) {
-                a->link[i].joint->after.load[n] -= a->link[i].correction[n];
-            }
-        }
+        correct_loads(a, 1);
     }
     a->factored = 0;
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
@@ -318,6 +363,19 @@ static int publish_all(spari_assembly *a, double dt) {
                   "smaller dt",
                   a->link[0].joint->name, a->session->time);
     return SPAR_OK;
+}
+
+/* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself. */
+static const double farthest_turn = 0.1;
+
+/* Joints that turn far in a substep h, by their rates at its beginning. */
+static int turns_far(const spari_assembly *a, double h) {
+    double most = 0;
+    for (int i = 0; i < a->links; i++) {
+        const spar_joint *j = a->link[i].joint;
+        most = fmax(most, j->tie.line ? 0 : spari_norm(j->now.rate + 3));
+    }
+    return most * h > farthest_turn;
 }
 
 static void begin_links(spari_assembly *a) {
@@ -372,6 +430,7 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
     if (!started && !a->limb[0].scheme.still) {
         SPARI_TRY(start_all(a));
     }
+    a->violent = !a->limb[0].scheme.still && turns_far(a, dt / A);
     for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->begin(a->limb + i);
     }
@@ -382,7 +441,10 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
         for (int i = 0; i < a->links; i++) {
             spari_joint_drive_at(a->link[i].joint, (double)k / A, dt, &a->link[i].drive);
         }
-        int status = newton_all(a, (double)k / A, dt);
+        int leaps = k == 1 && !a->limb[0].scheme.still &&
+                    spari_scheme_leaps(a->limb[0].solver->steps.h_begin, a->limb[0].scheme.h),
+            status = leaps ? spari_tied_leap(a, dt) : SPAR_OK;
+        status = status == SPAR_OK ? newton_all(a, (double)k / A, dt) : status;
         if (status != SPAR_OK) {
             a->factored = 0;
             return status;

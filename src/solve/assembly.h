@@ -1,8 +1,9 @@
 /* Members that joints tie together, solved as one: each by its own factors, the joints between their ends by a banded
    system of what remains of the members there (condense.h) and of the constraints. Constraints hold at the level of
    positions, with their loads as multipliers in generalised-alpha (Arnold & Bruls, Multibody System Dynamics 18
-   (2007)), and the velocities at the end of a step are brought onto them; the system is scaled so that its condition
-   does not depend on dt (Bottasso, Dopico & Trainelli, Multibody System Dynamics 19 (2008)). */
+   (2007)), and the velocities at the end of a step are brought onto them, in violent motion within the step's equations
+   (Arnold, Bruls & Cardona, Numerische Mathematik 129 (2015)); the system is scaled so that its condition does not
+   depend on dt (Bottasso, Dopico & Trainelli, Multibody System Dynamics 19 (2008)). */
 #ifndef SPARI_ASSEMBLY_H
 #define SPARI_ASSEMBLY_H
 

@@ -318,7 +318,7 @@ static int leap(spari_frame *f, const spar_member *m, const spari_scheme *c, spa
     }
     memcpy(y, from->b, (size_t)f->n * sizeof *y);
     memset(y, 0, (size_t)f->held * sizeof *y);
-    if (spari_scheme_filter(c, f->linear, f->held, f->n, times_mass_of_frame, f, m, f->r, y)) {
+    if (spari_scheme_filter_vector(c, f->linear, f->held, f->n, times_mass_of_frame, f, m, f->r, y)) {
         return 1;
     }
     cblas_daxpy(f->n, -1, y, 1, from->b, 1);

@@ -95,6 +95,21 @@ static void subtract(const spari_solver *s, const spar_member *m, const double *
     }
 }
 
+void spari_leap_take_spin(const spari_solver *s, const spar_member *m, const spari_state *at, const spari_scheme *c,
+                          double *y) {
+    rigid g;
+    means(s, m, at->q, at->v, y, &g);
+    double z = spari_dot(g.omega, g.omega) / c->cm, resolved = 1 - z / (1 + z) * (z / (1 + z));
+    for (int i = 0; i < s->n; i++) {
+        double r[3], a[3];
+        arm_now(m, at->q, i, g.middle, r);
+        centripetal(&g, r, a);
+        for (int k = 0; k < 3; k++) {
+            y[6 * i + k] -= resolved * a[k];
+        }
+    }
+}
+
 /* The beginning of a step. Arrays of the solver that are not in use there serve as room: `rest` for the forces at rest,
    `still` for velocities of zero. */
 typedef struct leap_state {
@@ -131,7 +146,7 @@ int spari_leap(spari_solver *s, const spar_member *m, const spari_state *at, con
     memset(still, 0, (size_t)n6 * sizeof *still);
     spari_body_residual(s->body, at->q, still, still, 0, rest, NULL);
     if (spari_solver_factor(s, m, at->q, at->v, at->a, 1, c->cm, c->cv, NULL) ||
-        spari_scheme_filter(c, s->linear, held, n6, times_mass, &l, m, s->r, y)) {
+        spari_scheme_filter_vector(c, s->linear, held, n6, times_mass, &l, m, s->r, y)) {
         return 1;
     }
     for (int i = 0; i < n6; i++) {

@@ -10,4 +10,9 @@
 int spari_leap(spari_solver *solver, const spar_member *member, const spari_state *at, const spari_scheme *c,
                double *b);
 
+/* y [unique][6] less what the mean turning of the nodes in the state `at` gives each, omega x (omega x r) about their
+   middle, as far as the step of c resolves it: one that vibrates turns too. */
+void spari_leap_take_spin(const spari_solver *solver, const spar_member *member, const spari_state *at,
+                          const spari_scheme *c, double *y);
+
 #endif

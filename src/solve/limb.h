@@ -44,9 +44,17 @@ typedef struct spari_limb_row {
     void (*correct)(struct spari_limb *p, double cut);
     /* The size of what the step has moved it by. */
     double (*way)(const struct spari_limb *p);
-    /* No forces at all; the rates at the end less the corrections. */
+    /* No forces at all; the corrections, times v, a and b, come off the velocities and accelerations at the end. */
     void (*clear)(struct spari_limb *p);
-    void (*shift_rates)(struct spari_limb *p);
+    void (*shift_rates)(struct spari_limb *p, double v, double a, double b);
+
+    /* A step much longer than the last (assembly_leap.c). The tangent at its beginning is formed, and the state that
+       links see has as accelerations y those carried along, less what the turning of the member gives them; 0 or 1. Its
+       forces become M y. The corrections, times f, come off y. y comes off what is carried along. */
+    int (*leap)(struct spari_limb *p);
+    void (*push)(struct spari_limb *p);
+    void (*take_off)(struct spari_limb *p, double f);
+    void (*land)(struct spari_limb *p);
 
     /* After the step: its forces become a little more load [nodes][6] of its nodes; and the motion [nodes][6] of these
        that the corrections are, displacements and small turns, global axes. */

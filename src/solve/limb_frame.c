@@ -282,23 +282,69 @@ static void clear_frame(spari_limb *p) {
     memset(p->force, 0, (size_t)(6 * p->condensed->ends) * sizeof(double));
 }
 
-static void shift_rates_of_frame(spari_limb *p) {
+static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
     spari_frame *f = p->frame;
     double *dx = p->solver->dx;
-    for (int k = 0; k < 6; k += 3) {
-        if (p->ends.root) {
-            spari_rotate_back(p->ends.root->q + 3, dx + k, dx + k);
-        }
-        for (int m = k; m < k + 3; m++) {
-            p->ends.to.v[m] -= dx[m];
-        }
+    for (int k = 0; k < 6 && p->ends.root; k += 3) {
+        spari_rotate_back(p->ends.root->q + 3, dx + k, dx + k);
     }
+    spari_alpha_shift_rates(p->solver, &p->scheme, &p->ends, v, a, b);
     for (int k = 6; k < f->n; k++) {
-        f->to.v[k] -= f->dx[k];
+        f->to.v[k] -= v * f->dx[k];
+        f->to.a[k] -= a * f->dx[k];
+        f->to.b[k] -= b * f->dx[k];
     }
     spari_root_show(p->solver, p->member, &p->ends);
     look_at_end_of_step(p);
 }
+
+/* ---- a leap ---- */
+
+/* y stands in `to`, which is not in use there: the deformation's, and the root's in its solver. */
+static int leap_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    memcpy(f->to.y, f->from.y, (size_t)(4 * f->n) * sizeof *f->to.y);
+    memcpy(s->to.q, s->from.q, 25 * sizeof *s->to.q);
+    see_from_root(p, &s->to, &f->to);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    if (spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, unit, f->r)) {
+        return 1;
+    }
+    memset(s->to.v, 0, 12 * sizeof *s->to.v);
+    memset(f->to.v, 0, (size_t)(2 * f->n) * sizeof *f->to.v);
+    see_from_root(p, &s->to, &f->to);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->carriage->kept); /* at rest */
+    memcpy(s->to.a, p->ends.from.b, 6 * sizeof *s->to.a);
+    memset(s->to.a, 0, (size_t)spari_member_held(p->member) * sizeof *s->to.a);
+    memcpy(f->to.a + 6, f->from.b + 6, (size_t)(f->n - 6) * sizeof *f->to.a);
+    see_from_root(p, &s->to, &f->to);
+    return 0;
+}
+
+static void push_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    cblas_daxpy(f->n, -1, f->carriage->kept, 1, f->r, 1);
+    show_forces(p, &f->to);
+}
+
+static void take_off_frame(spari_limb *p, double by) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    cblas_daxpy(6, -by, s->dx, 1, s->to.a, 1);
+    cblas_daxpy(f->n - 6, -by, f->dx + 6, 1, f->to.a + 6, 1);
+    see_from_root(p, &s->to, &f->to);
+}
+
+static void land_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    cblas_daxpy(6, -1, p->solver->to.a, 1, p->ends.from.b, 1);
+    cblas_daxpy(f->n - 6, -1, f->to.a + 6, 1, f->from.b + 6, 1);
+}
+
+/* ---- its answer ---- */
 
 /* As forces r and on the ends. The first six are force and moment of the whole about the root, arms deformed: modal
    unknowns have those of the reference already. */
@@ -492,6 +538,10 @@ const spari_limb_row spari_limb_frame = {
     .way = way_of_frame,
     .clear = clear_frame,
     .shift_rates = shift_rates_of_frame,
+    .leap = leap_frame,
+    .push = push_frame,
+    .take_off = take_off_frame,
+    .land = land_frame,
     .take_more = take_more_of_frame,
     .show_more = show_more_of_frame,
     .start = start_of_frame,

@@ -9,6 +9,7 @@
 #include "arms.h"
 #include "drive.h"
 #include "fidelity.h"
+#include "leap.h"
 #include "limb.h"
 
 #include <stdlib.h>
@@ -212,18 +213,71 @@ static void clear_nodes(spari_limb *p) {
     memset(p->solver->r, 0, (size_t)(6 * p->solver->n) * sizeof(double));
 }
 
-static void shift_rates_of_nodes(spari_limb *p) {
+static void shift_rates_of_nodes(spari_limb *p, double v, double a, double b) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n; k += 3) {
         if (p->ends.root) {
             spari_rotate_back(p->ends.root->q + 3, s->dx + k, s->dx + k);
         }
-        for (int m = k; m < k + 3; m++) {
-            p->ends.to.v[m] -= s->dx[m];
-        }
     }
+    spari_alpha_shift_rates(s, &p->scheme, &p->ends, v, a, b);
     spari_root_show(s, p->member, &p->ends);
 }
+
+/* ---- a leap ---- */
+
+/* y stands in `to`, which is not in use there, with velocities of zero; the forces at rest in tinv. */
+static int leap_nodes(spari_limb *p) {
+    spari_solver *s = p->solver;
+    const spari_state *from = &s->from;
+    int n6 = 6 * s->n;
+    double *y = s->to.a;
+    memcpy(s->to.q, from->q, (size_t)(7 * s->n) * sizeof *y);
+    memset(s->to.v, 0, (size_t)n6 * sizeof *y);
+    memcpy(y, p->ends.from.b, (size_t)n6 * sizeof *y);
+    for (int i = 0; i < n6 && p->ends.root; i += 3) {
+        spari_rotate(from->q + 3, y + i, y + i);
+    }
+    if (!p->ends.root) {
+        spari_leap_take_spin(s, p->member, from, &p->scheme, y);
+    }
+    memset(y, 0, (size_t)spari_member_held(p->member) * sizeof *y);
+    p->state = &s->to;
+    spari_body_residual(s->body, from->q, s->to.v, s->to.v, 0, s->tinv, NULL);
+    return spari_solver_factor(s, p->member, from->q, from->v, from->a, 1, p->scheme.cm, p->scheme.cv, NULL);
+}
+
+static void push_nodes(spari_limb *p) {
+    spari_solver *s = p->solver;
+    spari_body_residual(s->body, s->to.q, s->to.v, s->to.a, 0, s->r, NULL);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->r[i] -= s->tinv[i];
+    }
+    memset(s->r, 0, (size_t)spari_member_held(p->member) * sizeof *s->r);
+}
+
+static void take_off_nodes(spari_limb *p, double f) {
+    const spari_solver *s = p->solver;
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->to.a[i] -= f * s->dx[i];
+    }
+}
+
+static void land_nodes(spari_limb *p) {
+    const spari_solver *s = p->solver;
+    for (int i = 0; i < 6 * s->n; i += 3) {
+        double *y = s->to.a + i;
+        if (p->ends.root) {
+            spari_rotate_back(s->from.q + 3, y, y);
+        }
+        for (int k = 0; k < 3; k++) {
+            p->ends.from.b[i + k] -= y[k];
+        }
+    }
+    p->state = &p->ends.seen;
+}
+
+/* ---- its answer ---- */
 
 static void take_more_of_nodes(spari_limb *p, const double *load) {
     p->member->row->take_more(p->member, load, p->solver->r);
@@ -345,6 +399,10 @@ const spari_limb_row spari_limb_nodes = {
     .way = way_of_nodes,
     .clear = clear_nodes,
     .shift_rates = shift_rates_of_nodes,
+    .leap = leap_nodes,
+    .push = push_nodes,
+    .take_off = take_off_nodes,
+    .land = land_nodes,
     .take_more = take_more_of_nodes,
     .show_more = show_more_of_nodes,
     .start = start_nodes,

@@ -51,9 +51,8 @@ double spari_scheme_ratio(double before, double h) {
     return before > 0 && h != before ? fmin(h / before, 4) : 1;
 }
 
-/* Whether a step is much longer than the one before (0: none). Below, what rho_inf = 0.9 takes out in a step is more
-   than what a longer one brings: 1.05^2 0.9 < 1. */
-static int is_leap(double before, double h) {
+/* Below, what rho_inf = 0.9 takes out in a step is more than what a longer one brings: 1.05^2 0.9 < 1. */
+int spari_scheme_leaps(double before, double h) {
     return before > 0 && h > 1.05 * before;
 }
 
@@ -78,7 +77,7 @@ int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t,
     const spari_scheme c = spari_scheme_of(m, damped, dt / substeps);
     SPARI_TRY(start_once(how, self, t, m, &c));
     spari_part part = {.root = m->drive[0], .ratio = spari_scheme_ratio(t->h_begin, c.h)};
-    part.leaps = !c.still && is_leap(t->h_begin, c.h);
+    part.leaps = !c.still && spari_scheme_leaps(t->h_begin, c.h);
     t->h_solved = c.h;
     m->dissipated_step = 0;
     double before, power = how->begin(self);
@@ -149,17 +148,47 @@ int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, 
     return 0;
 }
 
-int spari_scheme_filter(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass, void *self,
-                        const spar_member *m, double *r, double *y) {
+int spari_scheme_filter(const spari_scheme *c, const spari_filter *how, void *self) {
     for (int pass = 0; pass < LEAP_PASSES; pass++) {
-        times_mass(self, m, y, r);
-        memset(r, 0, (size_t)held * sizeof *r);
-        if (spari_linear_solve(A, r)) {
+        how->push(self);
+        if (how->solve(self)) {
             return 1;
         }
-        for (int i = 0; i < n; i++) {
-            y[i] -= c->cm * r[i];
-        }
+        how->take(self, c->cm);
     }
     return 0;
+}
+
+typedef struct filtered {
+    spari_linear *A;
+    int held, n;
+    spari_forces times_mass;
+    void *self;
+    const spar_member *member;
+    double *r, *y;
+} filtered;
+
+static void push_vector(void *self) {
+    const filtered *f = self;
+    f->times_mass(f->self, f->member, f->y, f->r);
+    memset(f->r, 0, (size_t)f->held * sizeof *f->r);
+}
+
+static int solve_vector(void *self) {
+    const filtered *f = self;
+    return spari_linear_solve(f->A, f->r);
+}
+
+static void take_vector(void *self, double by) {
+    const filtered *f = self;
+    for (int i = 0; i < f->n; i++) {
+        f->y[i] -= by * f->r[i];
+    }
+}
+
+int spari_scheme_filter_vector(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass,
+                               void *self, const spar_member *m, double *r, double *y) {
+    static const spari_filter how = {push_vector, solve_vector, take_vector};
+    filtered f = {A, held, n, times_mass, self, m, r, y};
+    return spari_scheme_filter(c, &how, &f);
 }

@@ -94,8 +94,17 @@ typedef void (*spari_forces)(void *self, const spar_member *m, const double *y, 
    loads of the accelerations a. The first `held` of the n unknowns keep theirs. 0, or 1 when A is singular. */
 int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces unbalance, void *self,
                        const spar_member *m, double *r, double *a);
-/* y := (I - cm S^-1 M)^2 y, S factored in A. 0, or 1 when it is singular. */
-int spari_scheme_filter(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass, void *self,
-                        const spar_member *m, double *r, double *y);
+/* A step to `h` after one of `before` (0: none) is much longer. */
+int spari_scheme_leaps(double before, double h);
+/* What is taken out of the accelerations that a much longer step begins with, y := (I - cm S^-1 M)^2 y. */
+typedef struct spari_filter {
+    void (*push)(void *self);           /* forces become M y */
+    int (*solve)(void *self);           /* x becomes S^-1 times them; 0, or 1 when S is singular */
+    void (*take)(void *self, double f); /* y becomes y - f x */
+} spari_filter;
+int spari_scheme_filter(const spari_scheme *c, const spari_filter *how, void *self);
+/* The same of a vector y [n], S factored in A; the first `held` stay. r [n] room. 0, or 1 when it is singular. */
+int spari_scheme_filter_vector(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass,
+                               void *self, const spar_member *m, double *r, double *y);
 
 #endif

@@ -31,6 +31,7 @@ struct spari_assembly {
     spari_link *link; /* on every rank; what follows is the owner's */
     int n, band;
     int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
+    int violent;      /* velocities are held within the step's equations */
     int standing;     /* the system below is factored, for the tangents there are and this cv, */
     double cv, moved; /* and the parts' way since; only within a solution */
     double scale;     /* of the constraints' rows */
@@ -62,6 +63,9 @@ void spari_tied_keep(spari_assembly *a);
    constraints are those of the links as they stand; the parts' tangents, kept, go along with their nodes. cv: as for
    the tangents. 0 or 1. */
 int spari_tied_solve(spari_assembly *a, double cv);
+/* Takes out of the accelerations that the substep begins with what it does not resolve, where it is much longer than
+   the last; a status and a message. */
+int spari_tied_leap(spari_assembly *a, double dt);
 /* Takes out of the joints' holds what others say already, with a word to the log; the links' B are those of the
    reference. 0, or SPAR_ERR_MEMORY. */
 int spari_tied_drop_redundant(spari_assembly *a);
