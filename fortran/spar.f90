@@ -977,7 +977,7 @@ contains
   subroutine session_step_begin_start(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
     call finish(spar_step_begin_start(self%handle, dt), self%handle, stat, errmsg)
@@ -1050,14 +1050,19 @@ contains
     real(c_double), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
     class(*), intent(inout), target, optional :: context
-    integer(c_int), intent(inout), optional :: iterations
-    integer(c_int), intent(out), optional :: stat
+    integer, intent(inout), optional :: iterations
+    integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     type(step_record), target :: record
     type(c_funptr) :: to_solver, to_before
+    integer(c_int) :: status, n
 
+    n = 0
+    if (present(iterations)) n = to_c(iterations)
     call fill_record(self, record, to_solver, to_before, solve, context=context)
-    call finish(spar_session_start(self%handle, dt, to_solver, c_loc(record), iterations), self%handle, stat, errmsg)
+    status = spar_session_start(self%handle, dt, to_solver, c_loc(record), n)
+    if (present(iterations)) iterations = n
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_start
 
   ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
