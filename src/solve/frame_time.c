@@ -576,24 +576,33 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
 
 enum { STATE_HEAD = 14, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
+/* The head, and the states at either end of the step. */
+static int64_t own_size(const spari_frame *f) {
+    return STATE_HEAD + 2 * (STATE_ROOT + 4 * (int64_t)f->n);
+}
+
 int64_t spari_frame_state_size(const spari_frame *f) {
-    return STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n + (f->carriage ? spari_carriage_state_size(f, f->factored) : 0);
+    return own_size(f) + (f->carriage ? spari_carriage_state_size(f, f->factored) : 0);
 }
 
 void spari_frame_save(const spari_frame *f, double *state) {
     const double head[STATE_HEAD] = {
         f->n,        f->factored, f->kept_cm,  f->kept_cv,  f->steps.h_begin, f->steps.h_solved, f->steps.started,
         f->combined, f->omega[0], f->omega[1], f->omega[2], f->kept_omega[0], f->kept_omega[1],  f->kept_omega[2]};
+    const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
-    memcpy(state + STATE_HEAD, &f->begin.root, sizeof f->begin.root);
-    memcpy(state + STATE_HEAD + STATE_ROOT, f->begin.y, (size_t)(4 * f->n) * sizeof *state);
+    double *at = state + STATE_HEAD;
+    for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
+        memcpy(at, &ends[k]->root, sizeof ends[k]->root);
+        memcpy(at + STATE_ROOT, ends[k]->y, (size_t)(4 * f->n) * sizeof *state);
+    }
     if (f->carriage) {
-        spari_carriage_save(f, state + STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n);
+        spari_carriage_save(f, at);
     }
 }
 
 int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
-    int64_t own = STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n;
+    int64_t own = own_size(f);
     if (count < own || state[0] != f->n) {
         return 0;
     }
@@ -608,7 +617,7 @@ void spari_frame_load(spari_frame *f, const double *state) {
     if (f->carriage) {
         f->factored = state[1] != 0;
         f->kept_cm = c.cm, f->kept_cv = c.cv;
-        spari_carriage_load(f, state + STATE_HEAD + STATE_ROOT + 4 * (int64_t)f->n);
+        spari_carriage_load(f, state + own_size(f));
     } else if (state[1] != 0) {
         spari_frame_combine(f, state + 11);
         factor_step(f, &c);
@@ -619,9 +628,12 @@ void spari_frame_load(spari_frame *f, const double *state) {
     }
     f->steps.h_begin = state[4], f->steps.h_solved = state[5];
     f->steps.started = state[6] != 0;
-    memcpy(&f->begin.root, state + STATE_HEAD, sizeof f->begin.root);
-    memcpy(f->begin.y, state + STATE_HEAD + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
-    copy_state(f, &f->begin, &f->to);
+    spari_frame_state *const ends[2] = {&f->begin, &f->to};
+    state += STATE_HEAD;
+    for (int k = 0; k < 2; k++, state += STATE_ROOT + 4 * (int64_t)f->n) {
+        memcpy(&ends[k]->root, state, sizeof ends[k]->root);
+        memcpy(ends[k]->y, state + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
+    }
 }
 
 /* x^T X x / 2 */
