@@ -160,7 +160,8 @@ enum {
     SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
     SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
     SPAR_REPORT_MOTION_ERROR = 9, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
-                                     predicted, would have moved the farthest node in this step, [m] */
+                                     predicted, would have moved the farthest node in this step, [m]; nodes that the
+                                     host moves count 0 */
     SPAR_REPORT_COUNT = 10
 };
 
@@ -234,13 +235,15 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
                             not converged are an error all the same; each is told to the log
      coupling.norm          motion (default) | loads: what the stop test, Aitken's factor and the columns of IQN-ILS
                             weigh loads by: the motion that the structure answers them with in the step, so that a load
-                            that moves nothing (drag on a stiff direction) counts nothing; or the loads themselves. With
-                            a member whose motion the host gives (points, external), or that joints tie, it is loads in
-                            any case
+                            that moves nothing (drag on a stiff direction) counts nothing; or the loads themselves.
+                            Members that joints tie answer together. With a member whose motion the host gives (points,
+                            external), or a tied one with INERTIA off, it is loads in any case
      coupling.estimate      off (default) | on: explicit: spar_step_check also finds what another iteration would have
                             moved, SPAR_REPORT_MOTION_ERROR, by one back-substitution and no solution of the fluid: to
-                            first order, of members that joints tie with all that they are tied to; of those whose
-                            motion the host gives it knows nothing
+                            first order, of members that joints tie with all that they are tied to. Members whose
+                            motion the host gives (points, external) count 0, and hold what is tied to them where it is:
+                            how they would answer the loads they missed (pushed less those of spar_member_get_loads
+                            before the check) is for the host's structure to say
      coupling.columns       1 to 10000, default 30: IQN-ILS, the most difference columns
      coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns serve again
      coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, part of a column that newer ones must not contain already

@@ -293,6 +293,12 @@ static spari_weighed weighed(const spari_coupling *c) {
     return (spari_weighed){c->n, c->unit, c->x, c->g, c->shift, c->image, c->room};
 }
 
+int spari_coupling_weighs(const spar_session *s) {
+    const spari_coupling *c = s->own->coupling;
+    /* a step that has gone over to the loads' own norm stays with it */
+    return c->weighs && (s->iteration == 0 || spari_accelerator_imaged(c->accelerator));
+}
+
 /* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
 static int weigh_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;

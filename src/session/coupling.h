@@ -50,6 +50,8 @@ int spari_coupling_prepare(spar_session *session);
 int spari_coupling_lay_aside(spar_session *session, int scheme);
 void spari_coupling_keep(spar_session *session);
 void spari_coupling_take_back(spar_session *session);
+/* Whether the next check weighs loads by motion, as far as it is known before. */
+int spari_coupling_weighs(const spar_session *session);
 /* Whether the session's is of the settings in force and of the members there are now. Local, the same on every rank. */
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);

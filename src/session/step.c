@@ -187,7 +187,7 @@ int spar_step_solve(spar_session *session) {
         status = m->assembly ? SPAR_OK : solve_member(m, s->dt);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = spari_assembly_advance(a, s->dt);
+        status = spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
     }
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;

@@ -14,27 +14,66 @@
 
 int spari_weighs_motion(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next) {
-        if (!m->row->moves || m->assembly) { /* how it answers is the host's to know; or that of all it is tied to */
+        if (!m->row->moves) { /* how it answers is the host's to know */
+            return 0;
+        }
+        if (m->assembly && !(m->effects & SPAR_EFFECT_INERTIA)) { /* nor is there a mass to compare with what is held */
             return 0;
         }
     }
     return !s->norm_of_loads;
 }
 
-/* What member m, whose stacked loads begin at `at`, answers to loads x - from (from NULL: x), stacked. */
+/* What member m, whose stacked loads begin at `at`, answers to loads x - from (from NULL: x), stacked. Those that
+   joints tie answer together, later: their loads stand in its place. */
 static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, int64_t at, const double *x,
                           const double *from, double *out) {
+    double *load = m->assembly ? out + at : c->room;
     int64_t n = 6 * m->nodes;
     for (int64_t i = 0; i < n; i++) {
-        c->room[i] = (x[at + i] - (from ? from[at + i] : 0)) / (i % 6 < 3 ? 1 : unit);
+        load[i] = (x[at + i] - (from ? from[at + i] : 0)) / (i % 6 < 3 ? 1 : unit);
     }
-    if (m->row->answer(m, c->room, out + at)) {
+    if (m->assembly) {
+        return 0;
+    }
+    if (m->row->answer(m, load, out + at)) {
         return 1;
     }
     for (int64_t i = 0; i < n; i++) {
         out[at + i] /= i % 6 < 3 ? 1 : unit;
     }
     return 0;
+}
+
+/* The motions of a tied member become what is stacked. To the flexibility comes LEAST of what its assembly's mass alone
+   would have: what joints hold moves nothing that would show how far such loads have gone, and a norm that does not see
+   them lets them go anywhere. A hundredth of what moves counts for them; with less, columns that are averaged still
+   carry loads on rigid beams off. */
+static void stack_tied(const spar_member *m, double unit, int64_t at, const double *x, const double *from,
+                       double *out) {
+    static const double LEAST = 1e-4;
+    double least = LEAST * spari_assembly_answer_of_mass(m->assembly);
+    for (int64_t i = at; i < at + 6 * m->nodes; i++) {
+        double load = x[i] - (from ? from[i] : 0);
+        out[i] = out[i] / ((i - at) % 6 < 3 ? 1 : unit) + least * load;
+    }
+}
+
+/* And what those do whose loads x[j] - from[j] stand there, x `apart` numbers from each other; from NULL: nothing is
+   taken off. */
+static int answer_tied(spar_session *s, const spari_weighed *c, int64_t count, const double *x, int64_t apart,
+                       const double *const *from, double *image) {
+    int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
+    int64_t at = 0;
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        singular = spari_assembly_answer(a, count, c->n, image) || singular;
+    }
+    for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, k++) {
+        for (int64_t j = 0; j < count && m->assembly && m->owner == rank; j++) {
+            stack_tied(m, c->unit[k], at, x + j * apart, from ? from[j] : NULL, image + j * c->n);
+        }
+    }
+    return singular;
 }
 
 static double sum_products(const double *a, const double *b, const double *minus, int64_t n) {
@@ -47,11 +86,13 @@ static double sum_products(const double *a, const double *b, const double *minus
 
 /* Whether x . S y is y . S x, here of g - x and g, but for rounding: without that it is no inner product, and columns
    that are square to each other in it can be nearly the same. A step's matrix is unsymmetric where beams turn far under
-   large loads, and by gyroscopic terms. Symmetric ones have been seen to 1e-11. */
-static int is_symmetric(const spari_weighed *c, const double *answer, const double *whole, double work, double all) {
-    static const double LOPSIDED = 1e-5, ROUNDING = 1e-13;
+   large loads, and by gyroscopic terms. Symmetric ones have been seen to 1e-11. Joints turn, with their loads, in each
+   step: one that goes back and forth between two norms learns less than in either. */
+static int is_symmetric(const spari_weighed *c, int tied, const double *answer, const double *whole, double work,
+                        double all) {
+    static const double LOPSIDED = 1e-5, TIED = 1e-4, ROUNDING = 1e-13;
     double one = sum_products(c->g, answer, NULL, c->n), other = sum_products(c->g, whole, c->x, c->n);
-    return fabs(one - other) <= LOPSIDED * sqrt(fmax(work * all, 0)) + ROUNDING * all;
+    return fabs(one - other) <= (tied ? TIED : LOPSIDED) * sqrt(fmax(work * all, 0)) + ROUNDING * all;
 }
 
 int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
@@ -66,6 +107,8 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
                        (c->shift && answer_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
         }
     }
+    const double *const from[3] = {c->x, NULL, c->shift};
+    singular = singular || answer_tied(s, c, c->shift ? 3 : 2, c->g, 0, from, c->image);
     if (singular) { /* its numbers would make the sums none, on every rank */
         c->image[0] = NAN;
     }
@@ -73,7 +116,7 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, bare, c->shift, c->n);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n)) : all;
     *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0) &&
-          is_symmetric(c, answer, whole, work, both);
+          is_symmetric(c, s->assemblies != NULL, answer, whole, work, both);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
@@ -99,6 +142,9 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
             }
         }
     }
+    if (answer_tied(s, c, count, loads, c->n, NULL, image)) {
+        image[0] = NAN;
+    }
     return spari_comm_sum(spari_spread_core(s), image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
@@ -117,7 +163,7 @@ static int answer_miss(spar_session *s, double *image, double *room) {
         singular = (!m->assembly && m->row->answer(m, room, at)) || singular;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        singular = spari_assembly_answer(a, image) || singular;
+        singular = spari_assembly_answer(a, 1, 0, image) || singular;
     }
     return singular;
 }

@@ -98,6 +98,17 @@ static int assembly_create(spar_session *s, spar_member *first, spar_joint *only
     return SPAR_OK;
 }
 
+static double mass_of_all(const spari_assembly *a) {
+    double sum = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_body *b = a->limb[i].member->body;
+        for (int64_t k = 0; k < b->slot[b->elements] && b->mass; k++) {
+            sum += b->weight[k] * *SPARI_BLOCK(b->mass, 10, k);
+        }
+    }
+    return sum;
+}
+
 /* What solves it, on its owner. */
 static int make_system(spari_assembly *a) {
     a->here = a->owner == spari_comm_rank(a->session->comm) || a->limbs == 0;
@@ -114,6 +125,7 @@ static int make_system(spari_assembly *a) {
     }
     SPARI_TRY(spari_tied_drop_redundant(a));
     spari_tied_place(a);
+    a->mass = mass_of_all(a);
     return spari_tied_room(a);
 }
 

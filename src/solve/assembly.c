@@ -414,7 +414,18 @@ int spari_assembly_balance(spari_assembly *a, double dt) {
     return SPAR_OK;
 }
 
-int spari_assembly_advance(spari_assembly *a, double dt) {
+/* Tangents where the step has ended. */
+static int form_after(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        double power = p->solver->power;
+        (void)p->row->balance(p);
+        p->solver->power = power;
+    }
+    return form(a);
+}
+
+int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
     if (!a->here) {
         return SPAR_OK;
     }
@@ -453,22 +464,15 @@ int spari_assembly_advance(spari_assembly *a, double dt) {
             a->limb[i].row->end(a->limb + i);
         }
     }
-    return publish_all(a, dt);
+    SPARI_TRY(publish_all(a, dt));
+    a->solved = 1;
+    if (answers && !a->factored && form_after(a) == 0) {
+        a->factored = LEAST_PATIENCE;
+    }
+    return SPAR_OK;
 }
 
 /* ---- its answer ---- */
-
-/* Tangents where the step has ended. They are for the answer alone: whether the next step forms its own stays as the
-   solution has left it. */
-static int form_after(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        double power = p->solver->power;
-        (void)p->row->balance(p);
-        p->solver->power = power;
-    }
-    return form(a);
-}
 
 /* Where a member's own begin among those of all. */
 static double *stacked_of(const spar_member *member, double *stacked) {
@@ -478,24 +482,71 @@ static double *stacked_of(const spar_member *member, double *stacked) {
     return stacked;
 }
 
-int spari_assembly_answer(spari_assembly *a, double *stacked) {
-    if (!a->here || a->limbs == 0) {
-        return 0;
+static int has_loads(const spari_assembly *a, double *stacked) {
+    for (int i = 0; i < a->limbs; i++) {
+        const spar_member *m = a->limb[i].member;
+        const double *load = stacked_of(m, stacked);
+        for (int64_t k = 0; k < 6 * m->nodes; k++) {
+            if (load[k] != 0) {
+                return 1;
+            }
+        }
     }
-    if (!a->factored && form_after(a)) {
-        return 1;
-    }
+    return 0;
+}
+
+/* One answer of those tangents, stacked. */
+static int answer_one(spari_assembly *a, double *stacked) {
     for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->take_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
     }
     for (int i = 0; i < a->links; i++) {
         memset(a->link[i].gap, 0, sizeof a->link[i].gap);
     }
-    a->standing = 0; /* that system is of parts a little way from here */
-    int singular = spari_tied_solve(a, a->limb[0].scheme.cv);
-    a->standing = 0;
-    for (int i = 0; i < a->limbs && !singular; i++) {
+    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->show_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
     }
+    return 0;
+}
+
+/* Where the parts and links stood when the step was written to the file that it was read from. What joints have
+   moved by stays: its rates are those that were published. */
+static void look_back(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->look_back(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        const spari_relative kept = j->after;
+        spari_link_find(a->link + i, 1, a->session->dt, 1);
+        j->after = kept;
+    }
+    a->solved = 1;
+}
+
+int spari_assembly_answer(spari_assembly *a, int64_t count, int64_t apart, double *stacked) {
+    if (!a->here || a->limbs == 0) {
+        return 0;
+    }
+    if (!a->factored && (!a->solved || form_after(a))) {
+        return 1;
+    }
+    if (!a->solved) {
+        look_back(a);
+    }
+    int singular = 0;
+    a->standing = 0; /* that system is of parts a little way from here */
+    for (int64_t k = 0; k < count && !singular; k++) {
+        singular = has_loads(a, stacked + k * apart) && answer_one(a, stacked + k * apart);
+    }
+    a->standing = 0;
     return singular;
+}
+
+double spari_assembly_answer_of_mass(const spari_assembly *a) {
+    double force = a->here && a->limbs > 0 ? a->limb[0].scheme.cm * a->mass : 0;
+    return force > 0 ? 1 / force : 0;
 }

@@ -40,17 +40,19 @@ void spari_assembly_save(const spari_assembly *assembly, double *state);
 int spari_assembly_is_state(const spari_assembly *assembly, const double *state, int64_t count);
 void spari_assembly_load(spari_assembly *assembly, const double *state);
 /* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
-   rank. */
-int spari_assembly_advance(spari_assembly *assembly, double dt);
+   rank. answers: it will be asked for answers, with tangents that serve the next solution too. */
+int spari_assembly_advance(spari_assembly *assembly, double dt, int answers);
 /* Accelerations of its members and loads of its joints at t^0 under load_history[0], for steps dt: the motions after
    are t^0 with them. Where it has been done already the joints' loads are those of now. */
 int spari_assembly_balance(spari_assembly *assembly, double dt);
 /* After a step, on its owner, elsewhere it does nothing: what a little more of the loads in use adds to the motions
-   after, to first order and over the last substep. stacked: six of each node of all members of the session; of those
-   that it solves the loads, and then the motions. The steps to come are the same, to the last bit. 0, or 1: there is no
-   answer.
- */
-int spari_assembly_answer(spari_assembly *assembly, double *stacked);
+   after, to first order and over the last substep. stacked [count], `apart` numbers from each other: six of each node
+   of all members of the session; of those that it solves the loads, and then the motions; what is zero costs nothing.
+   The steps to come are the same, to the last bit. 0, or 1: there is no answer; none is in a step that was read from a
+   file and whose solution has left no tangents. */
+int spari_assembly_answer(spari_assembly *assembly, int64_t count, int64_t apart, double *stacked);
+/* And what a unit of force would add to the way of its mass if nothing else held that, m/N; 0: without inertia. */
+double spari_assembly_answer_of_mass(const spari_assembly *assembly);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
    [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */

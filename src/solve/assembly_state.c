@@ -78,6 +78,7 @@ int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored = state ? (int)state[0] : 0;
+    a->solved = 0;
     state = state ? state + KEPT_HEAD : NULL;
     for (int i = 0; i < a->limbs && a->factored; i++) {
         spari_condensed *c = a->limb[i].condensed;

@@ -60,6 +60,8 @@ typedef struct spari_limb_row {
        that the corrections are, displacements and small turns, global axes. */
     void (*take_more)(struct spari_limb *p, const double *load);
     void (*show_more)(struct spari_limb *p, double *motion);
+    /* A step that was read from a file: it stands at its end. */
+    void (*look_back)(struct spari_limb *p);
 
     /* At t^0: the mass it starts with, factored (0 or 1); forces less loads of the accelerations there; those less the
        corrections; they are found. */

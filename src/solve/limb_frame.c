@@ -401,6 +401,13 @@ static void show_more_of_frame(spari_limb *p, double *motion) {
     spari_member_from_unique(p->member, 6, f->turned, motion);
 }
 
+static void look_back_at_frame(spari_limb *p) {
+    spari_solver *s = p->solver;
+    p->scheme = spari_scheme_of(p->member, p->frame->D != NULL, p->frame->steps.h_solved);
+    p->ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
+    look_at_end_of_step(p);
+}
+
 /* ---- the start ---- */
 
 static int start_of_frame(spari_limb *p) {
@@ -544,6 +551,7 @@ const spari_limb_row spari_limb_frame = {
     .land = land_frame,
     .take_more = take_more_of_frame,
     .show_more = show_more_of_frame,
+    .look_back = look_back_at_frame,
     .start = start_of_frame,
     .unbalance = unbalance_frame,
     .correct_start = correct_start_of_frame,

@@ -288,6 +288,13 @@ static void show_more_of_nodes(spari_limb *p, double *motion) {
     p->member->row->show_more(p->member, p->solver->dx, motion);
 }
 
+static void look_back_at_nodes(spari_limb *p) {
+    spari_solver *s = p->solver;
+    p->scheme = spari_scheme_of(p->member, s->body->D != NULL, s->steps.h_solved);
+    p->ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
+    p->state = &p->ends.seen;
+}
+
 /* ---- the start ---- */
 
 static int start_nodes(spari_limb *p) {
@@ -405,6 +412,7 @@ const spari_limb_row spari_limb_nodes = {
     .land = land_nodes,
     .take_more = take_more_of_nodes,
     .show_more = show_more_of_nodes,
+    .look_back = look_back_at_nodes,
     .start = start_nodes,
     .unbalance = unbalance_nodes,
     .correct_start = correct_start_of_nodes,

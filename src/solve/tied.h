@@ -29,7 +29,9 @@ struct spari_assembly {
     int limbs, links;
     spari_limb *limb;
     spari_link *link; /* on every rank; what follows is the owner's */
+    double mass;      /* of the parts */
     int n, band;
+    int solved;       /* the parts and links stand at the end of a step */
     int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
     int violent;      /* velocities are held within the step's equations */
     int standing;     /* the system below is factored, for the tangents there are and this cv, */

@@ -107,11 +107,41 @@ static int answer_cylinder(flow *f, double t, double dt) {
 }
 
 /* A rod along the lift, stiff across, with half its mass at its tip: a spring that moves in one direction. */
-static int build_cylinder(flow *f) {
-    const double eta[2] = {0, 1}, radius = 0.5;
-    double c = cos(f->c->angle), s = sin(f->c->angle);
-    const double axes[2][3] = {{c, s, 0}, {-s, c, 0}}, xyz[6] = {0, 0, 0, -s, c, 0}, place[3] = {-s, c, 0};
+static int make_rod(flow *f, double mass, double k) {
+    const double eta[2] = {0, 1}, *up = f->axes[1], xyz[6] = {0, 0, 0, up[0], up[1], up[2]};
     double K[36] = {0}, M[36] = {0};
+    for (int i = 0; i < 6; i++) {
+        K[7 * i] = 1e8 * k;
+        M[7 * i] = 2 * mass;
+    }
+    K[0] = k;
+    TRY(spar_beam_create(f->session, "cylinder", 1, 2, &f->member));
+    TRY(spar_beam_set_axis(f->member, 2, eta, xyz, NULL));
+    TRY(spar_beam_set_sections(f->member, 1, eta, K, M));
+    TRY(spar_beam_set_quadrature(f->member, SPAR_QUADRATURE_LOBATTO, 2));
+    TRY(spar_member_set_root(f->member, SPAR_ROOT_FIXED));
+    return spar_member_commit(f->member);
+}
+
+/* The same mass on a joint with that spring along the lift. */
+static int make_slider(flow *f, double mass, double k) {
+    const double half = 0.5 * f->c->angle, q[4] = {cos(half), 0, 0, sin(half)};
+    double M[36] = {0}, K[36] = {0};
+    spar_joint *joint = NULL;
+    for (int i = 0; i < 6; i++) {
+        M[7 * i] = mass;
+    }
+    K[7] = k;
+    TRY(spar_rigid_create(f->session, "cylinder", f->axes[1], q, M, &f->member));
+    TRY(spar_member_commit(f->member));
+    TRY(spar_joint_create(f->session, "guide", f->member, 0, NULL, 0, SPAR_FREE_Y, &joint));
+    TRY(spar_joint_set_frame(joint, f->axes[1], q));
+    return spar_joint_set_spring(joint, K, NULL, NULL);
+}
+
+static int build_cylinder(flow *f) {
+    const double radius = 0.5, c = cos(f->c->angle), s = sin(f->c->angle);
+    const double axes[2][3] = {{c, s, 0}, {-s, c, 0}};
     memcpy(f->axes, axes, sizeof axes);
     f->cells = 1;
     f->wall = log(20.0) / RINGS;
@@ -123,20 +153,10 @@ static int build_cylinder(flow *f) {
     double added = pi * radius * f->p[0][0], mass = added / f->c->added;
     memset(f->p, 0, sizeof f->p);
     double k = (mass + added) * pow(2 * pi / 4, 2);
-    for (int i = 0; i < 6; i++) {
-        K[7 * i] = 1e8 * k;
-        M[7 * i] = 2 * mass;
-    }
-    K[0] = k;
-    TRY(spar_beam_create(f->session, "cylinder", 1, 2, &f->member));
-    TRY(spar_beam_set_axis(f->member, 2, eta, xyz, NULL));
-    TRY(spar_beam_set_sections(f->member, 1, eta, K, M));
-    TRY(spar_beam_set_quadrature(f->member, SPAR_QUADRATURE_LOBATTO, 2));
-    TRY(spar_member_set_root(f->member, SPAR_ROOT_FIXED));
-    TRY(spar_member_commit(f->member));
+    TRY(f->c->tied ? make_slider(f, mass, k) : make_rod(f, mass, k));
     TRY(spar_fluid_create(f->member, "stream", &f->fluid));
-    TRY(spar_fluid_set_motion_nodes(f->fluid, 1, place));
-    TRY(spar_fluid_set_force_nodes(f->fluid, 1, place));
+    TRY(spar_fluid_set_motion_nodes(f->fluid, 1, f->axes[1]));
+    TRY(spar_fluid_set_force_nodes(f->fluid, 1, f->axes[1]));
     f->wake0.q = 0.5;
     return spar_fluid_map(f->fluid);
 }
@@ -199,26 +219,68 @@ static int answer_channel(flow *f, double t, double dt) {
     return spar_fluid_push_forces(f->fluid, &force[0][0], NULL);
 }
 
+enum { WALL_PARTS = 10, MOST_NODES = 3 * (WALL_PARTS + 1) };
+
+static void fill_wall(const flow *f, double EI, double mass, double K[36], double M[36]) {
+    memset(K, 0, 36 * sizeof *K);
+    memset(M, 0, 36 * sizeof *M);
+    for (int i = 0; i < 6; i++) {
+        K[7 * i] = i < 3 ? (f->c->scene == FLOW_FLAG ? 3e4 : 1e4) * EI : EI;
+        M[7 * i] = i < 3 ? mass : 1e-4 * mass;
+    }
+}
+
+/* A beam of length 1; with a body at its tip that is no body longer by a tenth, ten thousand times as stiff there. */
+static int make_wall(flow *f, double mass, double EI) {
+    int longer = f->c->tip > 0 && !f->c->tied, parts = f->c->tip > 0 ? WALL_PARTS + longer : 1;
+    const double length = longer ? 1.1 : 1, ends[2] = {0, 1}, xyz[6] = {0, 0, 0, length, 0, 0},
+                 eta[4] = {0, (1 - 1e-9) / length, (1 + 1e-9) / length, 1};
+    double K[4][36], M[4][36];
+    for (int k = 0; k < 4; k++) {
+        fill_wall(f, (k > 1 ? 1e4 : 1) * EI, (k > 1 ? WALL_PARTS * f->c->tip : 1) * mass, K[k], M[k]);
+    }
+    TRY(spar_beam_create(f->session, "wall", parts, parts > 1 ? 3 : 8, &f->member));
+    TRY(spar_beam_set_axis(f->member, 2, ends, xyz, NULL));
+    TRY(spar_beam_set_sections(f->member, longer ? 4 : 1, eta, K[0], M[0]));
+    TRY(spar_member_set_root(f->member, f->c->tied ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED));
+    return spar_member_commit(f->member);
+}
+
+/* Welded to the ground, and the body, a rod of a tenth of the length, to its tip. */
+static int weld_wall(flow *f, double mass) {
+    const double end[3] = {1, 0, 0}, q[4] = {1, 0, 0, 0}, m = f->c->tip * mass, half = 0.05;
+    const double turning[3] = {1e-4 * m, 1e-4 * m + m * 4 * half * half / 3, 1e-4 * m + m * 4 * half * half / 3};
+    double M[36] = {m};
+    spar_joint *joint = NULL;
+    spar_member *body = NULL;
+    TRY(spar_joint_create(f->session, "foot", f->member, 0, NULL, 0, 0, &joint));
+    if (f->c->tip <= 0) {
+        return SPAR_OK;
+    }
+    for (int i = 0; i < 3; i++) {
+        M[7 * i] = m;
+        M[7 * (3 + i)] = turning[i];
+    }
+    M[6 * 1 + 5] = M[6 * 5 + 1] = half * m; /* its centre is half its length ahead of the node */
+    M[6 * 2 + 4] = M[6 * 4 + 2] = -half * m;
+    TRY(spar_rigid_create(f->session, "tip", end, q, M, &body));
+    TRY(spar_member_commit(body));
+    return spar_joint_create(f->session, "weld", body, 0, f->member, 3 * WALL_PARTS - 1, 0, &joint);
+}
+
 static int build_channel(flow *f) {
-    const double eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 1, 0, 0}, height = 0.1, dx = 1.0 / CELLS;
-    double K[36] = {0}, M[36] = {0}, place[CELLS][3];
+    const double height = 0.1, dx = 1.0 / CELLS;
+    double place[CELLS][3];
     double added = pow(2 / pi, 2) / height, mass = added / f->c->added;
     double EI = (mass + added) * pow(2 * pi / 1, 2) / pow(1.8751, 4);
     f->cells = CELLS;
     f->wall = dx * dx / height;
     f->factor = 2 / (1 + sin(pi / (CELLS + 1)));
-    for (int i = 0; i < 6; i++) {
-        K[7 * i] = i < 3 ? (f->c->scene == FLOW_FLAG ? 3e4 : 1e4) * EI : EI;
-        M[7 * i] = i < 3 ? mass : 1e-4 * mass;
-    }
     for (int i = 0; i < CELLS; i++) {
         place[i][0] = (i + 0.5) * dx, place[i][1] = place[i][2] = 0;
     }
-    TRY(spar_beam_create(f->session, "wall", 1, 8, &f->member));
-    TRY(spar_beam_set_axis(f->member, 2, eta, xyz, NULL));
-    TRY(spar_beam_set_sections(f->member, 1, eta, K, M));
-    TRY(spar_member_set_root(f->member, SPAR_ROOT_FIXED));
-    TRY(spar_member_commit(f->member));
+    TRY(make_wall(f, mass, EI));
+    TRY(f->c->tied ? weld_wall(f, mass) : SPAR_OK);
     TRY(spar_fluid_create(f->member, "channel", &f->fluid));
     TRY(spar_fluid_set_motion_nodes(f->fluid, CELLS, &place[0][0]));
     TRY(spar_fluid_set_force_nodes(f->fluid, CELLS, &place[0][0]));
@@ -266,7 +328,7 @@ static int set_up(flow *f) {
 
 static int one_step(flow *f, double dt, int *iterations) {
     int done = 0, most = f->c->fixed, n = (int)f->result->steps;
-    double t, loads[6 * 8];
+    double t, loads[6 * MOST_NODES];
     TRY(spar_session_get_time(f->session, &t, NULL, NULL));
     TRY(spar_step_begin(f->session, dt));
     TRY(spar_member_get_loads(f->member, loads));
@@ -277,7 +339,8 @@ static int one_step(flow *f, double dt, int *iterations) {
         ++*iterations;
     }
     if (n == 1 && f->c->scene == FLOW_CYLINDER) {
-        f->result->predicted[0] = loads[6] * f->axes[0][0] + loads[7] * f->axes[0][1];
+        const double *load = loads + (f->c->tied ? 0 : 6);
+        f->result->predicted[0] = load[0] * f->axes[0][0] + load[1] * f->axes[0][1];
         f->result->predicted[1] = f->force[0];
     }
     return spar_step_accept(f->session);
@@ -285,8 +348,9 @@ static int one_step(flow *f, double dt, int *iterations) {
 
 static int record(flow *f, int iterations) {
     flow_result *r = f->result;
-    double q[7 * 8], report[SPAR_REPORT_COUNT];
-    int n = r->steps, last = f->c->scene == FLOW_CYLINDER ? 7 : 49;
+    double q[7 * MOST_NODES] = {0}, report[SPAR_REPORT_COUNT];
+    int n = r->steps, wall = 7 * (f->c->tip > 0 ? 3 * WALL_PARTS - 1 : 7);
+    int last = f->c->scene == FLOW_CHANNEL ? wall : f->c->tied ? 0 : 7;
     TRY(spar_member_get_motion(f->member, q, NULL, NULL));
     TRY(spar_session_get_report(f->session, SPAR_REPORT_COUNT, report));
     r->y[n] = q[last] * f->axes[1][0] + q[last + 1] * f->axes[1][1];

@@ -26,6 +26,9 @@ typedef struct flow_case {
     double added; /* (added mass)/(mass) in the lowest mode */
     double noise; /* of each push, relative to its size */
     int inner;    /* corrections of the pressure in each push; 0: solved exactly */
+    int tied;     /* joints hold the structure: the cylinder is a body on a joint's spring, the wall is welded to the
+                     ground */
+    double tip;   /* the wall's: mass of a body at its tip, over that of the wall; welded, or the end of one beam */
     double drag;  /* drag coefficient of the cylinder; 1.2 is a circular one's */
     double swing; /* of the flag's inlet */
     double angle; /* the whole cylinder scene is turned by so much about the span: no axis is the lift's */
