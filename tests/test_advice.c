@@ -65,7 +65,7 @@ static void test_the_same_every_time(void **state) {
     const scene *rotor = &scenes[ROTOR];
     answer first, a;
     scene_run *r = NULL;
-    pid_t burner[BURNERS];
+    pid_t burner[BURNERS] = {0};
     for (int k = 0; k < RUNS; k++) {
         if (k == RUNS / 2) {
             burn(burner);

@@ -338,6 +338,17 @@ HERE void NAME(elastic_matrices)(const spari_body *body, int64_t slot, const spa
     }
 }
 
+/* What strain_rate sets, and only where sections are damped. */
+HERE void NAME(no_strain_rate)(NAME(point) * s) {
+    const L none = {0};
+    for (int i = 0; i < 4; i++) {
+        s->z[i] = none;
+    }
+    for (int i = 0; i < 3; i++) {
+        s->t_rate[i] = s->kd0[i] = none;
+    }
+}
+
 /* Matrices and forces of the W points from number `at` of the element on. */
 HERE void NAME(point_matrices)(const spari_body *body, int64_t slot, const spari_regime *how,
                                const spari_tangent_work *t, const double *f, int64_t at) {
@@ -348,6 +359,7 @@ HERE void NAME(point_matrices)(const spari_body *body, int64_t slot, const spari
     NAME(point_turns) by;
     NAME(point_inertia) n;
     NAME(fields)(how->moving, f, &s);
+    NAME(no_strain_rate)(&s);
     NAME(turns)(&s, &by);
     NAME(clear_rows)(SLOPE_BY_Q, t->slots, t->K + at);
     if (t->rates) {

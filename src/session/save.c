@@ -38,7 +38,7 @@ static void pass(passage *t, void *words, int64_t n) {
         spari_image_put(t->image, words, n);
     } else {
         const uint64_t *from = spari_image_get(t->image, n);
-        if (t->mode == READ && from && n > 0) {
+        if (t->mode == READ && words && from && n > 0) {
             memcpy(words, from, (size_t)n * sizeof *from);
         }
     }
