@@ -256,14 +256,15 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
                             (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
-     ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks. All: all
-                            of it, each of them. Touched: a rank that solves no member (spar_member_get_owner), other
-                            than rank 0, knows the motion of the members that its fluids have nodes on, and of those
-                            that joints tie to them; loads and motion go between these and their owners, who iterate the
-                            coupling; the others get no message but of the status. Loads, reaction, work, the report
-                            and members that it does not touch are SPAR_ERR_STATE on such a rank, as is a map with
-                            nodes on another member after the first step; and so are statics, trials and advice on all
-                            ranks. A file of spar_session_save has everything. Set before the first step
+     ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks.
+                            All: all of it, each of them. Touched: a rank that solves no member
+                            (spar_member_get_owner), other than rank 0, knows the motion of the members that its
+                            fluids have nodes on, and of those that joints tie to them; loads and motion go between
+                            these and their owners, who iterate the coupling; the others get no message but of the
+                            status. Loads, reaction, work, the report and members that it does not touch are
+                            SPAR_ERR_STATE on such a rank, as is a map with nodes on another member after the first
+                            step; and so are statics, trials and advice on all ranks. A file of spar_session_save
+                            has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change
      advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
@@ -293,10 +294,10 @@ SPAR_API int spar_session_get_report(const spar_session *session, int64_t capaci
 /* Who solves how much, by rank (spar_member_set_owner). Collective; ranks may want different things of it.
      capacity: in, of the arrays; as many as there are ranks are filled, 0 behind them
      members[capacity]: out, how many members each rank solves
-     expected[capacity]: out, what an iteration of all of these is expected to take, instructions, by nodes, fidelity and
-           joints: owners are spread by it
-     counted[capacity]: out, what solving them has taken since they were made, instructions, by counted iterations and
-           tangents at the prices of advice; of joints it has nothing
+     expected[capacity]: out, what an iteration of all of these is expected to take, instructions, by nodes,
+           fidelity and joints: owners are spread by it
+     counted[capacity]: out, what solving them has taken since they were made, instructions, by counted iterations
+           and tangents at the prices of advice; of joints it has nothing
    Each NULL: not wanted. */
 SPAR_API int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
                                       double *counted);

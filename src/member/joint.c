@@ -373,10 +373,11 @@ uint64_t spari_joint_hash(const spar_joint *j) {
                                j->frame_given,
                                j->tie.line && j->sprung,
                                j->slack};
+    const double unit[4] = {1};
     uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->name, strlen(j->name));
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, j->place, sizeof j->place);
-    h = spari_hash_bytes(h, j->frame_given < 2 ? (const double[4]){1} : j->axes, sizeof j->axes);
+    h = spari_hash_bytes(h, j->frame_given < 2 ? unit : j->axes, sizeof j->axes);
     h = spari_hash_bytes(h, j->point, sizeof j->point);
     if (j->tie.line) { /* a joint's springs may be given anew at any time */
         const double spring[3] = {j->stiffness[0], j->damping[0], j->length};

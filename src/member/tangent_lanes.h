@@ -500,9 +500,10 @@ HERE void NAME(map_of)(const spari_tangent_work *t, int which, int j, int spread
 /* Row i of the 7 x 7 blocks of stiffness or rates of pairs from `at` on, (i, j) or with side 1 (j, i). */
 HERE void NAME(block_row)(const spari_pair_sums *sums, int64_t stride, int64_t at, int side, const int i, L *x) {
     const double *by_q = sums->by_q + stride * 4 * i + at;
+    const L none = {0};
     SPARI_UNROLL
     for (int j = 0; j < 7; j++) {
-        x[j] = j < 3 ? (L){0} : NAME(get)(by_q + stride * (j - 3));
+        x[j] = j < 3 ? none : NAME(get)(by_q + stride * (j - 3));
     }
     if (sums->slopes) {
         const unsigned char *row = spari_slope_row[sums->whole][i];

@@ -10,9 +10,9 @@
 
    r are the forces on the unknowns, r_0 force and moment of the whole about the root, for which arms are those of the
    deformed member and m_2 is of second order in it; internal forces have no part in them. On the unknowns and in m_2 a
-   moment m of the rigid motion counts as m + m x theta / 2, as rotation vectors theta have it. S is the geometric stiffness
-   of the stretch s_w that centrifugal forces along the line give, w the mean turning of the member, that of the rigid
-   motion which has its momenta. docs/theory.md, (J1) to (J5), says why. */
+   moment m of the rigid motion counts as m + m x theta / 2, as rotation vectors theta have it. S is the geometric
+   stiffness of the stretch s_w that centrifugal forces along the line give, w the mean turning of the member, that of
+   the rigid motion which has its momenta. docs/theory.md, (J1) to (J5), says why. */
 #ifndef SPARI_CARRIAGE_H
 #define SPARI_CARRIAGE_H
 

@@ -99,7 +99,7 @@ HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bin
     run.top = cut->top;
     for (int j = 0; j < SPARI_BINS; j++) {
         double units = NAME(total)(part[j]) * cut->per_unit[j];
-        if (!(units <= 0x1p52 && units >= -0x1p52)) { /* a NaN */
+        if (!(fabs(units) <= 0x1p52)) { /* or a NaN */
             return 0;
         }
         run.part[j] = (int64_t)units;
