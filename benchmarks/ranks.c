@@ -47,49 +47,40 @@ static void count(MPI_Comm comm, double items, MPI_Datatype type) {
     counted.payload += items * bytes;
 }
 
-int MPI_Allreduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
-    count(comm, n, type);
-    return PMPI_Allreduce(from, to, n, type, op, comm);
-}
-
-int MPI_Reduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm) {
-    count(comm, n, type);
-    return PMPI_Reduce(from, to, n, type, op, root, comm);
-}
-
-int MPI_Bcast(void *x, int n, MPI_Datatype type, int root, MPI_Comm comm) {
-    count(comm, n, type);
-    return PMPI_Bcast(x, n, type, root, comm);
-}
-
-int MPI_Allgatherv(const void *from, int n, MPI_Datatype of, void *to, const int counts[], const int offsets[],
-                   MPI_Datatype type, MPI_Comm comm) {
+static double total(const int counts[], MPI_Comm comm) {
     int size;
     double all = 0;
     PMPI_Comm_size(comm, &size);
     for (int r = 0; r < size; r++) {
         all += counts[r];
     }
-    count(comm, all, type);
-    return PMPI_Allgatherv(from, n, of, to, counts, offsets, type, comm);
+    return all;
 }
 
-int MPI_Ireduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm,
-                MPI_Request *request) {
-    count(comm, n, type);
-    return PMPI_Ireduce(from, to, n, type, op, root, comm, request);
-}
-
-int MPI_Iallreduce(const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm,
-                   MPI_Request *request) {
-    count(comm, n, type);
-    return PMPI_Iallreduce(from, to, n, type, op, comm, request);
-}
-
-int MPI_Ibcast(void *x, int n, MPI_Datatype type, int root, MPI_Comm comm, MPI_Request *request) {
-    count(comm, n, type);
-    return PMPI_Ibcast(x, n, type, root, comm, request);
-}
+/* The library's call of that name comes here, is counted, and goes on to MPI's own. */
+#define COUNTED(call, items, parameters, arguments)                                                                    \
+    int MPI_##call parameters {                                                                                        \
+        count(comm, items, type);                                                                                      \
+        return PMPI_##call arguments;                                                                                  \
+    }
+COUNTED(Allreduce, n, (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm),
+        (from, to, n, type, op, comm))
+COUNTED(Reduce, n, (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm),
+        (from, to, n, type, op, root, comm))
+COUNTED(Bcast, n, (void *x, int n, MPI_Datatype type, int root, MPI_Comm comm), (x, n, type, root, comm))
+COUNTED(Allgatherv, total(counts, comm),
+        (const void *from, int n, MPI_Datatype of, void *to, const int counts[], const int offsets[], MPI_Datatype type,
+         MPI_Comm comm),
+        (from, n, of, to, counts, offsets, type, comm))
+COUNTED(Ireduce, n,
+        (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm,
+         MPI_Request *request),
+        (from, to, n, type, op, root, comm, request))
+COUNTED(Iallreduce, n,
+        (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm, MPI_Request *request),
+        (from, to, n, type, op, comm, request))
+COUNTED(Ibcast, n, (void *x, int n, MPI_Datatype type, int root, MPI_Comm comm, MPI_Request *request),
+        (x, n, type, root, comm, request))
 
 /* ---- the scene ---- */
 

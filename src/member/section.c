@@ -1,5 +1,5 @@
 /* What a section of a beam feels: strains and section forces anywhere along the line, from the element's own field, as
-   the quadrature points take them (body.c). */
+   the quadrature points take them (body_life.c). */
 #include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
