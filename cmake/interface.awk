@@ -5,11 +5,13 @@
 # (by address), list (of handles, in), callback. shape: [n][3], "" of a single number.
 # Whether an address is an array's, the comments say: "x[n][3]: out" is one, "t: out" a single number; what is said of a name
 # holds until something else is. A capacity has the constant that counts its entries: "report[capacity]: out, by SPAR_TRY_*".
+# With -v null=1 each parameter has a fifth part: null, where its comment says what NULL means.
 #   awk -f interface.awk <header>
 
-function hear(said,   list, n, word, i, p) {
+function hear(said,   list, n, word, i, p, own, each) {
     gsub(/[ \t\n]+/, " ", said)
-    while (match(said, /[a-z_][a-z0-9_]*(\[[^]]*\])*(, [a-z_][a-z0-9_]*(\[[^]]*\])*)*: /)) {
+    each = said ~ /each NULL/
+    while (match(said, LIST)) {
         list = substr(said, RSTART, RLENGTH - 2)
         said = substr(said, RSTART + RLENGTH)
         n = split(list, word, ", ")
@@ -18,6 +20,9 @@ function hear(said,   list, n, word, i, p) {
             sub(/\[.*/, "", p)
             SHAPE[p] = substr(word[i], length(p) + 1)
             if (said ~ /^out, (m, rad, )?by SPAR_/) SHAPE[p] = counted(SHAPE[p], said)
+            own = said
+            if (match(own, LIST)) own = substr(own, 1, RSTART - 1)
+            NULL[p] = each || own ~ /NULL/
         }
     }
 }
@@ -47,7 +52,7 @@ function constants(body,   i, n, entry, side, value, line) {
     print line
 }
 
-# "const double g[3]" as "g|double|in|[3]"
+# "const double g[3]" as "g|double|in|[3]"; the_name: "g"
 function parameter(text,   type, p, stars, list, shape, fixed) {
     gsub(/^ +| +$/, "", text)
     list = text ~ /\*const \*/
@@ -61,6 +66,7 @@ function parameter(text,   type, p, stars, list, shape, fixed) {
     }
     p = text
     sub(/.* /, "", p)
+    the_name = p
     type = substr(text, 1, length(text) - length(p))
     gsub(/const /, "", type)
     gsub(/ +/, "", type)
@@ -83,10 +89,15 @@ function call(prototype,   head, f, answer, n, i, part, line) {
     sub(/^[^(]*\(/, "", prototype)
     sub(/\)[^)]*$/, "", prototype)
     n = prototype == "void" ? 0 : split(prototype, part, ",")
-    for (i = 1; i <= n; i++) line = line "\t" parameter(part[i])
+    for (i = 1; i <= n; i++) {
+        line = line "\t" parameter(part[i])
+        if (null && part[i] ~ /[*[]/) line = line (NULL[the_name] ? "|null" : "|")
+        else if (null) line = line "|"
+    }
     print line
 }
 
+BEGIN { LIST = "[a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: " }
 BEGIN { split("spar_log spar_fluid_solver spar_before_step", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
 /^#/ { next }
 { text = text $0 "\n" }

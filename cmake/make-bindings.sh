@@ -1,12 +1,13 @@
 #!/bin/sh
-# Writes from the public headers fortran/spar_c.f90, the constants of fortran/spar.f90, and the table of examples/python/spar.py:
-# run it after they have changed.
+# Writes from the public headers fortran/spar_c.f90, fortran/spar.f90 (what takes thought is by hand in fortran/spar.f90.in; this
+# adds the constants, the plain procedures and those in single precision), and the table of examples/python/spar.py: run it after
+# they have changed.
 #   make-bindings.sh [<folder to write to, instead of fortran and examples/python>]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/fortran} out_python=${1:-$root/examples/python}
 made=$(mktemp)
-trap 'rm -f "$made"' EXIT
+trap 'rm -f "$made" "$made.file"' EXIT
 # of <header> calls|constants|names
 of() { awk -f "$root/cmake/interface.awk" "$root/include/spar/$1.h" | awk -v pass="$2" -v title="$1.h" -f "$root/cmake/fortran.awk"; }
 
@@ -61,8 +62,11 @@ put_between() {
 }
 
 { of spar names; of spar_aero names; } >"$made"
-put_between "$root/fortran/spar.f90" 'constants of the headers {'
-cat "$made.file" >"$out/spar.f90"
+put_between "$root/fortran/spar.f90.in" 'constants of the headers {'
+for name in spar spar_aero spar_output; do
+    awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"
+done | awk -f "$root/cmake/plain.awk" "$made.file" - >"$made"
+awk -f "$root/cmake/single.awk" "$made" "$made" >"$out/spar.f90"
 
 {
     echo 'TABLE = """'

@@ -24,8 +24,12 @@
 ! Arrays. Places x(3,n), orientations q(4,n), node motion q(7,n), v(6,n), a(6,n), loads (6,n), matrices (6,6,n), sections of
 ! blades (3,n,blades). n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
 ! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Nodes and sections are counted from 1 in arguments; the
-! library's own messages count from 0.
-! Kinds. Numbers are real(c_double). Integers, logicals and the constants SPAR_* have the default kind: a host whose integers
+! library's own messages count from 0, and so does the node of fluid%get_travel (-1: there are none). A fluid's layout (1, n)
+! stands for arrays x(n,3), by component, (3, 1) for x(3,n).
+! Kinds. Numbers are real(c_double) or real(c_float), all arrays of a call of one kind and all its single numbers of one kind, so
+! that literals may be default reals. What a host in single precision gives and takes is converted on its way; the library
+! computes in double. Motion and loads of nodes (pull_motion, pull_sections, pull_forces, push_forces) it reads and writes as they
+! are. The host's own procedures (spar_fluid_solver, spar_before_step) get times as real(c_double). Integers, logicals and the constants SPAR_* have the default kind: a host whose integers
 ! have 8 bytes compiles this file and spar_c.f90 with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in
 ! any case; one too large for C is refused as any other that is out of range.
 ! Figures that C names by constants from 0 (SPAR_REPORT_*, SPAR_TRY_*, SPAR_ADVICE_*, SPAR_COLUMN_* by SPAR_ROW_*) are found under
@@ -114,53 +118,87 @@ module spar
     type(c_ptr) :: handle = c_null_ptr
     type(log_record), pointer :: log => null()
   contains
+    procedure, private :: session_set_gravity, session_set_gravity_single_1
+    generic :: set_gravity => session_set_gravity, session_set_gravity_single_1
+    procedure, private :: session_get_gravity, session_get_gravity_single_1
+    generic :: get_gravity => session_get_gravity, session_get_gravity_single_1
+    procedure, private :: session_set_integrator, session_set_integrator_single_1
+    generic :: set_integrator => session_set_integrator, session_set_integrator_single_1
+    procedure, private :: session_get_integrator, session_get_integrator_single_1
+    generic :: get_integrator => session_get_integrator, session_get_integrator_single_1
+    procedure, private :: session_set_newton, session_set_newton_single_1
+    generic :: set_newton => session_set_newton, session_set_newton_single_1
+    procedure, private :: session_get_newton, session_get_newton_single_1, session_get_newton_single_2
+    generic :: get_newton => session_get_newton, session_get_newton_single_1, session_get_newton_single_2
+    procedure :: set_predictor => session_set_predictor
+    procedure :: get_predictor => session_get_predictor
+    procedure, private :: session_set_coupling, session_set_coupling_single_1
+    generic :: set_coupling => session_set_coupling, session_set_coupling_single_1
+    procedure, private :: session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
+    generic :: get_coupling => session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
+    procedure, private :: session_set_relaxation, session_set_relaxation_single_1
+    generic :: set_relaxation => session_set_relaxation, session_set_relaxation_single_1
+    procedure, private :: session_get_relaxation, session_get_relaxation_single_1
+    generic :: get_relaxation => session_get_relaxation, session_get_relaxation_single_1
+    procedure :: set_reproducible => session_set_reproducible
+    procedure :: get_reproducible => session_get_reproducible
+    procedure :: set_option => session_set_option
+    procedure, private :: session_get_residual, session_get_residual_single_1, session_get_residual_single_2
+    generic :: get_residual => session_get_residual, session_get_residual_single_1, session_get_residual_single_2
+    procedure, private :: session_get_report, session_get_report_single_1
+    generic :: get_report => session_get_report, session_get_report_single_1
+    procedure, private :: session_get_time, session_get_time_single_1
+    generic :: get_time => session_get_time, session_get_time_single_1
+    procedure :: get_phase => session_get_phase
+    procedure, private :: session_step_begin, session_step_begin_single_1
+    generic :: step_begin => session_step_begin, session_step_begin_single_1
+    procedure :: step_solve => session_step_solve
+    procedure :: step_accept => session_step_accept
+    procedure :: step_reject => session_step_reject
+    procedure, private :: session_step_begin_start, session_step_begin_start_single_1
+    generic :: step_begin_start => session_step_begin_start, session_step_begin_start_single_1
+    procedure :: save => session_save
+    procedure :: load => session_load
     procedure :: create => session_create
     procedure :: destroy => session_destroy
     procedure :: exists => session_exists
     procedure :: c_handle => session_handle
     procedure :: message => session_message
-    procedure :: set_gravity => session_set_gravity
-    procedure :: set_integrator => session_set_integrator
-    procedure :: set_newton => session_set_newton
-    procedure :: set_predictor => session_set_predictor
-    procedure :: set_coupling => session_set_coupling
-    procedure :: set_relaxation => session_set_relaxation
-    procedure :: set_reproducible => session_set_reproducible
-    procedure :: set_option => session_set_option
     procedure :: set_log => session_set_log
-    procedure :: get_time => session_get_time
-    procedure :: get_phase => session_get_phase
-    procedure :: get_balance => session_get_balance
-    procedure :: sum => session_sum
-    procedure :: get_iterations => session_get_iterations
-    procedure :: get_residual => session_get_residual
-    procedure :: get_report => session_get_report
-    procedure :: get_gravity => session_get_gravity
-    procedure :: get_integrator => session_get_integrator
-    procedure :: get_newton => session_get_newton
-    procedure :: get_predictor => session_get_predictor
-    procedure :: get_coupling => session_get_coupling
-    procedure :: get_relaxation => session_get_relaxation
-    procedure :: get_reproducible => session_get_reproducible
+    procedure, private :: session_get_balance, session_get_balance_single_1, session_get_balance_single_2
+    generic :: get_balance => session_get_balance, session_get_balance_single_1, session_get_balance_single_2
+    procedure, private :: session_sum, session_sum_single_1
+    generic :: sum => session_sum, session_sum_single_1
+    procedure, private :: session_get_iterations, session_get_iterations_single_1, session_get_iterations_single_2
+    generic :: get_iterations => session_get_iterations, session_get_iterations_single_1, &
+        session_get_iterations_single_2
     procedure :: get_option => session_get_option
-    procedure :: save => session_save
-    procedure :: load => session_load
-    procedure :: step_begin => session_step_begin
-    procedure :: step_begin_start => session_step_begin_start
-    procedure :: step_solve => session_step_solve
     procedure :: step_check => session_step_check
-    procedure :: step_accept => session_step_accept
-    procedure :: step_reject => session_step_reject
-    procedure :: step => session_step
+    procedure, private :: session_step, session_step_single_1
+    generic :: step => session_step, session_step_single_1
     procedure :: solve_static => session_solve_static
-    procedure :: start => session_start
+    procedure, private :: session_start, session_start_single_1
+    generic :: start => session_start, session_start_single_1
     procedure, private :: session_try_64, session_try_32
-    generic :: try => session_try_64, session_try_32
+    procedure, private :: session_try_64_single_1, session_try_64_single_2, session_try_64_single_3, &
+        session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
+    generic :: try => session_try_64, session_try_32, session_try_64_single_1, session_try_64_single_2, &
+        session_try_64_single_3, session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
     procedure, private :: session_report_effects_64, session_report_effects_32
-    generic :: report_effects => session_report_effects_64, session_report_effects_32
+    procedure, private :: session_report_effects_64_single_1, session_report_effects_64_single_2, &
+        session_report_effects_64_single_3, session_report_effects_32_single_1, session_report_effects_32_single_2, &
+        session_report_effects_32_single_3
+    generic :: report_effects => session_report_effects_64, session_report_effects_32, &
+        session_report_effects_64_single_1, session_report_effects_64_single_2, session_report_effects_64_single_3, &
+        session_report_effects_32_single_1, session_report_effects_32_single_2, session_report_effects_32_single_3
     procedure, private :: session_advise_64, session_advise_32
-    generic :: advise => session_advise_64, session_advise_32
-    procedure :: apply_advice => session_apply_advice
+    procedure, private :: session_advise_64_single_1, session_advise_64_single_2, session_advise_64_single_3, &
+        session_advise_32_single_1, session_advise_32_single_2, session_advise_32_single_3
+    generic :: advise => session_advise_64, session_advise_32, session_advise_64_single_1, &
+        session_advise_64_single_2, session_advise_64_single_3, session_advise_32_single_1, &
+        session_advise_32_single_2, session_advise_32_single_3
+    procedure, private :: session_apply_advice, session_apply_advice_single_1
+    generic :: apply_advice => session_apply_advice, session_apply_advice_single_1
     procedure, private :: session_assign
     generic :: assignment(=) => session_assign
     final :: session_final
@@ -172,78 +210,126 @@ module spar
     integer(c_int64_t) :: elements = 1
     character(:), allocatable :: name
   contains
-    procedure :: create_point => member_create_point
-    procedure :: create_rigid => member_create_rigid
+    procedure :: get_elements => member_get_elements
+    procedure, private :: member_set_axis, member_set_axis_single_1
+    generic :: set_axis => member_set_axis, member_set_axis_single_1
+    procedure, private :: member_set_nodes, member_set_nodes_single_1
+    generic :: set_nodes => member_set_nodes, member_set_nodes_single_1
+    procedure, private :: member_set_sections, member_set_sections_single_1
+    generic :: set_sections => member_set_sections, member_set_sections_single_1
+    procedure :: set_quadrature => member_set_quadrature
+    procedure :: get_quadrature => member_get_quadrature
+    procedure, private :: member_set_damping, member_set_damping_single_1
+    generic :: set_damping => member_set_damping, member_set_damping_single_1
+    procedure, private :: member_get_damping, member_get_damping_single_1
+    generic :: get_damping => member_get_damping, member_get_damping_single_1
+    procedure, private :: member_set_placement, member_set_placement_single_1, member_set_placement_single_2
+    generic :: set_placement => member_set_placement, member_set_placement_single_1, member_set_placement_single_2
+    procedure, private :: member_get_placement, member_get_placement_single_1, member_get_placement_single_2
+    generic :: get_placement => member_get_placement, member_get_placement_single_1, member_get_placement_single_2
+    procedure :: set_root => member_set_root
+    procedure :: get_root => member_get_root
+    procedure :: set_external => member_set_external
+    procedure :: get_external => member_get_external
+    procedure :: set_effects => member_set_effects
+    procedure :: get_effects => member_get_effects
+    procedure :: get_fidelity => member_get_fidelity
+    procedure, private :: member_set_added_mass, member_set_added_mass_single_1
+    generic :: set_added_mass => member_set_added_mass, member_set_added_mass_single_1
+    procedure, private :: member_set_initial_velocity, member_set_initial_velocity_single_1, &
+        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
+    generic :: set_initial_velocity => member_set_initial_velocity, member_set_initial_velocity_single_1, &
+        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
+    procedure :: set_owner => member_set_owner
+    procedure :: get_owner => member_get_owner
+    procedure :: commit => member_commit
+    procedure, private :: member_get_reference, member_get_reference_single_1, member_get_reference_single_2
+    generic :: get_reference => member_get_reference, member_get_reference_single_1, member_get_reference_single_2
+    procedure, private :: member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
+        member_get_motion_single_3
+    generic :: get_motion => member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
+        member_get_motion_single_3
+    procedure, private :: member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
+        member_set_motion_single_3
+    generic :: set_motion => member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
+        member_set_motion_single_3
+    procedure, private :: member_drive_root, member_drive_root_single_1
+    generic :: drive_root => member_drive_root, member_drive_root_single_1
+    procedure, private :: member_set_line_load, member_set_line_load_single_1
+    generic :: set_line_load => member_set_line_load, member_set_line_load_single_1
+    procedure, private :: member_get_loads, member_get_loads_single_1
+    generic :: get_loads => member_get_loads, member_get_loads_single_1
+    procedure, private :: member_get_reaction, member_get_reaction_single_1
+    generic :: get_reaction => member_get_reaction, member_get_reaction_single_1
+    procedure, private :: member_get_section, member_get_section_single_1
+    generic :: get_section => member_get_section, member_get_section_single_1
+    procedure, private :: member_get_energy, member_get_energy_single_1
+    generic :: get_energy => member_get_energy, member_get_energy_single_1
+    procedure, private :: member_get_work, member_get_work_single_1
+    generic :: get_work => member_get_work, member_get_work_single_1
+    procedure :: solve_static => member_solve_static
+    procedure :: get_advice => member_get_advice
+    procedure :: write_vtk => member_write_vtk
+    procedure, private :: member_create_point, member_create_point_single_1
+    generic :: create_point => member_create_point, member_create_point_single_1
+    procedure, private :: member_create_rigid, member_create_rigid_single_1
+    generic :: create_rigid => member_create_rigid, member_create_rigid_single_1
     procedure :: create_beam => member_create_beam
     procedure :: exists => member_exists
     procedure :: c_handle => member_handle
-    procedure :: set_axis => member_set_axis
-    procedure :: set_nodes => member_set_nodes
-    procedure :: set_sections => member_set_sections
-    procedure :: set_quadrature => member_set_quadrature
-    procedure :: set_damping => member_set_damping
     procedure :: read_beamdyn => member_read_beamdyn
-    procedure :: set_placement => member_set_placement
-    procedure :: set_root => member_set_root
-    procedure :: set_external => member_set_external
-    procedure :: set_effects => member_set_effects
     procedure :: set_fidelity => member_set_fidelity
-    procedure :: set_added_mass => member_set_added_mass
-    procedure :: get_added_mass => member_get_added_mass
-    procedure :: set_initial_velocity => member_set_initial_velocity
-    procedure :: set_owner => member_set_owner
-    procedure :: commit => member_commit
+    procedure, private :: member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
+    generic :: get_added_mass => member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
     procedure, private :: member_get_count_64, member_get_count_32
     generic :: get_count => member_get_count_64, member_get_count_32
     procedure :: get_name => member_get_name
-    procedure :: get_reference => member_get_reference
-    procedure :: get_motion => member_get_motion
-    procedure :: set_motion => member_set_motion
-    procedure :: drive_root => member_drive_root
     procedure, private :: member_set_load_64, member_set_load_32
-    generic :: set_load => member_set_load_64, member_set_load_32
-    procedure :: set_line_load => member_set_line_load
-    procedure :: get_loads => member_get_loads
-    procedure :: get_reaction => member_get_reaction
-    procedure :: get_section => member_get_section
-    procedure :: get_energy => member_get_energy
-    procedure :: get_work => member_get_work
-    procedure :: solve_static => member_solve_static
-    procedure :: solve_modes => member_solve_modes
-    procedure :: set_modal_damping => member_set_modal_damping
-    procedure :: get_advice => member_get_advice
-    procedure :: get_placement => member_get_placement
-    procedure :: get_root => member_get_root
-    procedure :: get_external => member_get_external
-    procedure :: get_effects => member_get_effects
-    procedure :: get_fidelity => member_get_fidelity
-    procedure :: get_owner => member_get_owner
-    procedure :: get_elements => member_get_elements
-    procedure :: get_quadrature => member_get_quadrature
-    procedure :: get_damping => member_get_damping
-    procedure :: write_vtk => member_write_vtk
+    procedure, private :: member_set_load_64_single_1, member_set_load_32_single_1
+    generic :: set_load => member_set_load_64, member_set_load_32, member_set_load_64_single_1, &
+        member_set_load_32_single_1
+    procedure, private :: member_solve_modes, member_solve_modes_single_1
+    generic :: solve_modes => member_solve_modes, member_solve_modes_single_1
+    procedure, private :: member_set_modal_damping, member_set_modal_damping_single_1
+    generic :: set_modal_damping => member_set_modal_damping, member_set_modal_damping_single_1
   end type spar_member
 
   type :: spar_joint
     private
     type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
   contains
+    procedure, private :: joint_set_frame, joint_set_frame_single_1
+    generic :: set_frame => joint_set_frame, joint_set_frame_single_1
+    procedure :: set_driven => joint_set_driven
+    procedure, private :: joint_drive, joint_drive_single_1
+    generic :: drive => joint_drive, joint_drive_single_1
+    procedure, private :: joint_set_load, joint_set_load_single_1
+    generic :: set_load => joint_set_load, joint_set_load_single_1
+    procedure, private :: joint_get_motion, joint_get_motion_single_1, joint_get_motion_single_2, &
+        joint_get_motion_single_3
+    generic :: get_motion => joint_get_motion, joint_get_motion_single_1, joint_get_motion_single_2, &
+        joint_get_motion_single_3
+    procedure, private :: joint_get_load, joint_get_load_single_1
+    generic :: get_load => joint_get_load, joint_get_load_single_1
+    procedure, private :: joint_get_energy, joint_get_energy_single_1
+    generic :: get_energy => joint_get_energy, joint_get_energy_single_1
     procedure, private :: joint_create_64, joint_create_32
     generic :: create => joint_create_64, joint_create_32
     procedure, private :: joint_create_line_64, joint_create_line_32
-    generic :: create_line => joint_create_line_64, joint_create_line_32
+    procedure, private :: joint_create_line_64_single_1, joint_create_line_32_single_1
+    generic :: create_line => joint_create_line_64, joint_create_line_32, joint_create_line_64_single_1, &
+        joint_create_line_32_single_1
     procedure :: exists => joint_exists
     procedure :: c_handle => joint_handle
-    procedure :: set_frame => joint_set_frame
     procedure, private :: joint_set_spring, joint_at_node_64, joint_at_node_32
-    generic :: set_spring => joint_set_spring, joint_at_node_64, joint_at_node_32
-    procedure :: set_line_spring => joint_set_line_spring
-    procedure :: set_driven => joint_set_driven
-    procedure :: drive => joint_drive
-    procedure :: set_load => joint_set_load
-    procedure :: get_motion => joint_get_motion
-    procedure :: get_load => joint_get_load
-    procedure :: get_energy => joint_get_energy
+    procedure, private :: joint_set_spring_single_1, joint_set_spring_single_2, joint_set_spring_single_3, &
+        joint_at_node_64_single_1, joint_at_node_64_single_2, joint_at_node_64_single_3, joint_at_node_32_single_1, &
+        joint_at_node_32_single_2, joint_at_node_32_single_3
+    generic :: set_spring => joint_set_spring, joint_at_node_64, joint_at_node_32, joint_set_spring_single_1, &
+        joint_set_spring_single_2, joint_set_spring_single_3, joint_at_node_64_single_1, joint_at_node_64_single_2, &
+        joint_at_node_64_single_3, joint_at_node_32_single_1, joint_at_node_32_single_2, joint_at_node_32_single_3
+    procedure, private :: joint_set_line_spring, joint_set_line_spring_single_1
+    generic :: set_line_spring => joint_set_line_spring, joint_set_line_spring_single_1
   end type spar_joint
 
   type :: spar_fluid
@@ -252,55 +338,115 @@ module spar
     integer(c_int64_t) :: elements = 1 ! of the member
     character(:), allocatable :: name
   contains
+    procedure, private :: fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
+    generic :: set_motion_nodes => fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
+    procedure, private :: fluid_get_motion_weights, fluid_get_motion_weights_single_1
+    generic :: get_motion_weights => fluid_get_motion_weights, fluid_get_motion_weights_single_1
+    procedure, private :: fluid_set_force_nodes, fluid_set_force_nodes_single_1
+    generic :: set_force_nodes => fluid_set_force_nodes, fluid_set_force_nodes_single_1
+    procedure, private :: fluid_set_sections, fluid_set_sections_single_1
+    generic :: set_sections => fluid_set_sections, fluid_set_sections_single_1
+    procedure, private :: fluid_set_motion_sections, fluid_set_motion_sections_single_1
+    generic :: set_motion_sections => fluid_set_motion_sections, fluid_set_motion_sections_single_1
+    procedure :: set_layout => fluid_set_layout
+    procedure :: get_layout => fluid_get_layout
+    procedure, private :: fluid_set_projection, fluid_set_projection_single_1
+    generic :: set_projection => fluid_set_projection, fluid_set_projection_single_1
+    procedure, private :: fluid_get_projection, fluid_get_projection_single_1
+    generic :: get_projection => fluid_get_projection, fluid_get_projection_single_1
+    procedure :: set_interpolation => fluid_set_interpolation
+    procedure :: get_interpolation => fluid_get_interpolation
+    procedure :: map => fluid_map
+    procedure :: get_kind => fluid_get_kind
+    procedure :: get_flag_count => fluid_get_flag_count
+    procedure, private :: fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
+    generic :: get_feet => fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
+    procedure, private :: fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
+        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
+    generic :: pull_motion => fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
+        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
+    procedure, private :: fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
+        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
+        fluid_pull_sections_single_6, fluid_pull_sections_single_7
+    generic :: pull_sections => fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
+        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
+        fluid_pull_sections_single_6, fluid_pull_sections_single_7
+    procedure, private :: fluid_pull_poses, fluid_pull_poses_single_1, fluid_pull_poses_single_2, &
+        fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
+        fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
+        fluid_pull_poses_single_11, fluid_pull_poses_single_12, fluid_pull_poses_single_13
+    generic :: pull_poses => fluid_pull_poses, fluid_pull_poses_single_1, fluid_pull_poses_single_2, &
+        fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
+        fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
+        fluid_pull_poses_single_11, fluid_pull_poses_single_12, fluid_pull_poses_single_13
+    procedure, private :: fluid_get_travel, fluid_get_travel_single_1
+    generic :: get_travel => fluid_get_travel, fluid_get_travel_single_1
+    procedure, private :: fluid_pull_force_places, fluid_pull_force_places_single_1, &
+        fluid_pull_force_places_single_2, fluid_pull_force_places_single_3, fluid_pull_force_places_single_4, &
+        fluid_pull_force_places_single_5, fluid_pull_force_places_single_6, fluid_pull_force_places_single_7
+    generic :: pull_force_places => fluid_pull_force_places, fluid_pull_force_places_single_1, &
+        fluid_pull_force_places_single_2, fluid_pull_force_places_single_3, fluid_pull_force_places_single_4, &
+        fluid_pull_force_places_single_5, fluid_pull_force_places_single_6, fluid_pull_force_places_single_7
+    procedure, private :: fluid_get_places, fluid_get_places_single_1, fluid_get_places_single_2, &
+        fluid_get_places_single_3, fluid_get_places_single_4
+    generic :: get_places => fluid_get_places, fluid_get_places_single_1, fluid_get_places_single_2, &
+        fluid_get_places_single_3, fluid_get_places_single_4
+    procedure, private :: fluid_pull_forces, fluid_pull_forces_single_1, fluid_pull_forces_single_2, &
+        fluid_pull_forces_single_3
+    generic :: pull_forces => fluid_pull_forces, fluid_pull_forces_single_1, fluid_pull_forces_single_2, &
+        fluid_pull_forces_single_3
+    procedure, private :: fluid_get_forces, fluid_get_forces_single_1
+    generic :: get_forces => fluid_get_forces, fluid_get_forces_single_1
+    procedure :: fail => fluid_fail
+    procedure, private :: fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
+    generic :: pull_motion_f32 => fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
+    procedure, private :: fluid_pull_sections_f32, fluid_pull_sections_f32_single_1
+    generic :: pull_sections_f32 => fluid_pull_sections_f32, fluid_pull_sections_f32_single_1
+    procedure, private :: fluid_pull_forces_f32, fluid_pull_forces_f32_single_1
+    generic :: pull_forces_f32 => fluid_pull_forces_f32, fluid_pull_forces_f32_single_1
+    procedure, private :: fluid_get_audit, fluid_get_audit_single_1
+    generic :: get_audit => fluid_get_audit, fluid_get_audit_single_1
+    procedure, private :: fluid_get_total, fluid_get_total_single_1, fluid_get_total_single_2, fluid_get_total_single_3
+    generic :: get_total => fluid_get_total, fluid_get_total_single_1, fluid_get_total_single_2, &
+        fluid_get_total_single_3
+    procedure :: write_vtk => fluid_write_vtk
     procedure :: create => fluid_create
     procedure :: destroy => fluid_destroy
     procedure :: exists => fluid_exists
     procedure :: c_handle => fluid_handle
-    procedure :: set_motion_nodes => fluid_set_motion_nodes
-    procedure :: set_motion_weights => fluid_set_motion_weights
-    procedure :: get_motion_weights => fluid_get_motion_weights
-    procedure :: fade_motion => fluid_fade_motion
-    procedure :: set_force_nodes => fluid_set_force_nodes
-    procedure :: set_sections => fluid_set_sections
-    procedure :: read_aerodyn => fluid_read_aerodyn
-    procedure :: set_motion_sections => fluid_set_motion_sections
-    procedure :: set_layout => fluid_set_layout
-    procedure :: get_layout => fluid_get_layout
-    procedure :: set_projection => fluid_set_projection
-    procedure :: set_interpolation => fluid_set_interpolation
-    procedure :: map => fluid_map
+    procedure, private :: fluid_set_motion_weights, fluid_set_motion_weights_single_1
+    generic :: set_motion_weights => fluid_set_motion_weights, fluid_set_motion_weights_single_1
+    procedure, private :: fluid_fade_motion, fluid_fade_motion_single_1, fluid_fade_motion_single_2, &
+        fluid_fade_motion_single_3
+    generic :: fade_motion => fluid_fade_motion, fluid_fade_motion_single_1, fluid_fade_motion_single_2, &
+        fluid_fade_motion_single_3
+    procedure, private :: fluid_read_aerodyn, fluid_read_aerodyn_single_1, fluid_read_aerodyn_single_2
+    generic :: read_aerodyn => fluid_read_aerodyn, fluid_read_aerodyn_single_1, fluid_read_aerodyn_single_2
     procedure, private :: fluid_get_count_64, fluid_get_count_32
     generic :: get_count => fluid_get_count_64, fluid_get_count_32
     procedure :: get_member => fluid_get_member
     procedure :: get_name => fluid_get_name
-    procedure :: get_flag_count => fluid_get_flag_count
-    procedure :: get_map => fluid_get_map
-    procedure :: get_feet => fluid_get_feet
-    procedure :: get_basis => fluid_get_basis
-    procedure :: pull_motion => fluid_pull_motion
-    procedure :: pull_sections => fluid_pull_sections
-    procedure :: pull_poses => fluid_pull_poses
-    procedure :: pull_matrices => fluid_pull_matrices
-    procedure :: check_matrices => fluid_check_matrices
-    procedure :: pull_force_places => fluid_pull_force_places
-    procedure :: get_kind => fluid_get_kind
-    procedure :: get_places => fluid_get_places
-    procedure :: get_forces => fluid_get_forces
-    procedure :: pull_forces => fluid_pull_forces
-    procedure :: push_forces => fluid_push_forces
-    procedure :: push_forces_at => fluid_push_forces_at
-    procedure :: fail => fluid_fail
-    procedure :: pull_motion_f32 => fluid_pull_motion_f32
-    procedure :: pull_sections_f32 => fluid_pull_sections_f32
-    procedure :: pull_forces_f32 => fluid_pull_forces_f32
+    procedure, private :: fluid_get_map, fluid_get_map_single_1, fluid_get_map_single_2
+    generic :: get_map => fluid_get_map, fluid_get_map_single_1, fluid_get_map_single_2
+    procedure, private :: fluid_get_basis, fluid_get_basis_single_1
+    generic :: get_basis => fluid_get_basis, fluid_get_basis_single_1
+    procedure, private :: fluid_pull_matrices, fluid_pull_matrices_single_1, fluid_pull_matrices_single_2, &
+        fluid_pull_matrices_single_3
+    generic :: pull_matrices => fluid_pull_matrices, fluid_pull_matrices_single_1, fluid_pull_matrices_single_2, &
+        fluid_pull_matrices_single_3
+    procedure, private :: fluid_check_matrices, fluid_check_matrices_single_1
+    generic :: check_matrices => fluid_check_matrices, fluid_check_matrices_single_1
+    procedure, private :: fluid_push_forces, fluid_push_forces_single_1
+    generic :: push_forces => fluid_push_forces, fluid_push_forces_single_1
+    procedure, private :: fluid_push_forces_at, fluid_push_forces_at_single_1, fluid_push_forces_at_single_2, &
+        fluid_push_forces_at_single_3
+    generic :: push_forces_at => fluid_push_forces_at, fluid_push_forces_at_single_1, fluid_push_forces_at_single_2, &
+        fluid_push_forces_at_single_3
     procedure :: push_forces_f32 => fluid_push_forces_f32
-    procedure :: get_audit => fluid_get_audit
-    procedure :: get_total => fluid_get_total
-    procedure :: check_total => fluid_check_total
-    procedure :: get_travel => fluid_get_travel
-    procedure :: get_projection => fluid_get_projection
-    procedure :: get_interpolation => fluid_get_interpolation
-    procedure :: write_vtk => fluid_write_vtk
+    procedure, private :: fluid_check_total, fluid_check_total_single_1, fluid_check_total_single_2, &
+        fluid_check_total_single_3
+    generic :: check_total => fluid_check_total, fluid_check_total_single_1, fluid_check_total_single_2, &
+        fluid_check_total_single_3
     procedure, private :: fluid_assign
     generic :: assignment(=) => fluid_assign
   end type spar_fluid
@@ -309,12 +455,14 @@ module spar
     private
     type(c_ptr) :: handle = c_null_ptr
   contains
-    procedure :: create => polar_create
+    procedure :: set_interpolation => polar_set_interpolation
+    procedure, private :: polar_create, polar_create_single_1
+    generic :: create => polar_create, polar_create_single_1
     procedure :: destroy => polar_destroy
     procedure :: exists => polar_exists
     procedure :: c_handle => polar_handle
-    procedure :: set_interpolation => polar_set_interpolation
-    procedure :: evaluate => polar_evaluate
+    procedure, private :: polar_evaluate, polar_evaluate_single_1
+    generic :: evaluate => polar_evaluate, polar_evaluate_single_1
     procedure, private :: polar_assign
     generic :: assignment(=) => polar_assign
     final :: polar_final
@@ -325,24 +473,39 @@ module spar
     type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
     integer(c_int64_t) :: blades = 0, sections = 0
   contains
+    procedure, private :: aero_set_rotor, aero_set_rotor_single_1, aero_set_rotor_single_2, aero_set_rotor_single_3
+    generic :: set_rotor => aero_set_rotor, aero_set_rotor_single_1, aero_set_rotor_single_2, aero_set_rotor_single_3
+    procedure :: set_turn => aero_set_turn
+    procedure :: set_blades => aero_set_blades
+    procedure :: set_effects => aero_set_effects
+    procedure, private :: aero_solve, aero_solve_single_1, aero_solve_single_2, aero_solve_single_3
+    generic :: solve => aero_solve, aero_solve_single_1, aero_solve_single_2, aero_solve_single_3
+    procedure, private :: aero_get_rotor, aero_get_rotor_single_1, aero_get_rotor_single_2, aero_get_rotor_single_3
+    generic :: get_rotor => aero_get_rotor, aero_get_rotor_single_1, aero_get_rotor_single_2, aero_get_rotor_single_3
+    procedure, private :: aero_get_sections, aero_get_sections_single_1, aero_get_sections_single_2, &
+        aero_get_sections_single_3, aero_get_sections_single_4, aero_get_sections_single_5
+    generic :: get_sections => aero_get_sections, aero_get_sections_single_1, aero_get_sections_single_2, &
+        aero_get_sections_single_3, aero_get_sections_single_4, aero_get_sections_single_5
+    procedure, private :: aero_get_loads, aero_get_loads_single_1, aero_get_loads_single_2, aero_get_loads_single_3
+    generic :: get_loads => aero_get_loads, aero_get_loads_single_1, aero_get_loads_single_2, aero_get_loads_single_3
     procedure :: create => aero_create
     procedure :: destroy => aero_destroy
     procedure :: exists => aero_exists
     procedure :: c_handle => aero_handle
     procedure, private :: aero_set_section_64, aero_set_section_32
-    generic :: set_section => aero_set_section_64, aero_set_section_32
-    procedure :: set_rotor => aero_set_rotor
-    procedure :: read_aerodyn => aero_read_aerodyn
-    procedure :: set_turn => aero_set_turn
-    procedure :: set_blades => aero_set_blades
-    procedure :: set_effects => aero_set_effects
-    procedure :: solve => aero_solve
-    procedure :: get_rotor => aero_get_rotor
-    procedure :: get_sections => aero_get_sections
+    procedure, private :: aero_set_section_64_single_1, aero_set_section_32_single_1
+    generic :: set_section => aero_set_section_64, aero_set_section_32, aero_set_section_64_single_1, &
+        aero_set_section_32_single_1
+    procedure, private :: aero_read_aerodyn, aero_read_aerodyn_single_1, aero_read_aerodyn_single_2
+    generic :: read_aerodyn => aero_read_aerodyn, aero_read_aerodyn_single_1, aero_read_aerodyn_single_2
     procedure :: get_flags => aero_get_flags
-    procedure :: get_loads => aero_get_loads
     procedure, private :: aero_report_effects_64, aero_report_effects_32
-    generic :: report_effects => aero_report_effects_64, aero_report_effects_32
+    procedure, private :: aero_report_effects_64_single_1, aero_report_effects_64_single_2, &
+        aero_report_effects_64_single_3, aero_report_effects_32_single_1, aero_report_effects_32_single_2, &
+        aero_report_effects_32_single_3
+    generic :: report_effects => aero_report_effects_64, aero_report_effects_32, aero_report_effects_64_single_1, &
+        aero_report_effects_64_single_2, aero_report_effects_64_single_3, aero_report_effects_32_single_1, &
+        aero_report_effects_32_single_2, aero_report_effects_32_single_3
     procedure, private :: aero_assign
     generic :: assignment(=) => aero_assign
     final :: aero_final
@@ -411,8 +574,20 @@ module spar
   end interface spar_aero_effect_name
 
   interface spar_vtk_series_add
-    procedure :: series_add
+    procedure :: series_add, series_add_single_1
   end interface spar_vtk_series_add
+
+  ! What stands for an argument that is not there, in procedures that are told apart by it.
+  type :: absent
+    integer :: nothing = 0
+  end type absent
+
+  ! A result that the library has not set: no figure of its own, and within the range of single precision, so that nothing traps.
+  real(c_double), parameter :: untouched = -1.2345678901234567e38_c_double
+
+  interface take
+    procedure :: take_0, take_1, take_2, take_3
+  end interface take
 
   interface
     pure function strlen(text) bind(c) result(n)
@@ -482,18 +657,6 @@ contains
     call copy_text(spar_session_message(self%handle), text)
   end function session_message
 
-  subroutine session_get_phase(self, phase, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout) :: phase
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_phase
-
-    status = spar_session_get_phase(self%handle, c_phase)
-    call hand(status, c_phase, phase)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_phase
-
   ! Of arrays of different lengths as many ranks as the shortest has. One call, which is collective.
   subroutine session_get_balance(self, members, expected, counted, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -524,83 +687,6 @@ contains
     if (present(status)) own = to_c(status)
     call finish(spar_session_sum(self%handle, own, size(x, kind=c_int64_t), x), self%handle, stat, errmsg)
   end subroutine session_sum
-
-  subroutine session_set_gravity(self, g, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: g(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_gravity(self%handle, g), self%handle, stat, errmsg)
-  end subroutine session_set_gravity
-
-  subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: rho_inf
-    integer, intent(in) :: substeps
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_integrator(self%handle, rho_inf, to_c(substeps)), self%handle, stat, errmsg)
-  end subroutine session_set_integrator
-
-  subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: atol, rtol
-    integer, intent(in) :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_newton(self%handle, atol, rtol, to_c(max_iterations)), self%handle, stat, errmsg)
-  end subroutine session_set_newton
-
-  subroutine session_set_predictor(self, order, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(in) :: order
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_predictor(self%handle, to_c(order)), self%handle, stat, errmsg)
-  end subroutine session_set_predictor
-
-  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(in) :: scheme
-    real(c_double), intent(in) :: atol, rtol
-    integer, intent(in) :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_coupling(self%handle, to_c(scheme), atol, rtol, to_c(max_iterations)), self%handle, &
-        stat, errmsg)
-  end subroutine session_set_coupling
-
-  subroutine session_set_relaxation(self, omega, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: omega
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_relaxation(self%handle, omega), self%handle, stat, errmsg)
-  end subroutine session_set_relaxation
-
-  subroutine session_set_reproducible(self, on, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    logical, intent(in) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_reproducible(self%handle, flag(on)), self%handle, stat, errmsg)
-  end subroutine session_set_reproducible
-
-  subroutine session_set_option(self, key, value, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    character(*), intent(in) :: key, value
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
-  end subroutine session_set_option
 
   ! The library's messages go to log from now on; without log it is silent, as at first. Unlike the other calls this one keeps
   ! what it is given: log must be a module procedure or an external one, and context must live as long as the session, or until
@@ -649,240 +735,6 @@ contains
     end if
   end subroutine call_log
 
-  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: t
-    integer(c_int64_t), intent(inout), optional :: step
-    integer, intent(inout), optional :: iteration
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_iteration
-
-    status = spar_session_get_time(self%handle, t, step, c_iteration)
-    call hand(status, c_iteration, iteration)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_time
-
-  ! ---- what is set ----
-
-  subroutine session_get_gravity(self, g, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout) :: g(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
-  end subroutine session_get_gravity
-
-  subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: rho_inf
-    integer, intent(inout), optional :: substeps
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_substeps
-
-    status = spar_session_get_integrator(self%handle, rho_inf, c_substeps)
-    call hand(status, c_substeps, substeps)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_integrator
-
-  subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: atol
-    real(c_double), intent(inout), optional :: rtol
-    integer, intent(inout), optional :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_max_iterations
-
-    status = spar_session_get_newton(self%handle, atol, rtol, c_max_iterations)
-    call hand(status, c_max_iterations, max_iterations)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_newton
-
-  subroutine session_get_predictor(self, order, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout) :: order
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_order
-
-    status = spar_session_get_predictor(self%handle, c_order)
-    call hand(status, c_order, order)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_predictor
-
-  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout), optional :: scheme
-    real(c_double), intent(inout), optional :: atol
-    real(c_double), intent(inout), optional :: rtol
-    integer, intent(inout), optional :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_scheme, c_max_iterations
-
-    status = spar_session_get_coupling(self%handle, c_scheme, atol, rtol, c_max_iterations)
-    call hand(status, c_scheme, scheme)
-    call hand(status, c_max_iterations, max_iterations)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_coupling
-
-  subroutine session_get_relaxation(self, omega, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout) :: omega
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
-  end subroutine session_get_relaxation
-
-  subroutine session_get_reproducible(self, on, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    logical, intent(inout) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, found
-
-    status = spar_session_get_reproducible(self%handle, found)
-    if (status == SPAR_OK) on = found /= 0
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_reproducible
-
-  subroutine member_get_placement(self, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), intent(inout), optional :: x(3)
-    real(c_double), intent(inout), optional :: q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_get_placement
-
-  subroutine member_get_root(self, kind, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_member_get_root(self%handle, c_kind)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_root
-
-  subroutine member_get_external(self, on, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    logical, intent(inout) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, found
-
-    status = spar_member_get_external(self%handle, found)
-    if (status == SPAR_OK) on = found /= 0
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_external
-
-  subroutine member_get_effects(self, effects, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout) :: effects
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_effects
-
-    status = spar_member_get_effects(self%handle, c_effects)
-    call hand(status, c_effects, effects)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_effects
-
-  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: kind
-    integer(c_int64_t), intent(inout), optional :: modes
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_member_get_fidelity(self%handle, c_kind, modes)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_fidelity
-
-  subroutine member_get_owner(self, rank, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout) :: rank
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_rank
-
-    status = spar_member_get_owner(self%handle, c_rank)
-    call hand(status, c_rank, rank)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_owner
-
-  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: elements
-    integer, intent(inout), optional :: nodes_per_element
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_elements, c_nodes_per_element
-
-    status = spar_beam_get_elements(self%handle, c_elements, c_nodes_per_element)
-    call hand(status, c_elements, elements)
-    call hand(status, c_nodes_per_element, nodes_per_element)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_elements
-
-  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: rule
-    integer, intent(inout), optional :: points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_rule, c_points
-
-    status = spar_beam_get_quadrature(self%handle, c_rule, c_points)
-    call hand(status, c_rule, rule)
-    call hand(status, c_points, points)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_quadrature
-
-  subroutine member_get_damping(self, mu, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), intent(inout) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
-  end subroutine member_get_damping
-
-  subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(inout), optional :: method
-    real(c_double), intent(inout), optional :: max_distance
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_method
-
-    status = spar_fluid_get_projection(self%handle, c_method, max_distance)
-    call hand(status, c_method, method)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine fluid_get_projection
-
-  subroutine fluid_get_interpolation(self, kind, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(inout) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_fluid_get_interpolation(self%handle, c_kind)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine fluid_get_interpolation
-
   ! value is as long as what is set.
   subroutine session_get_option(self, key, value, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -925,71 +777,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_iterations
 
-  ! Of the last iteration.
-  subroutine session_get_residual(self, residual, size, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: residual, size
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
-  end subroutine session_get_residual
-
-  ! Entry SPAR_REPORT_x of the report is report(SPAR_REPORT_x + 1).
-  subroutine session_get_report(self, report, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: report(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
-  end subroutine session_get_report
-
-  subroutine session_save(self, path, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
-  end subroutine session_save
-
-  subroutine session_load(self, path, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
-  end subroutine session_load
-
   ! ---- one coupling step ----
-
-  subroutine session_step_begin(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin
-
-  subroutine session_step_begin_start(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_begin_start(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin_start
-
-  subroutine session_step_solve(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_solve
 
   ! done is .true. after a failure too, so that a loop that waits for it ends.
   subroutine session_step_check(self, done, stat, errmsg)
@@ -1004,22 +792,6 @@ contains
     if (status == SPAR_OK) done = ended /= 0
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_step_check
-
-  subroutine session_step_accept(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_accept
-
-  subroutine session_step_reject(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_reject
 
   ! A whole step; solve is called in every iteration (none: the structure alone moves), with context, which can be anything of
   ! the host. Both are used during this call only, so that solve may be an internal procedure, for which gfortran needs an
@@ -1343,80 +1115,6 @@ contains
     handle = self%handle
   end function member_handle
 
-  subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: eta(:)
-    real(c_double), contiguous, intent(in) :: xyz(:,:)
-    real(c_double), contiguous, intent(in), optional :: twist(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'xyz', shape(xyz, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
-    if (present(twist)) call need(fault, 'twist', shape(twist, kind=c_int64_t), [size(eta, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_axis', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, &
-        stat, errmsg)
-  end subroutine member_set_axis
-
-  subroutine member_set_nodes(self, x, q, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: x(:,:)
-    real(c_double), contiguous, intent(in), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_nodes', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
-  end subroutine member_set_nodes
-
-  subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: eta(:)
-    real(c_double), contiguous, intent(in) :: stiffness(:,:,:)
-    real(c_double), contiguous, intent(in), optional :: mass(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
-        [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_sections', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), &
-        self%session, stat, errmsg)
-  end subroutine member_set_sections
-
-  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: rule, points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
-  end subroutine member_set_quadrature
-
-  subroutine member_set_damping(self, mu, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
-  end subroutine member_set_damping
-
   subroutine member_read_beamdyn(self, primary_path, blade_path, stat, errmsg)
     class(spar_member), intent(inout) :: self
     character(*), intent(in) :: primary_path
@@ -1433,42 +1131,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_read_beamdyn
 
-  subroutine member_set_placement(self, x, q, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in) :: x(3), q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_set_placement
-
-  subroutine member_set_root(self, kind, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
-  end subroutine member_set_root
-
-  subroutine member_set_external(self, on, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    logical, intent(in) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
-  end subroutine member_set_external
-
-  subroutine member_set_effects(self, effects, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: effects
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
-  end subroutine member_set_effects
-
   subroutine member_set_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: kind
@@ -1481,23 +1143,6 @@ contains
     if (present(modes)) n = modes
     call finish(spar_member_set_fidelity(self%handle, to_c(kind), n), self%session, stat, errmsg)
   end subroutine member_set_fidelity
-
-  ! of a rigid body one mass, and eta is not looked at; no stations: no guess
-  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: eta(:)
-    real(c_double), contiguous, intent(in) :: mass(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_added_mass', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_set_added_mass(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, errmsg)
-  end subroutine member_set_added_mass
 
   ! n: stations; eta and mass are filled as far as they reach
   subroutine member_get_added_mass(self, n, eta, mass, stat, errmsg)
@@ -1524,32 +1169,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_added_mass
 
-  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
-  end subroutine member_set_initial_velocity
-
-  subroutine member_set_owner(self, rank, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: rank
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
-  end subroutine member_set_owner
-
-  subroutine member_commit(self, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
-  end subroutine member_commit
-
   subroutine member_get_count_64(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout) :: nodes
@@ -1570,87 +1189,6 @@ contains
     status = spar_member_get_count(self%handle, n)
     call narrow(status, n, nodes, 'member%get_count', self%session, stat, errmsg)
   end subroutine member_get_count_32
-
-  subroutine member_get_reference(self, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_reference', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_get_reference
-
-  subroutine member_get_motion(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_get_motion
-
-  subroutine member_set_motion(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%set_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_set_motion
-
-  subroutine member_drive_root(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in) :: q(7)
-    real(c_double), intent(in), optional :: v(6), a(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_drive_root
 
   ! Of a member that is there; what is not, the library refuses.
   subroutine need_node(fault, member, node)
@@ -1692,103 +1230,6 @@ contains
     call self%set_load(int(node, c_int64_t), kind, load, stat, errmsg)
   end subroutine member_set_load_32
 
-  subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: kind
-    real(c_double), contiguous, intent(in) :: eta(:)
-    real(c_double), contiguous, intent(in) :: load(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_line_load', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_set_line_load(self%handle, to_c(kind), size(eta, kind=c_int64_t), eta, load), &
-        self%session, stat, errmsg)
-  end subroutine member_set_line_load
-
-  subroutine member_get_loads(self, load, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: load(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_loads', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
-  end subroutine member_get_loads
-
-  subroutine member_get_reaction(self, load, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), intent(inout) :: load(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
-  end subroutine member_get_reaction
-
-  subroutine member_get_section(self, eta, strain, force, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(in) :: eta(:)
-    real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int64_t) :: n
-
-    n = size(eta, kind=c_int64_t)
-    if (present(strain)) call need(fault, 'strain', shape(strain, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_section', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_get_section(self%handle, n, eta, strain, force, x, q), self%session, stat, errmsg)
-  end subroutine member_get_section
-
-  subroutine member_get_energy(self, energy, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: energy(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
-  end subroutine member_get_energy
-
-  subroutine member_get_work(self, work, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: work(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_get_work(self%handle, size(work, kind=c_int64_t), work), self%session, stat, errmsg)
-  end subroutine member_get_work
-
-  subroutine member_solve_static(self, load_steps, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: load_steps
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
-  end subroutine member_solve_static
-
   ! modes are counted from 1
   subroutine member_set_modal_damping(self, mode, ratio, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -1826,31 +1267,6 @@ contains
     call finish(spar_member_solve_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
         shapes), self%session, stat, errmsg)
   end subroutine member_solve_modes
-
-  subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: fidelity
-    integer(c_int64_t), intent(inout), optional :: modes
-    integer, intent(inout), optional :: nodes_per_element, points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_fidelity, c_nodes_per_element, c_points
-
-    status = spar_member_get_advice(self%handle, c_fidelity, modes, c_nodes_per_element, c_points)
-    call hand(status, c_fidelity, fidelity)
-    call hand(status, c_nodes_per_element, nodes_per_element)
-    call hand(status, c_points, points)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_advice
-
-  subroutine member_write_vtk(self, path, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
-  end subroutine member_write_vtk
 
   ! ---- fluids ----
 
@@ -1970,25 +1386,6 @@ contains
     handle = self%handle
   end function joint_handle
 
-  subroutine joint_set_frame(self, x, q, stat, errmsg)
-    class(spar_joint), intent(inout) :: self
-    real(c_double), intent(in) :: x(3)
-    real(c_double), intent(in), optional :: q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_set_frame(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine joint_set_frame
-
-  subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
-    class(spar_joint), intent(inout) :: self
-    real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
-  end subroutine joint_set_spring
-
   ! A joint of one node with the ground, made with its springs.
   subroutine joint_at_node_64(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
@@ -2031,61 +1428,6 @@ contains
     if (present(tension_only)) slack = merge(1_c_int, 0_c_int, tension_only)
     call finish(spar_line_set_spring(self%handle, stiffness, damping, length, slack), self%session, stat, errmsg)
   end subroutine joint_set_line_spring
-
-  subroutine joint_set_driven(self, mask, stat, errmsg)
-    class(spar_joint), intent(inout) :: self
-    integer, intent(in) :: mask
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_set_driven(self%handle, to_c(mask)), self%session, stat, errmsg)
-  end subroutine joint_set_driven
-
-  subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
-    class(spar_joint), intent(inout) :: self
-    real(c_double), intent(in) :: motion(6)
-    real(c_double), intent(in), optional :: rate(6), acceleration(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_drive(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
-  end subroutine joint_drive
-
-  subroutine joint_set_load(self, load, stat, errmsg)
-    class(spar_joint), intent(inout) :: self
-    real(c_double), intent(in) :: load(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
-  end subroutine joint_set_load
-
-  subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
-    class(spar_joint), intent(in) :: self
-    real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_get_motion(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
-  end subroutine joint_get_motion
-
-  subroutine joint_get_load(self, load, stat, errmsg)
-    class(spar_joint), intent(in) :: self
-    real(c_double), intent(inout) :: load(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
-  end subroutine joint_get_load
-
-  subroutine joint_get_energy(self, energy, stat, errmsg)
-    class(spar_joint), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: energy(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_joint_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
-  end subroutine joint_get_energy
 
   subroutine fluid_create(self, member, name, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -2134,16 +1476,6 @@ contains
     call copy_text(spar_fluid_get_name(self%handle), name)
   end function fluid_get_name
 
-  subroutine fluid_fail(self, status, message, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: status
-    character(*), intent(in) :: message
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
-  end subroutine fluid_fail
-
   ! Takes the fluid out of its session, which must still be there.
   subroutine fluid_destroy(self)
     class(spar_fluid), intent(inout) :: self
@@ -2171,21 +1503,6 @@ contains
     handle = self%handle
   end function fluid_handle
 
-  subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: x(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('fluid%set_motion_nodes', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
-  end subroutine fluid_set_motion_nodes
-
   ! w(n), n motion nodes; without w: no weights.
   subroutine fluid_set_motion_weights(self, w, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -2198,28 +1515,6 @@ contains
     if (present(w)) n = size(w, kind=c_int64_t)
     call finish(spar_fluid_set_motion_weights(self%handle, n, w), self%session, stat, errmsg)
   end subroutine fluid_set_motion_weights
-
-  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: w(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need(fault, 'w', shape(w, kind=c_int64_t), [n])
-    if (allocated(fault)) then
-      call refuse('fluid%get_motion_weights', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
-  end subroutine fluid_get_motion_weights
 
   ! distance(n): without it from the reference line; held(n): not 0 where the mesh stands still.
   subroutine fluid_fade_motion(self, within, beyond, distance, held, stat, errmsg)
@@ -2249,39 +1544,6 @@ contains
     call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, c_held), self%session, stat, errmsg)
   end subroutine fluid_fade_motion
 
-  subroutine fluid_set_force_nodes(self, x, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: x(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('fluid%set_force_nodes', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
-  end subroutine fluid_set_force_nodes
-
-  subroutine fluid_set_sections(self, xi, offset, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: xi(:)
-    real(c_double), contiguous, intent(in), optional :: offset(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), &
-        [3_c_int64_t, size(xi, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('fluid%set_sections', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_set_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
-        stat, errmsg)
-  end subroutine fluid_set_sections
-
   subroutine fluid_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     character(*), intent(in) :: primary_path
@@ -2302,85 +1564,6 @@ contains
     end if
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_read_aerodyn
-
-  subroutine fluid_set_motion_sections(self, xi, offset, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: xi(:)
-    real(c_double), contiguous, intent(in), optional :: offset(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), &
-        [3_c_int64_t, size(xi, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('fluid%set_motion_sections', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_set_motion_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
-        stat, errmsg)
-  end subroutine fluid_set_motion_sections
-
-  subroutine fluid_get_kind(self, which, kind, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    integer, intent(inout) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_fluid_get_kind(self%handle, to_c(which), c_kind)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine fluid_get_kind
-
-  ! (1, n): arrays x(n,3), by component; (3, 1): x(3,n).
-  subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(in) :: which
-    integer(c_int64_t), intent(in) :: node, component
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_set_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
-  end subroutine fluid_set_layout
-
-  subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    integer(c_int64_t), intent(inout), optional :: node, component
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_get_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
-  end subroutine fluid_get_layout
-
-  subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(in) :: method
-    real(c_double), intent(in) :: max_distance
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_set_projection(self%handle, to_c(method), max_distance), self%session, stat, errmsg)
-  end subroutine fluid_set_projection
-
-  subroutine fluid_set_interpolation(self, kind, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(in) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_set_interpolation(self%handle, to_c(kind)), self%session, stat, errmsg)
-  end subroutine fluid_set_interpolation
-
-  subroutine fluid_map(self, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
-  end subroutine fluid_map
 
   subroutine fluid_get_count_64(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -2404,16 +1587,6 @@ contains
     status = spar_fluid_get_count(self%handle, to_c(which), long)
     call narrow(status, long, n, 'fluid%get_count', self%session, stat, errmsg)
   end subroutine fluid_get_count_32
-
-  subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which, flag
-    integer(c_int64_t), intent(inout) :: n
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_get_flag_count(self%handle, to_c(which), to_c(flag), n), self%session, stat, errmsg)
-  end subroutine fluid_get_flag_count
 
   subroutine fluid_get_map(self, which, xi, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -2445,31 +1618,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_map
 
-  subroutine fluid_get_feet(self, which, x_map, q_map, con, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(which), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x_map)) call need(fault, 'x_map', shape(x_map, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q_map)) call need(fault, 'q_map', shape(q_map, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(con)) call need(fault, 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('fluid%get_feet', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
-  end subroutine fluid_get_feet
-
   ! first_node(n) counts from 1; phi(p,n), p nodes per element.
   subroutine fluid_get_basis(self, which, first_node, phi, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -2498,156 +1646,6 @@ contains
     if (status == SPAR_OK .and. present(first_node)) first_node = first_node + 1
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_basis
-
-  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
-  end subroutine fluid_pull_motion
-
-  subroutine fluid_pull_sections(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_sections', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
-  end subroutine fluid_pull_sections
-
-  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
-  end subroutine fluid_pull_poses
-
-  subroutine fluid_pull_force_places(self, theta, x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_FORCE, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_FORCE, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('fluid%pull_force_places', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_force_places(self%handle, theta, x, v, q), self%session, stat, errmsg)
-  end subroutine fluid_pull_force_places
-
-  subroutine fluid_get_places(self, which, x, v, q, foot, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(which), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(foot)) call need(fault, 'foot', shape(foot, kind=c_int64_t), [3_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('fluid%get_places', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_get_places(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
-  end subroutine fluid_get_places
-
-  subroutine fluid_get_forces(self, force, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: force(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('fluid%get_forces', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_get_forces(self%handle, force), self%session, stat, errmsg)
-  end subroutine fluid_get_forces
 
   ! matrix(row, column, n): the convention as its name says. C fills row by row, so the transpose of what C's name says is asked for.
   subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)
@@ -2697,29 +1695,6 @@ contains
     end if
     call finish(spar_fluid_check_matrices(self%handle, to_c(1 - convention), matrix), self%session, stat, errmsg)
   end subroutine fluid_check_matrices
-
-  subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout) :: force(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_forces', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_forces(self%handle, theta, force), self%session, stat, errmsg)
-  end subroutine fluid_pull_forces
 
   subroutine fluid_push_forces(self, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -2772,78 +1747,6 @@ contains
     call finish(spar_fluid_push_forces_at(self%handle, theta, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces_at
 
-  subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_motion_f32', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
-  end subroutine fluid_pull_motion_f32
-
-  subroutine fluid_pull_sections_f32(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_sections_f32', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_sections_f32(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
-  end subroutine fluid_pull_sections_f32
-
-  subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout) :: force(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_forces_f32', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_forces_f32(self%handle, theta, force), self%session, stat, errmsg)
-  end subroutine fluid_pull_forces_f32
-
   subroutine fluid_push_forces_f32(self, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_float), contiguous, intent(in) :: force(:,:)
@@ -2869,26 +1772,6 @@ contains
     call finish(spar_fluid_push_forces_f32(self%handle, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces_f32
 
-  subroutine fluid_get_audit(self, audit, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: audit(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
-  end subroutine fluid_get_audit
-
-  ! Collective. Absent point: about the origin.
-  subroutine fluid_get_total(self, point, force, moment, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in), optional :: point(3)
-    real(c_double), intent(inout), optional :: force(3), moment(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
-  end subroutine fluid_get_total
-
   ! Collective. Whether all loads pushed add up to the host's total. Absent point: about the origin; absent moment: not
   ! compared.
   subroutine fluid_check_total(self, point, force, moment, rtol, stat, errmsg)
@@ -2900,26 +1783,6 @@ contains
 
     call finish(spar_fluid_check_total(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
   end subroutine fluid_check_total
-
-  ! node counts from 0, -1: there are none.
-  subroutine fluid_get_travel(self, largest, node, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_double), intent(inout), optional :: largest
-    integer(c_int64_t), intent(inout), optional :: node
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
-  end subroutine fluid_get_travel
-
-  subroutine fluid_write_vtk(self, path, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
-  end subroutine fluid_write_vtk
 
   ! ---- polars ----
 
@@ -2979,15 +1842,6 @@ contains
 
     handle = self%handle
   end function polar_handle
-
-  subroutine polar_set_interpolation(self, kind, stat, errmsg)
-    class(spar_polar), intent(inout) :: self
-    integer, intent(in) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_polar_set_interpolation(self%handle, to_c(kind)), c_null_ptr, stat, errmsg)
-  end subroutine polar_set_interpolation
 
   subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
     class(spar_polar), intent(in) :: self
@@ -3096,15 +1950,6 @@ contains
     call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
   end subroutine aero_set_section_32
 
-  subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
-  end subroutine aero_set_rotor
-
   subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
     class(spar_aero), intent(inout) :: self
     character(*), intent(in) :: primary_path
@@ -3128,6 +1973,1389 @@ contains
     end if
     call finish(status, self%session, stat, errmsg)
   end subroutine aero_read_aerodyn
+
+  subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(inout), optional :: flags(:,:)
+    integer(c_int64_t), intent(inout), optional :: no_root
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+    integer(c_int), allocatable :: c_flags(:,:)
+
+    if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [self%sections, self%blades])
+    if (allocated(fault)) then
+      call refuse('aero%get_flags', fault, stat, errmsg)
+      return
+    end if
+    if (present(flags)) allocate (c_flags(self%sections, self%blades), source=0_c_int)
+    status = spar_aero_get_flags(self%handle, c_flags, no_root)
+    if (status == SPAR_OK .and. present(flags)) flags(:self%sections, :self%blades) = c_flags
+    call finish(status, self%session, stat, errmsg)
+  end subroutine aero_get_flags
+
+  subroutine aero_report_effects_64(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(session, record, to_solver, to_before, solve, before, context)
+    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), &
+        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), session%handle, stat, errmsg)
+  end subroutine aero_report_effects_64
+
+  subroutine aero_report_effects_32(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%report_effects(session, dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
+  end subroutine aero_report_effects_32
+
+  ! ---- what needs no thought ----
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine session_set_gravity(self, g, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: g(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_gravity(self%handle, g), self%handle, stat, errmsg)
+  end subroutine session_set_gravity
+
+  subroutine session_get_gravity(self, g, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout) :: g(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
+  end subroutine session_get_gravity
+
+  subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: rho_inf
+    integer, intent(in) :: substeps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_integrator(self%handle, rho_inf, to_c(substeps)), self%handle, stat, errmsg)
+  end subroutine session_set_integrator
+
+  subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: rho_inf
+    integer, intent(inout), optional :: substeps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_substeps
+
+    status = spar_session_get_integrator(self%handle, rho_inf, c_substeps)
+    call hand(status, c_substeps, substeps)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_integrator
+
+  subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: atol, rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_newton(self%handle, atol, rtol, to_c(max_iterations)), self%handle, stat, errmsg)
+  end subroutine session_set_newton
+
+  subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: atol, rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_max_iterations
+
+    status = spar_session_get_newton(self%handle, atol, rtol, c_max_iterations)
+    call hand(status, c_max_iterations, max_iterations)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_newton
+
+  subroutine session_set_predictor(self, order, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: order
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_predictor(self%handle, to_c(order)), self%handle, stat, errmsg)
+  end subroutine session_set_predictor
+
+  subroutine session_get_predictor(self, order, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout) :: order
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_order
+
+    status = spar_session_get_predictor(self%handle, c_order)
+    call hand(status, c_order, order)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_predictor
+
+  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: scheme
+    real(c_double), intent(in) :: atol, rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_coupling(self%handle, to_c(scheme), atol, rtol, to_c(max_iterations)), self%handle, &
+        stat, errmsg)
+  end subroutine session_set_coupling
+
+  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    real(c_double), intent(inout), optional :: atol, rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_scheme, c_max_iterations
+
+    status = spar_session_get_coupling(self%handle, c_scheme, atol, rtol, c_max_iterations)
+    call hand(status, c_scheme, scheme)
+    call hand(status, c_max_iterations, max_iterations)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_coupling
+
+  subroutine session_set_relaxation(self, omega, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: omega
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_relaxation(self%handle, omega), self%handle, stat, errmsg)
+  end subroutine session_set_relaxation
+
+  subroutine session_get_relaxation(self, omega, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout) :: omega
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
+  end subroutine session_get_relaxation
+
+  subroutine session_set_reproducible(self, on, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    logical, intent(in) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_reproducible(self%handle, flag(on)), self%handle, stat, errmsg)
+  end subroutine session_set_reproducible
+
+  subroutine session_get_reproducible(self, on, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    logical, intent(inout) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_on
+
+    status = spar_session_get_reproducible(self%handle, c_on)
+    if (status == SPAR_OK) on = c_on /= 0
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_reproducible
+
+  subroutine session_set_option(self, key, value, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
+  end subroutine session_set_option
+
+  subroutine session_get_residual(self, residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: residual, size
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
+  end subroutine session_get_residual
+
+  subroutine session_get_report(self, report, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: report(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
+  end subroutine session_get_report
+
+  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: t
+    integer(c_int64_t), intent(inout), optional :: step
+    integer, intent(inout), optional :: iteration
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_iteration
+
+    status = spar_session_get_time(self%handle, t, step, c_iteration)
+    call hand(status, c_iteration, iteration)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_time
+
+  subroutine session_get_phase(self, phase, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout) :: phase
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_phase
+
+    status = spar_session_get_phase(self%handle, c_phase)
+    call hand(status, c_phase, phase)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_phase
+
+  subroutine session_step_begin(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin
+
+  subroutine session_step_solve(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_solve
+
+  subroutine session_step_accept(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_accept
+
+  subroutine session_step_reject(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_reject
+
+  subroutine session_step_begin_start(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin_start(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin_start
+
+  subroutine session_save(self, path, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_save
+
+  subroutine session_load(self, path, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_load
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: elements, nodes_per_element
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_elements, c_nodes_per_element
+
+    status = spar_beam_get_elements(self%handle, c_elements, c_nodes_per_element)
+    call hand(status, c_elements, elements)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_elements
+
+  subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), xyz(:,:)
+    real(c_double), contiguous, intent(in), optional :: twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'xyz', shape(xyz, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
+    if (present(twist)) call need(fault, 'twist', shape(twist, kind=c_int64_t), [size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_axis', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, stat, errmsg)
+  end subroutine member_set_axis
+
+  subroutine member_set_nodes(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    real(c_double), contiguous, intent(in), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_nodes', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
+  end subroutine member_set_nodes
+
+  subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), stiffness(:,:,:)
+    real(c_double), contiguous, intent(in), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, &
+        kind=c_int64_t)])
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), self%session, &
+        stat, errmsg)
+  end subroutine member_set_sections
+
+  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: rule, points
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
+  end subroutine member_set_quadrature
+
+  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: rule, points
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rule, c_points
+
+    status = spar_beam_get_quadrature(self%handle, c_rule, c_points)
+    call hand(status, c_rule, rule)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_quadrature
+
+  subroutine member_set_damping(self, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
+  end subroutine member_set_damping
+
+  subroutine member_get_damping(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
+  end subroutine member_get_damping
+
+  subroutine member_set_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: x(3), q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_set_placement
+
+  subroutine member_get_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout), optional :: x(3), q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_placement
+
+  subroutine member_set_root(self, kind, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
+  end subroutine member_set_root
+
+  subroutine member_get_root(self, kind, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_member_get_root(self%handle, c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_root
+
+  subroutine member_set_external(self, on, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    logical, intent(in) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
+  end subroutine member_set_external
+
+  subroutine member_get_external(self, on, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_on
+
+    status = spar_member_get_external(self%handle, c_on)
+    if (status == SPAR_OK) on = c_on /= 0
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_external
+
+  subroutine member_set_effects(self, effects, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: effects
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
+  end subroutine member_set_effects
+
+  subroutine member_get_effects(self, effects, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: effects
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_effects
+
+    status = spar_member_get_effects(self%handle, c_effects)
+    call hand(status, c_effects, effects)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_effects
+
+  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: kind
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_member_get_fidelity(self%handle, c_kind, modes)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_fidelity
+
+  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_added_mass', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_set_added_mass(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, &
+        errmsg)
+  end subroutine member_set_added_mass
+
+  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
+  end subroutine member_set_initial_velocity
+
+  subroutine member_set_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: rank
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
+  end subroutine member_set_owner
+
+  subroutine member_get_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: rank
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rank
+
+    status = spar_member_get_owner(self%handle, c_rank)
+    call hand(status, c_rank, rank)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_owner
+
+  subroutine member_commit(self, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
+  end subroutine member_commit
+
+  subroutine member_get_reference(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_reference', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_reference
+
+  subroutine member_get_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_get_motion
+
+  subroutine member_set_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%set_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_set_motion
+
+  subroutine member_drive_root(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: q(7)
+    real(c_double), intent(in), optional :: v(6), a(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_drive_root
+
+  subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: kind
+    real(c_double), contiguous, intent(in) :: eta(:), load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_line_load', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_line_load(self%handle, to_c(kind), size(eta, kind=c_int64_t), eta, load), self%session, &
+        stat, errmsg)
+  end subroutine member_set_line_load
+
+  subroutine member_get_loads(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_loads', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
+  end subroutine member_get_loads
+
+  subroutine member_get_reaction(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
+  end subroutine member_get_reaction
+
+  subroutine member_get_section(self, eta, strain, force, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(strain)) call need(fault, 'strain', shape(strain, kind=c_int64_t), [6_c_int64_t, size(eta, &
+        kind=c_int64_t)])
+    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, size(eta, &
+        kind=c_int64_t)])
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_section', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_get_section(self%handle, size(eta, kind=c_int64_t), eta, strain, force, x, q), &
+        self%session, stat, errmsg)
+  end subroutine member_get_section
+
+  subroutine member_get_energy(self, energy, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
+  end subroutine member_get_energy
+
+  subroutine member_get_work(self, work, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: work(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_work(self%handle, size(work, kind=c_int64_t), work), self%session, stat, errmsg)
+  end subroutine member_get_work
+
+  subroutine member_solve_static(self, load_steps, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: load_steps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
+  end subroutine member_solve_static
+
+  subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: fidelity
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer, intent(inout), optional :: nodes_per_element, points
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_fidelity, c_nodes_per_element, c_points
+
+    status = spar_member_get_advice(self%handle, c_fidelity, modes, c_nodes_per_element, c_points)
+    call hand(status, c_fidelity, fidelity)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_advice
+
+  subroutine member_write_vtk(self, path, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
+  end subroutine member_write_vtk
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine joint_set_frame(self, x, q, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: x(3)
+    real(c_double), intent(in), optional :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_frame(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine joint_set_frame
+
+  subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
+  end subroutine joint_set_spring
+
+  subroutine joint_set_driven(self, mask, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    integer, intent(in) :: mask
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_driven(self%handle, to_c(mask)), self%session, stat, errmsg)
+  end subroutine joint_set_driven
+
+  subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: motion(6)
+    real(c_double), intent(in), optional :: rate(6), acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_drive(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
+  end subroutine joint_drive
+
+  subroutine joint_set_load(self, load, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_double), intent(in) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
+  end subroutine joint_set_load
+
+  subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_motion(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
+  end subroutine joint_get_motion
+
+  subroutine joint_get_load(self, load, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), intent(inout) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
+  end subroutine joint_get_load
+
+  subroutine joint_get_energy(self, energy, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_joint_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
+  end subroutine joint_get_energy
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('fluid%set_motion_nodes', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
+  end subroutine fluid_set_motion_nodes
+
+  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: w(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'w', shape(w, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_motion_weights', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
+  end subroutine fluid_get_motion_weights
+
+  subroutine fluid_set_force_nodes(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('fluid%set_force_nodes', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
+  end subroutine fluid_set_force_nodes
+
+  subroutine fluid_set_sections(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('fluid%set_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_set_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, stat, errmsg)
+  end subroutine fluid_set_sections
+
+  subroutine fluid_set_motion_sections(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('fluid%set_motion_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_set_motion_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
+        stat, errmsg)
+  end subroutine fluid_set_motion_sections
+
+  subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(in) :: which
+    integer(c_int64_t), intent(in) :: node, component
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
+  end subroutine fluid_set_layout
+
+  subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    integer(c_int64_t), intent(inout), optional :: node, component
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
+  end subroutine fluid_get_layout
+
+  subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(in) :: method
+    real(c_double), intent(in) :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_projection(self%handle, to_c(method), max_distance), self%session, stat, errmsg)
+  end subroutine fluid_set_projection
+
+  subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(inout), optional :: method
+    real(c_double), intent(inout), optional :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_method
+
+    status = spar_fluid_get_projection(self%handle, c_method, max_distance)
+    call hand(status, c_method, method)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_projection
+
+  subroutine fluid_set_interpolation(self, kind, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_interpolation(self%handle, to_c(kind)), self%session, stat, errmsg)
+  end subroutine fluid_set_interpolation
+
+  subroutine fluid_get_interpolation(self, kind, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_fluid_get_interpolation(self%handle, c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_interpolation
+
+  subroutine fluid_map(self, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
+  end subroutine fluid_map
+
+  subroutine fluid_get_kind(self, which, kind, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_fluid_get_kind(self%handle, to_c(which), c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_kind
+
+  subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which, flag
+    integer(c_int64_t), intent(inout) :: n
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_flag_count(self%handle, to_c(which), to_c(flag), n), self%session, stat, errmsg)
+  end subroutine fluid_get_flag_count
+
+  subroutine fluid_get_feet(self, which, x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x_map)) call need(fault, 'x_map', shape(x_map, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q_map)) call need(fault, 'q_map', shape(q_map, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(con)) call need(fault, 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_feet', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
+  end subroutine fluid_get_feet
+
+  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion
+
+  subroutine fluid_pull_sections(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
+  end subroutine fluid_pull_sections
+
+  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
+  end subroutine fluid_pull_poses
+
+  subroutine fluid_get_travel(self, largest, node, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(inout), optional :: largest
+    integer(c_int64_t), intent(inout), optional :: node
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
+  end subroutine fluid_get_travel
+
+  subroutine fluid_pull_force_places(self, theta, x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_FORCE, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_FORCE, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%pull_force_places', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_force_places(self%handle, theta, x, v, q), self%session, stat, errmsg)
+  end subroutine fluid_pull_force_places
+
+  subroutine fluid_get_places(self, which, x, v, q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(foot)) call need(fault, 'foot', shape(foot, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_places', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_places(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
+  end subroutine fluid_get_places
+
+  subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_forces', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_forces(self%handle, theta, force), self%session, stat, errmsg)
+  end subroutine fluid_pull_forces
+
+  subroutine fluid_get_forces(self, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_forces', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_forces(self%handle, force), self%session, stat, errmsg)
+  end subroutine fluid_get_forces
+
+  subroutine fluid_fail(self, status, message, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: status
+    character(*), intent(in) :: message
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
+  end subroutine fluid_fail
+
+  subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_motion_f32', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion_f32
+
+  subroutine fluid_pull_sections_f32(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_sections_f32', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_sections_f32(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
+  end subroutine fluid_pull_sections_f32
+
+  subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need_triples(self, SPAR_NODES_FORCE, fault, 'force', shape(force, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_forces_f32', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_forces_f32(self%handle, theta, force), self%session, stat, errmsg)
+  end subroutine fluid_pull_forces_f32
+
+  subroutine fluid_get_audit(self, audit, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: audit(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
+  end subroutine fluid_get_audit
+
+  subroutine fluid_get_total(self, point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in), optional :: point(3)
+    real(c_double), intent(inout), optional :: force(3), moment(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_get_total
+
+  subroutine fluid_write_vtk(self, path, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_write_vtk(self%handle, c_text(path)), self%session, stat, errmsg)
+  end subroutine fluid_write_vtk
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine polar_set_interpolation(self, kind, stat, errmsg)
+    class(spar_polar), intent(inout) :: self
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_polar_set_interpolation(self%handle, to_c(kind)), c_null_ptr, stat, errmsg)
+  end subroutine polar_set_interpolation
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
+  end subroutine aero_set_rotor
 
   subroutine aero_set_turn(self, turn, stat, errmsg)
     class(spar_aero), intent(inout) :: self
@@ -3193,35 +3421,14 @@ contains
     if (present(cl)) call need(fault, 'cl', shape(cl, kind=c_int64_t), [self%sections, self%blades])
     if (present(cd)) call need(fault, 'cd', shape(cd, kind=c_int64_t), [self%sections, self%blades])
     if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [self%sections, self%blades])
-    if (present(a_tangential)) call need(fault, 'a_tangential', shape(a_tangential, kind=c_int64_t), &
-        [self%sections, self%blades])
+    if (present(a_tangential)) call need(fault, 'a_tangential', shape(a_tangential, kind=c_int64_t), [self%sections, &
+        self%blades])
     if (allocated(fault)) then
       call refuse('aero%get_sections', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_get_sections(self%handle, alpha, cl, cd, a, a_tangential), self%session, stat, errmsg)
   end subroutine aero_get_sections
-
-  subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    integer, intent(inout), optional :: flags(:,:)
-    integer(c_int64_t), intent(inout), optional :: no_root
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-    integer(c_int), allocatable :: c_flags(:,:)
-
-    if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [self%sections, self%blades])
-    if (allocated(fault)) then
-      call refuse('aero%get_flags', fault, stat, errmsg)
-      return
-    end if
-    if (present(flags)) allocate (c_flags(self%sections, self%blades), source=0_c_int)
-    status = spar_aero_get_flags(self%handle, c_flags, no_root)
-    if (status == SPAR_OK .and. present(flags)) flags(:self%sections, :self%blades) = c_flags
-    call finish(status, self%session, stat, errmsg)
-  end subroutine aero_get_flags
 
   subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
     class(spar_aero), intent(in) :: self
@@ -3230,51 +3437,18 @@ contains
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(per_length)) call need(fault, 'per_length', shape(per_length, kind=c_int64_t), &
-        [6_c_int64_t, self%sections, self%blades])
-    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, self%sections, self%blades])
-    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), &
-        [3_c_int64_t, self%sections, self%blades])
+    if (present(per_length)) call need(fault, 'per_length', shape(per_length, kind=c_int64_t), [6_c_int64_t, &
+        self%sections, self%blades])
+    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, self%sections, &
+        self%blades])
+    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, self%sections, &
+        self%blades])
     if (allocated(fault)) then
       call refuse('aero%get_loads', fault, stat, errmsg)
       return
     end if
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
   end subroutine aero_get_loads
-
-  subroutine aero_report_effects_64(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
-
-    call fill_record(session, record, to_solver, to_before, solve, before, context)
-    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), &
-        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), session%handle, stat, errmsg)
-  end subroutine aero_report_effects_64
-
-  subroutine aero_report_effects_32(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%report_effects(session, dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
-  end subroutine aero_report_effects_32
 
   ! ---- calls that need no object ----
 
@@ -3324,6 +3498,3295 @@ contains
 
     call finish(c_series_add(c_text(path), time, to_c(part), c_text(file)), c_null_ptr, stat, errmsg)
   end subroutine series_add
+
+  ! ---- single precision ----
+
+  ! Written by cmake/make-bindings.sh.
+
+  subroutine session_get_balance_single_1(self, members, expected, counted, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
+    real(c_float), intent(inout) :: expected(:)
+    real(c_float), intent(inout), optional :: counted(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_expected(:)
+    real(c_double), allocatable :: c_counted(:)
+
+    allocate (c_expected(ubound(expected, 1, c_int64_t)), source=untouched)
+    if (present(counted)) allocate (c_counted(ubound(counted, 1, c_int64_t)), source=untouched)
+    call session_get_balance(self, members=members, expected=c_expected, counted=c_counted, stat=stat, errmsg=errmsg)
+    call take(c_expected, expected)
+    call take(c_counted, counted)
+  end subroutine session_get_balance_single_1
+
+  subroutine session_get_balance_single_2(self, members, no_expected, counted, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
+    type(absent), intent(in), optional :: no_expected
+    real(c_float), intent(inout) :: counted(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_counted(:)
+
+    allocate (c_counted(ubound(counted, 1, c_int64_t)), source=untouched)
+    if (present(no_expected)) return
+    call session_get_balance(self, members=members, counted=c_counted, stat=stat, errmsg=errmsg)
+    call take(c_counted, counted)
+  end subroutine session_get_balance_single_2
+
+  subroutine session_sum_single_1(self, x, status, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: x(:)
+    integer, intent(in), optional :: status
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:)
+
+    c_x = real(x, c_double)
+    call session_sum(self, x=c_x, status=status, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+  end subroutine session_sum_single_1
+
+  subroutine session_get_iterations_single_1(self, iterations, residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: iterations
+    real(c_float), intent(inout) :: residual(:)
+    real(c_float), intent(inout), optional :: size(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_residual(:)
+    real(c_double), allocatable :: c_size(:)
+
+    allocate (c_residual(ubound(residual, 1, c_int64_t)), source=untouched)
+    if (present(size)) allocate (c_size(ubound(size, 1, c_int64_t)), source=untouched)
+    call session_get_iterations(self, iterations=iterations, residual=c_residual, size=c_size, stat=stat, errmsg=errmsg)
+    call take(c_residual, residual)
+    call take(c_size, size)
+  end subroutine session_get_iterations_single_1
+
+  subroutine session_get_iterations_single_2(self, iterations, no_residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: iterations
+    type(absent), intent(in), optional :: no_residual
+    real(c_float), intent(inout) :: size(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_size(:)
+
+    allocate (c_size(ubound(size, 1, c_int64_t)), source=untouched)
+    if (present(no_residual)) return
+    call session_get_iterations(self, iterations=iterations, size=c_size, stat=stat, errmsg=errmsg)
+    call take(c_size, size)
+  end subroutine session_get_iterations_single_2
+
+  subroutine session_step_single_1(self, dt, solve, context, iterations, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(inout), optional :: iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_step(self, dt=real(dt, c_double), solve=solve, context=context, iterations=iterations, stat=stat, &
+        errmsg=errmsg)
+  end subroutine session_step_single_1
+
+  subroutine session_start_single_1(self, dt, solve, context, iterations, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(inout), optional :: iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_start(self, dt=real(dt, c_double), solve=solve, context=context, iterations=iterations, stat=stat, &
+        errmsg=errmsg)
+  end subroutine session_start_single_1
+
+  subroutine session_try_64_single_1(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_try_64(self, dt=real(dt, c_double), steps=steps, report=report, before=before, solve=solve, &
+        context=context, compare=compare, stat=stat, errmsg=errmsg)
+  end subroutine session_try_64_single_1
+
+  subroutine session_try_64_single_2(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_report(:)
+
+    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
+    call session_try_64(self, dt=dt, steps=steps, report=c_report, before=before, solve=solve, context=context, &
+        compare=compare, stat=stat, errmsg=errmsg)
+    call take(c_report, report)
+  end subroutine session_try_64_single_2
+
+  subroutine session_try_64_single_3(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_report(:)
+
+    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
+    call session_try_64(self, dt=real(dt, c_double), steps=steps, report=c_report, before=before, solve=solve, &
+        context=context, compare=compare, stat=stat, errmsg=errmsg)
+    call take(c_report, report)
+  end subroutine session_try_64_single_3
+
+  subroutine session_try_32_single_1(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_try_32(self, dt=real(dt, c_double), steps=steps, report=report, before=before, solve=solve, &
+        context=context, compare=compare, stat=stat, errmsg=errmsg)
+  end subroutine session_try_32_single_1
+
+  subroutine session_try_32_single_2(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_report(:)
+
+    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
+    call session_try_32(self, dt=dt, steps=steps, report=c_report, before=before, solve=solve, context=context, &
+        compare=compare, stat=stat, errmsg=errmsg)
+    call take(c_report, report)
+  end subroutine session_try_32_single_2
+
+  subroutine session_try_32_single_3(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: report(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_report(:)
+
+    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
+    call session_try_32(self, dt=real(dt, c_double), steps=steps, report=c_report, before=before, solve=solve, &
+        context=context, compare=compare, stat=stat, errmsg=errmsg)
+    call take(c_report, report)
+  end subroutine session_try_32_single_3
+
+  subroutine session_report_effects_64_single_1(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_report_effects_64(self, dt=real(dt, c_double), steps=steps, table=table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_report_effects_64_single_1
+
+  subroutine session_report_effects_64_single_2(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call session_report_effects_64(self, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine session_report_effects_64_single_2
+
+  subroutine session_report_effects_64_single_3(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call session_report_effects_64(self, dt=real(dt, c_double), steps=steps, table=c_table, before=before, &
+        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine session_report_effects_64_single_3
+
+  subroutine session_report_effects_32_single_1(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_report_effects_32(self, dt=real(dt, c_double), steps=steps, table=table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_report_effects_32_single_1
+
+  subroutine session_report_effects_32_single_2(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call session_report_effects_32(self, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine session_report_effects_32_single_2
+
+  subroutine session_report_effects_32_single_3(self, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call session_report_effects_32(self, dt=real(dt, c_double), steps=steps, table=c_table, before=before, &
+        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine session_report_effects_32_single_3
+
+  subroutine session_advise_64_single_1(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: tolerance
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
+        advice=advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_advise_64_single_1
+
+  subroutine session_advise_64_single_2(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: tolerance
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_advice(:)
+
+    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
+    call session_advise_64(self, tolerance=tolerance, dt=dt, steps=steps, advice=c_advice, before=before, &
+        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_advice, advice)
+  end subroutine session_advise_64_single_2
+
+  subroutine session_advise_64_single_3(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: tolerance
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_advice(:)
+
+    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
+    call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
+        advice=c_advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_advice, advice)
+  end subroutine session_advise_64_single_3
+
+  subroutine session_advise_32_single_1(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: tolerance
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
+        advice=advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_advise_32_single_1
+
+  subroutine session_advise_32_single_2(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: tolerance
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_advice(:)
+
+    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
+    call session_advise_32(self, tolerance=tolerance, dt=dt, steps=steps, advice=c_advice, before=before, &
+        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_advice, advice)
+  end subroutine session_advise_32_single_2
+
+  subroutine session_advise_32_single_3(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: tolerance
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: advice(:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_advice(:)
+
+    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
+    call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
+        advice=c_advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_advice, advice)
+  end subroutine session_advise_32_single_3
+
+  subroutine session_apply_advice_single_1(self, dt, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_dt
+
+    allocate (c_dt, source=untouched)
+    call session_apply_advice(self, dt=c_dt, stat=stat, errmsg=errmsg)
+    call take(c_dt, dt)
+  end subroutine session_apply_advice_single_1
+
+  subroutine member_create_point_single_1(self, session, name, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    real(c_float), intent(in) :: x(3)
+    real(c_float), intent(in) :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_create_point(self, session=session, name=name, x=real(x, c_double), q=real(q, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_create_point_single_1
+
+  subroutine member_create_rigid_single_1(self, session, name, x, q, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    real(c_float), intent(in) :: x(3)
+    real(c_float), intent(in) :: q(4)
+    real(c_float), intent(in) :: mass(6,6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_create_rigid(self, session=session, name=name, x=real(x, c_double), q=real(q, c_double), &
+        mass=real(mass, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_create_rigid_single_1
+
+  subroutine member_get_added_mass_single_1(self, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(mass)) allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, &
+        c_int64_t)), source=untouched)
+    call member_get_added_mass(self, n=n, eta=c_eta, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_eta, eta)
+    call take(c_mass, mass)
+  end subroutine member_get_added_mass_single_1
+
+  subroutine member_get_added_mass_single_2(self, n, no_eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, c_int64_t)), &
+        source=untouched)
+    if (present(no_eta)) return
+    call member_get_added_mass(self, n=n, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_mass, mass)
+  end subroutine member_get_added_mass_single_2
+
+  subroutine member_set_load_64_single_1(self, node, kind, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: node
+    integer, intent(in) :: kind
+    real(c_float), intent(in) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_load_64(self, node=node, kind=kind, load=real(load, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_load_64_single_1
+
+  subroutine member_set_load_32_single_1(self, node, kind, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer(c_int), intent(in) :: node
+    integer, intent(in) :: kind
+    real(c_float), intent(in) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_load_32(self, node=node, kind=kind, load=real(load, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_load_32_single_1
+
+  subroutine member_set_modal_damping_single_1(self, mode, ratio, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: mode(2)
+    real(c_float), intent(in) :: ratio(2)
+    real(c_float), intent(inout), optional :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mu(:)
+
+    if (present(mu)) allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
+    call member_set_modal_damping(self, mode=mode, ratio=real(ratio, c_double), mu=c_mu, stat=stat, errmsg=errmsg)
+    call take(c_mu, mu)
+  end subroutine member_set_modal_damping_single_1
+
+  subroutine member_solve_modes_single_1(self, frequency_hz, shapes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: frequency_hz(:)
+    real(c_float), intent(inout), optional :: shapes(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_frequency_hz(:)
+    real(c_double), allocatable :: c_shapes(:,:,:)
+
+    allocate (c_frequency_hz(ubound(frequency_hz, 1, c_int64_t)), source=untouched)
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t)), source=untouched)
+    call member_solve_modes(self, frequency_hz=c_frequency_hz, shapes=c_shapes, stat=stat, errmsg=errmsg)
+    call take(c_frequency_hz, frequency_hz)
+    call take(c_shapes, shapes)
+  end subroutine member_solve_modes_single_1
+
+  subroutine joint_create_line_64_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int64_t), intent(in) :: node_a
+    real(c_float), intent(in) :: point_a(3)
+    real(c_float), intent(in) :: point_b(3)
+    class(spar_member), intent(in), optional :: b
+    integer(c_int64_t), intent(in), optional :: node_b
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call joint_create_line_64(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
+        point_b=real(point_b, c_double), b=b, node_b=node_b, stat=stat, errmsg=errmsg)
+  end subroutine joint_create_line_64_single_1
+
+  subroutine joint_create_line_32_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
+    class(spar_member), intent(in) :: a
+    integer(c_int), intent(in) :: node_a
+    real(c_float), intent(in) :: point_a(3)
+    real(c_float), intent(in) :: point_b(3)
+    class(spar_member), intent(in), optional :: b
+    integer(c_int), intent(in), optional :: node_b
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call joint_create_line_32(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
+        point_b=real(point_b, c_double), b=b, node_b=node_b, stat=stat, errmsg=errmsg)
+  end subroutine joint_create_line_32_single_1
+
+  subroutine joint_at_node_64_single_1(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int64_t), intent(in) :: node
+    integer, intent(in) :: free_motions
+    real(c_float), intent(in) :: stiffness(6,6)
+    real(c_float), intent(in), optional :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_damping(:,:)
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(damping)) c_damping = real(damping, c_double)
+    if (present(preload)) c_preload = real(preload, c_double)
+    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
+        c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_64_single_1
+
+  subroutine joint_at_node_64_single_2(self, member, node, free_motions, no_stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int64_t), intent(in) :: node
+    integer, intent(in) :: free_motions
+    type(absent), intent(in), optional :: no_stiffness
+    real(c_float), intent(in) :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(no_stiffness)) return
+    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
+        preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_64_single_2
+
+  subroutine joint_at_node_64_single_3(self, member, node, free_motions, no_stiffness, no_damping, preload, stat, &
+      errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int64_t), intent(in) :: node
+    integer, intent(in) :: free_motions
+    type(absent), intent(in), optional :: no_stiffness
+    type(absent), intent(in), optional :: no_damping
+    real(c_float), intent(in) :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_stiffness) .or. present(no_damping)) return
+    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, preload=real(preload, c_double), &
+        stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_64_single_3
+
+  subroutine joint_at_node_32_single_1(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int), intent(in) :: node
+    integer, intent(in) :: free_motions
+    real(c_float), intent(in) :: stiffness(6,6)
+    real(c_float), intent(in), optional :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_damping(:,:)
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(damping)) c_damping = real(damping, c_double)
+    if (present(preload)) c_preload = real(preload, c_double)
+    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
+        c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_32_single_1
+
+  subroutine joint_at_node_32_single_2(self, member, node, free_motions, no_stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int), intent(in) :: node
+    integer, intent(in) :: free_motions
+    type(absent), intent(in), optional :: no_stiffness
+    real(c_float), intent(in) :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(no_stiffness)) return
+    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
+        preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_32_single_2
+
+  subroutine joint_at_node_32_single_3(self, member, node, free_motions, no_stiffness, no_damping, preload, stat, &
+      errmsg)
+    class(spar_joint), intent(inout) :: self
+    class(spar_member), intent(in) :: member
+    integer(c_int), intent(in) :: node
+    integer, intent(in) :: free_motions
+    type(absent), intent(in), optional :: no_stiffness
+    type(absent), intent(in), optional :: no_damping
+    real(c_float), intent(in) :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_stiffness) .or. present(no_damping)) return
+    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, preload=real(preload, c_double), &
+        stat=stat, errmsg=errmsg)
+  end subroutine joint_at_node_32_single_3
+
+  subroutine joint_set_line_spring_single_1(self, stiffness, damping, length, tension_only, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_float), intent(in) :: stiffness
+    real(c_float), intent(in) :: damping
+    real(c_float), intent(in) :: length
+    logical, intent(in), optional :: tension_only
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call joint_set_line_spring(self, stiffness=real(stiffness, c_double), damping=real(damping, c_double), &
+        length=real(length, c_double), tension_only=tension_only, stat=stat, errmsg=errmsg)
+  end subroutine joint_set_line_spring_single_1
+
+  subroutine fluid_set_motion_weights_single_1(self, w, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: w(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_motion_weights(self, w=real(w, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_weights_single_1
+
+  subroutine fluid_fade_motion_single_1(self, within, beyond, distance, held, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: within
+    real(c_float), intent(in) :: beyond
+    real(c_double), contiguous, intent(in), optional :: distance(:)
+    integer, intent(in), optional :: held(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_fade_motion(self, within=real(within, c_double), beyond=real(beyond, c_double), distance=distance, &
+        held=held, stat=stat, errmsg=errmsg)
+  end subroutine fluid_fade_motion_single_1
+
+  subroutine fluid_fade_motion_single_2(self, within, beyond, distance, held, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), intent(in) :: within
+    real(c_double), intent(in) :: beyond
+    real(c_float), intent(in) :: distance(:)
+    integer, intent(in), optional :: held(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_fade_motion(self, within=within, beyond=beyond, distance=real(distance, c_double), held=held, &
+        stat=stat, errmsg=errmsg)
+  end subroutine fluid_fade_motion_single_2
+
+  subroutine fluid_fade_motion_single_3(self, within, beyond, distance, held, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: within
+    real(c_float), intent(in) :: beyond
+    real(c_float), intent(in) :: distance(:)
+    integer, intent(in), optional :: held(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_fade_motion(self, within=real(within, c_double), beyond=real(beyond, c_double), &
+        distance=real(distance, c_double), held=held, stat=stat, errmsg=errmsg)
+  end subroutine fluid_fade_motion_single_3
+
+  subroutine fluid_read_aerodyn_single_1(self, primary_path, blade_path, q, span, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    real(c_float), intent(in) :: q(4)
+    real(c_float), intent(in), optional :: span(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_span(:)
+
+    if (present(span)) c_span = real(span, c_double)
+    call fluid_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, q=real(q, c_double), span=c_span, &
+        stat=stat, errmsg=errmsg)
+  end subroutine fluid_read_aerodyn_single_1
+
+  subroutine fluid_read_aerodyn_single_2(self, primary_path, blade_path, no_q, span, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(in) :: span(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call fluid_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, span=real(span, c_double), &
+        stat=stat, errmsg=errmsg)
+  end subroutine fluid_read_aerodyn_single_2
+
+  subroutine fluid_get_map_single_1(self, which, xi, distance, flags, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_float), intent(inout) :: xi(:)
+    real(c_float), intent(inout), optional :: distance(:)
+    integer, intent(inout), optional :: flags(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_xi(:)
+    real(c_double), allocatable :: c_distance(:)
+
+    allocate (c_xi(ubound(xi, 1, c_int64_t)), source=untouched)
+    if (present(distance)) allocate (c_distance(ubound(distance, 1, c_int64_t)), source=untouched)
+    call fluid_get_map(self, which=which, xi=c_xi, distance=c_distance, flags=flags, stat=stat, errmsg=errmsg)
+    call take(c_xi, xi)
+    call take(c_distance, distance)
+  end subroutine fluid_get_map_single_1
+
+  subroutine fluid_get_map_single_2(self, which, no_xi, distance, flags, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_xi
+    real(c_float), intent(inout) :: distance(:)
+    integer, intent(inout), optional :: flags(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_distance(:)
+
+    allocate (c_distance(ubound(distance, 1, c_int64_t)), source=untouched)
+    if (present(no_xi)) return
+    call fluid_get_map(self, which=which, distance=c_distance, flags=flags, stat=stat, errmsg=errmsg)
+    call take(c_distance, distance)
+  end subroutine fluid_get_map_single_2
+
+  subroutine fluid_get_basis_single_1(self, which, first_node, phi, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    integer(c_int64_t), contiguous, intent(inout), optional :: first_node(:)
+    real(c_float), intent(inout) :: phi(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_phi(:,:)
+
+    allocate (c_phi(ubound(phi, 1, c_int64_t), ubound(phi, 2, c_int64_t)), source=untouched)
+    call fluid_get_basis(self, which=which, first_node=first_node, phi=c_phi, stat=stat, errmsg=errmsg)
+    call take(c_phi, phi)
+  end subroutine fluid_get_basis_single_1
+
+  subroutine fluid_pull_matrices_single_1(self, theta, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    integer, intent(in) :: convention
+    real(c_double), contiguous, intent(inout) :: matrix(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_matrices(self, theta=real(theta, c_double), convention=convention, matrix=matrix, stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_pull_matrices_single_1
+
+  subroutine fluid_pull_matrices_single_2(self, theta, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    integer, intent(in) :: convention
+    real(c_float), intent(inout) :: matrix(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_matrix(:,:,:)
+
+    allocate (c_matrix(ubound(matrix, 1, c_int64_t), ubound(matrix, 2, c_int64_t), ubound(matrix, 3, c_int64_t)), &
+        source=untouched)
+    call fluid_pull_matrices(self, theta=theta, convention=convention, matrix=c_matrix, stat=stat, errmsg=errmsg)
+    call take(c_matrix, matrix)
+  end subroutine fluid_pull_matrices_single_2
+
+  subroutine fluid_pull_matrices_single_3(self, theta, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    integer, intent(in) :: convention
+    real(c_float), intent(inout) :: matrix(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_matrix(:,:,:)
+
+    allocate (c_matrix(ubound(matrix, 1, c_int64_t), ubound(matrix, 2, c_int64_t), ubound(matrix, 3, c_int64_t)), &
+        source=untouched)
+    call fluid_pull_matrices(self, theta=real(theta, c_double), convention=convention, matrix=c_matrix, stat=stat, &
+        errmsg=errmsg)
+    call take(c_matrix, matrix)
+  end subroutine fluid_pull_matrices_single_3
+
+  subroutine fluid_check_matrices_single_1(self, convention, matrix, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: convention
+    real(c_float), intent(in) :: matrix(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_check_matrices(self, convention=convention, matrix=real(matrix, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_check_matrices_single_1
+
+  subroutine fluid_push_forces_single_1(self, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), contiguous, intent(in) :: force(:,:)
+    real(c_float), contiguous, intent(in), optional :: moment(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_push_forces_f32(self, force=force, moment=moment, stat=stat, errmsg=errmsg)
+  end subroutine fluid_push_forces_single_1
+
+  subroutine fluid_push_forces_at_single_1(self, theta, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(in) :: force(:,:)
+    real(c_double), contiguous, intent(in), optional :: moment(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_push_forces_at(self, theta=real(theta, c_double), force=force, moment=moment, stat=stat, errmsg=errmsg)
+  end subroutine fluid_push_forces_at_single_1
+
+  subroutine fluid_push_forces_at_single_2(self, theta, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), intent(in) :: force(:,:)
+    real(c_float), intent(in), optional :: moment(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_moment(:,:)
+
+    if (present(moment)) c_moment = real(moment, c_double)
+    call fluid_push_forces_at(self, theta=theta, force=real(force, c_double), moment=c_moment, stat=stat, errmsg=errmsg)
+  end subroutine fluid_push_forces_at_single_2
+
+  subroutine fluid_push_forces_at_single_3(self, theta, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), intent(in) :: force(:,:)
+    real(c_float), intent(in), optional :: moment(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_moment(:,:)
+
+    if (present(moment)) c_moment = real(moment, c_double)
+    call fluid_push_forces_at(self, theta=real(theta, c_double), force=real(force, c_double), moment=c_moment, &
+        stat=stat, errmsg=errmsg)
+  end subroutine fluid_push_forces_at_single_3
+
+  subroutine fluid_check_total_single_1(self, point, force, moment, rtol, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in), optional :: point(3)
+    real(c_double), intent(in) :: force(3)
+    real(c_double), intent(in), optional :: moment(3)
+    real(c_float), intent(in) :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_check_total(self, point=point, force=force, moment=moment, rtol=real(rtol, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_check_total_single_1
+
+  subroutine fluid_check_total_single_2(self, point, force, moment, rtol, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in), optional :: point(3)
+    real(c_float), intent(in) :: force(3)
+    real(c_float), intent(in), optional :: moment(3)
+    real(c_double), intent(in) :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_point(:)
+    real(c_double), allocatable :: c_moment(:)
+
+    if (present(point)) c_point = real(point, c_double)
+    if (present(moment)) c_moment = real(moment, c_double)
+    call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=rtol, stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_check_total_single_2
+
+  subroutine fluid_check_total_single_3(self, point, force, moment, rtol, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in), optional :: point(3)
+    real(c_float), intent(in) :: force(3)
+    real(c_float), intent(in), optional :: moment(3)
+    real(c_float), intent(in) :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_point(:)
+    real(c_double), allocatable :: c_moment(:)
+
+    if (present(point)) c_point = real(point, c_double)
+    if (present(moment)) c_moment = real(moment, c_double)
+    call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=real(rtol, &
+        c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_check_total_single_3
+
+  subroutine polar_create_single_1(self, alpha_rad, cl, cd, cm, stat, errmsg)
+    class(spar_polar), intent(inout) :: self
+    real(c_float), intent(in) :: alpha_rad(:)
+    real(c_float), intent(in) :: cl(:)
+    real(c_float), intent(in) :: cd(:)
+    real(c_float), intent(in), optional :: cm(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_cm(:)
+
+    if (present(cm)) c_cm = real(cm, c_double)
+    call polar_create(self, alpha_rad=real(alpha_rad, c_double), cl=real(cl, c_double), cd=real(cd, c_double), &
+        cm=c_cm, stat=stat, errmsg=errmsg)
+  end subroutine polar_create_single_1
+
+  subroutine polar_evaluate_single_1(self, alpha, cl, cd, cm, stat, errmsg)
+    class(spar_polar), intent(in) :: self
+    real(c_float), intent(in) :: alpha
+    real(c_float), intent(inout), optional :: cl
+    real(c_float), intent(inout), optional :: cd
+    real(c_float), intent(inout), optional :: cm
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_cl
+    real(c_double), allocatable :: c_cd
+    real(c_double), allocatable :: c_cm
+
+    if (present(cl)) allocate (c_cl, source=untouched)
+    if (present(cd)) allocate (c_cd, source=untouched)
+    if (present(cm)) allocate (c_cm, source=untouched)
+    call polar_evaluate(self, alpha=real(alpha, c_double), cl=c_cl, cd=c_cd, cm=c_cm, stat=stat, errmsg=errmsg)
+    call take(c_cl, cl)
+    call take(c_cd, cd)
+    call take(c_cm, cm)
+  end subroutine polar_evaluate_single_1
+
+  subroutine aero_set_section_64_single_1(self, i, chord, twist, polar, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: i
+    real(c_float), intent(in) :: chord
+    real(c_float), intent(in) :: twist
+    class(spar_polar), intent(in) :: polar
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_section_64(self, i=i, chord=real(chord, c_double), twist=real(twist, c_double), polar=polar, &
+        stat=stat, errmsg=errmsg)
+  end subroutine aero_set_section_64_single_1
+
+  subroutine aero_set_section_32_single_1(self, i, chord, twist, polar, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer(c_int), intent(in) :: i
+    real(c_float), intent(in) :: chord
+    real(c_float), intent(in) :: twist
+    class(spar_polar), intent(in) :: polar
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_section_32(self, i=i, chord=real(chord, c_double), twist=real(twist, c_double), polar=polar, &
+        stat=stat, errmsg=errmsg)
+  end subroutine aero_set_section_32_single_1
+
+  subroutine aero_read_aerodyn_single_1(self, primary_path, blade_path, q, span, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    real(c_float), intent(in) :: q(4)
+    real(c_float), intent(in), optional :: span(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_span(:)
+
+    if (present(span)) c_span = real(span, c_double)
+    call aero_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, q=real(q, c_double), span=c_span, &
+        stat=stat, errmsg=errmsg)
+  end subroutine aero_read_aerodyn_single_1
+
+  subroutine aero_read_aerodyn_single_2(self, primary_path, blade_path, no_q, span, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    character(*), intent(in) :: primary_path
+    character(*), intent(in), optional :: blade_path
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(in) :: span(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call aero_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, span=real(span, c_double), &
+        stat=stat, errmsg=errmsg)
+  end subroutine aero_read_aerodyn_single_2
+
+  subroutine aero_report_effects_64_single_1(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_report_effects_64(self, session=session, dt=real(dt, c_double), steps=steps, table=table, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine aero_report_effects_64_single_1
+
+  subroutine aero_report_effects_64_single_2(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call aero_report_effects_64(self, session=session, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine aero_report_effects_64_single_2
+
+  subroutine aero_report_effects_64_single_3(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call aero_report_effects_64(self, session=session, dt=real(dt, c_double), steps=steps, table=c_table, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine aero_report_effects_64_single_3
+
+  subroutine aero_report_effects_32_single_1(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_double), contiguous, intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_report_effects_32(self, session=session, dt=real(dt, c_double), steps=steps, table=table, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine aero_report_effects_32_single_1
+
+  subroutine aero_report_effects_32_single_2(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call aero_report_effects_32(self, session=session, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
+        context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine aero_report_effects_32_single_2
+
+  subroutine aero_report_effects_32_single_3(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    real(c_float), intent(inout) :: table(:,:)
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_table(:,:)
+
+    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
+    call aero_report_effects_32(self, session=session, dt=real(dt, c_double), steps=steps, table=c_table, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_table, table)
+  end subroutine aero_report_effects_32_single_3
+
+  subroutine session_set_gravity_single_1(self, g, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: g(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_gravity(self, g=real(g, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_set_gravity_single_1
+
+  subroutine session_get_gravity_single_1(self, g, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: g(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_g(:)
+
+    allocate (c_g(ubound(g, 1, c_int64_t)), source=untouched)
+    call session_get_gravity(self, g=c_g, stat=stat, errmsg=errmsg)
+    call take(c_g, g)
+  end subroutine session_get_gravity_single_1
+
+  subroutine session_set_integrator_single_1(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: rho_inf
+    integer, intent(in) :: substeps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_integrator(self, rho_inf=real(rho_inf, c_double), substeps=substeps, stat=stat, errmsg=errmsg)
+  end subroutine session_set_integrator_single_1
+
+  subroutine session_get_integrator_single_1(self, rho_inf, substeps, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: rho_inf
+    integer, intent(inout), optional :: substeps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rho_inf
+
+    allocate (c_rho_inf, source=untouched)
+    call session_get_integrator(self, rho_inf=c_rho_inf, substeps=substeps, stat=stat, errmsg=errmsg)
+    call take(c_rho_inf, rho_inf)
+  end subroutine session_get_integrator_single_1
+
+  subroutine session_set_newton_single_1(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: atol
+    real(c_float), intent(in) :: rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_newton(self, atol=real(atol, c_double), rtol=real(rtol, c_double), &
+        max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+  end subroutine session_set_newton_single_1
+
+  subroutine session_get_newton_single_1(self, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: atol
+    real(c_float), intent(inout), optional :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_atol
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_atol, source=untouched)
+    if (present(rtol)) allocate (c_rtol, source=untouched)
+    call session_get_newton(self, atol=c_atol, rtol=c_rtol, max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+    call take(c_atol, atol)
+    call take(c_rtol, rtol)
+  end subroutine session_get_newton_single_1
+
+  subroutine session_get_newton_single_2(self, no_atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    type(absent), intent(in), optional :: no_atol
+    real(c_float), intent(inout) :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_rtol, source=untouched)
+    if (present(no_atol)) return
+    call session_get_newton(self, rtol=c_rtol, max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+    call take(c_rtol, rtol)
+  end subroutine session_get_newton_single_2
+
+  subroutine session_set_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: scheme
+    real(c_float), intent(in) :: atol
+    real(c_float), intent(in) :: rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_coupling(self, scheme=scheme, atol=real(atol, c_double), rtol=real(rtol, c_double), &
+        max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+  end subroutine session_set_coupling_single_1
+
+  subroutine session_get_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    real(c_float), intent(inout) :: atol
+    real(c_float), intent(inout), optional :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_atol
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_atol, source=untouched)
+    if (present(rtol)) allocate (c_rtol, source=untouched)
+    call session_get_coupling(self, scheme=scheme, atol=c_atol, rtol=c_rtol, max_iterations=max_iterations, &
+        stat=stat, errmsg=errmsg)
+    call take(c_atol, atol)
+    call take(c_rtol, rtol)
+  end subroutine session_get_coupling_single_1
+
+  subroutine session_get_coupling_single_2(self, scheme, no_atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    type(absent), intent(in), optional :: no_atol
+    real(c_float), intent(inout) :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_rtol, source=untouched)
+    if (present(no_atol)) return
+    call session_get_coupling(self, scheme=scheme, rtol=c_rtol, max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+    call take(c_rtol, rtol)
+  end subroutine session_get_coupling_single_2
+
+  subroutine session_set_relaxation_single_1(self, omega, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: omega
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_relaxation(self, omega=real(omega, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_set_relaxation_single_1
+
+  subroutine session_get_relaxation_single_1(self, omega, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: omega
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_omega
+
+    allocate (c_omega, source=untouched)
+    call session_get_relaxation(self, omega=c_omega, stat=stat, errmsg=errmsg)
+    call take(c_omega, omega)
+  end subroutine session_get_relaxation_single_1
+
+  subroutine session_get_residual_single_1(self, residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: residual
+    real(c_float), intent(inout), optional :: size
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_residual
+    real(c_double), allocatable :: c_size
+
+    allocate (c_residual, source=untouched)
+    if (present(size)) allocate (c_size, source=untouched)
+    call session_get_residual(self, residual=c_residual, size=c_size, stat=stat, errmsg=errmsg)
+    call take(c_residual, residual)
+    call take(c_size, size)
+  end subroutine session_get_residual_single_1
+
+  subroutine session_get_residual_single_2(self, no_residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    type(absent), intent(in), optional :: no_residual
+    real(c_float), intent(inout) :: size
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_size
+
+    allocate (c_size, source=untouched)
+    if (present(no_residual)) return
+    call session_get_residual(self, size=c_size, stat=stat, errmsg=errmsg)
+    call take(c_size, size)
+  end subroutine session_get_residual_single_2
+
+  subroutine session_get_report_single_1(self, report, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: report(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_report(:)
+
+    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
+    call session_get_report(self, report=c_report, stat=stat, errmsg=errmsg)
+    call take(c_report, report)
+  end subroutine session_get_report_single_1
+
+  subroutine session_get_time_single_1(self, t, step, iteration, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: t
+    integer(c_int64_t), intent(inout), optional :: step
+    integer, intent(inout), optional :: iteration
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_t
+
+    allocate (c_t, source=untouched)
+    call session_get_time(self, t=c_t, step=step, iteration=iteration, stat=stat, errmsg=errmsg)
+    call take(c_t, t)
+  end subroutine session_get_time_single_1
+
+  subroutine session_step_begin_single_1(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_single_1
+
+  subroutine session_step_begin_start_single_1(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_step_begin_start(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_start_single_1
+
+  subroutine member_set_axis_single_1(self, eta, xyz, twist, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: xyz(:,:)
+    real(c_float), intent(in), optional :: twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_twist(:)
+
+    if (present(twist)) c_twist = real(twist, c_double)
+    call member_set_axis(self, eta=real(eta, c_double), xyz=real(xyz, c_double), twist=c_twist, stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_set_axis_single_1
+
+  subroutine member_set_nodes_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    real(c_float), intent(in), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+
+    if (present(q)) c_q = real(q, c_double)
+    call member_set_nodes(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
+  end subroutine member_set_nodes_single_1
+
+  subroutine member_set_sections_single_1(self, eta, stiffness, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: stiffness(:,:,:)
+    real(c_float), intent(in), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    if (present(mass)) c_mass = real(mass, c_double)
+    call member_set_sections(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), mass=c_mass, &
+        stat=stat, errmsg=errmsg)
+  end subroutine member_set_sections_single_1
+
+  subroutine member_set_damping_single_1(self, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_damping(self, mu=real(mu, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_damping_single_1
+
+  subroutine member_get_damping_single_1(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mu(:)
+
+    allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
+    call member_get_damping(self, mu=c_mu, stat=stat, errmsg=errmsg)
+    call take(c_mu, mu)
+  end subroutine member_get_damping_single_1
+
+  subroutine member_set_placement_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: x(3)
+    real(c_float), intent(in), optional :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:)
+
+    if (present(q)) c_q = real(q, c_double)
+    call member_set_placement(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
+  end subroutine member_set_placement_single_1
+
+  subroutine member_set_placement_single_2(self, no_x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(in) :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_x)) return
+    call member_set_placement(self, q=real(q, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_placement_single_2
+
+  subroutine member_get_placement_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: x(3)
+    real(c_float), intent(inout), optional :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:)
+    real(c_double), allocatable :: c_q(:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
+    call member_get_placement(self, x=c_x, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_q, q)
+  end subroutine member_get_placement_single_1
+
+  subroutine member_get_placement_single_2(self, no_x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call member_get_placement(self, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+  end subroutine member_get_placement_single_2
+
+  subroutine member_set_added_mass_single_1(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_added_mass(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_added_mass_single_1
+
+  subroutine member_set_initial_velocity_single_1(self, x0, v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: x0(3)
+    real(c_float), intent(in), optional :: v0(3)
+    real(c_float), intent(in), optional :: omega(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v0(:)
+    real(c_double), allocatable :: c_omega(:)
+
+    if (present(v0)) c_v0 = real(v0, c_double)
+    if (present(omega)) c_omega = real(omega, c_double)
+    call member_set_initial_velocity(self, x0=real(x0, c_double), v0=c_v0, omega=c_omega, stat=stat, errmsg=errmsg)
+  end subroutine member_set_initial_velocity_single_1
+
+  subroutine member_set_initial_velocity_single_2(self, no_x0, v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    type(absent), intent(in), optional :: no_x0
+    real(c_float), intent(in) :: v0(3)
+    real(c_float), intent(in), optional :: omega(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_omega(:)
+
+    if (present(omega)) c_omega = real(omega, c_double)
+    if (present(no_x0)) return
+    call member_set_initial_velocity(self, v0=real(v0, c_double), omega=c_omega, stat=stat, errmsg=errmsg)
+  end subroutine member_set_initial_velocity_single_2
+
+  subroutine member_set_initial_velocity_single_3(self, no_x0, no_v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    type(absent), intent(in), optional :: no_x0
+    type(absent), intent(in), optional :: no_v0
+    real(c_float), intent(in) :: omega(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_x0) .or. present(no_v0)) return
+    call member_set_initial_velocity(self, omega=real(omega, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_initial_velocity_single_3
+
+  subroutine member_get_reference_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    call member_get_reference(self, x=c_x, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_q, q)
+  end subroutine member_get_reference_single_1
+
+  subroutine member_get_reference_single_2(self, no_x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call member_get_reference(self, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+  end subroutine member_get_reference_single_2
+
+  subroutine member_get_motion_single_1(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(a)) allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    call member_get_motion(self, q=c_q, v=c_v, a=c_a, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_a, a)
+  end subroutine member_get_motion_single_1
+
+  subroutine member_get_motion_single_2(self, no_q, v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(a)) allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(no_q)) return
+    call member_get_motion(self, v=c_v, a=c_a, stat=stat, errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_a, a)
+  end subroutine member_get_motion_single_2
+
+  subroutine member_get_motion_single_3(self, no_q, no_v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_a(:,:)
+
+    allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(no_q) .or. present(no_v)) return
+    call member_get_motion(self, a=c_a, stat=stat, errmsg=errmsg)
+    call take(c_a, a)
+  end subroutine member_get_motion_single_3
+
+  subroutine member_set_motion_single_1(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: q(:,:)
+    real(c_float), intent(in), optional :: v(:,:)
+    real(c_float), intent(in), optional :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+
+    if (present(v)) c_v = real(v, c_double)
+    if (present(a)) c_a = real(a, c_double)
+    call member_set_motion(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
+  end subroutine member_set_motion_single_1
+
+  subroutine member_set_motion_single_2(self, no_q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(in) :: v(:,:)
+    real(c_float), intent(in), optional :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_a(:,:)
+
+    if (present(a)) c_a = real(a, c_double)
+    if (present(no_q)) return
+    call member_set_motion(self, v=real(v, c_double), a=c_a, stat=stat, errmsg=errmsg)
+  end subroutine member_set_motion_single_2
+
+  subroutine member_set_motion_single_3(self, no_q, no_v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(in) :: a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q) .or. present(no_v)) return
+    call member_set_motion(self, a=real(a, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_motion_single_3
+
+  subroutine member_drive_root_single_1(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: q(7)
+    real(c_float), intent(in), optional :: v(6)
+    real(c_float), intent(in), optional :: a(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:)
+    real(c_double), allocatable :: c_a(:)
+
+    if (present(v)) c_v = real(v, c_double)
+    if (present(a)) c_a = real(a, c_double)
+    call member_drive_root(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
+  end subroutine member_drive_root_single_1
+
+  subroutine member_set_line_load_single_1(self, kind, eta, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: kind
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_line_load(self, kind=kind, eta=real(eta, c_double), load=real(load, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_set_line_load_single_1
+
+  subroutine member_get_loads_single_1(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_load(:,:)
+
+    allocate (c_load(ubound(load, 1, c_int64_t), ubound(load, 2, c_int64_t)), source=untouched)
+    call member_get_loads(self, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_load, load)
+  end subroutine member_get_loads_single_1
+
+  subroutine member_get_reaction_single_1(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_load(:)
+
+    allocate (c_load(ubound(load, 1, c_int64_t)), source=untouched)
+    call member_get_reaction(self, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_load, load)
+  end subroutine member_get_reaction_single_1
+
+  subroutine member_get_section_single_1(self, eta, strain, force, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(inout), optional :: strain(:,:)
+    real(c_float), intent(inout), optional :: force(:,:)
+    real(c_float), intent(inout), optional :: x(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_strain(:,:)
+    real(c_double), allocatable :: c_force(:,:)
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    if (present(strain)) allocate (c_strain(ubound(strain, 1, c_int64_t), ubound(strain, 2, c_int64_t)), &
+        source=untouched)
+    if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t)), source=untouched)
+    if (present(x)) allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    call member_get_section(self, eta=real(eta, c_double), strain=c_strain, force=c_force, x=c_x, q=c_q, stat=stat, &
+        errmsg=errmsg)
+    call take(c_strain, strain)
+    call take(c_force, force)
+    call take(c_x, x)
+    call take(c_q, q)
+  end subroutine member_get_section_single_1
+
+  subroutine member_get_energy_single_1(self, energy, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_energy(:)
+
+    allocate (c_energy(ubound(energy, 1, c_int64_t)), source=untouched)
+    call member_get_energy(self, energy=c_energy, stat=stat, errmsg=errmsg)
+    call take(c_energy, energy)
+  end subroutine member_get_energy_single_1
+
+  subroutine member_get_work_single_1(self, work, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: work(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_work(:)
+
+    allocate (c_work(ubound(work, 1, c_int64_t)), source=untouched)
+    call member_get_work(self, work=c_work, stat=stat, errmsg=errmsg)
+    call take(c_work, work)
+  end subroutine member_get_work_single_1
+
+  subroutine joint_set_frame_single_1(self, x, q, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_float), intent(in) :: x(3)
+    real(c_float), intent(in), optional :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:)
+
+    if (present(q)) c_q = real(q, c_double)
+    call joint_set_frame(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
+  end subroutine joint_set_frame_single_1
+
+  subroutine joint_set_spring_single_1(self, stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_float), intent(in) :: stiffness(6,6)
+    real(c_float), intent(in), optional :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_damping(:,:)
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(damping)) c_damping = real(damping, c_double)
+    if (present(preload)) c_preload = real(preload, c_double)
+    call joint_set_spring(self, stiffness=real(stiffness, c_double), damping=c_damping, preload=c_preload, stat=stat, &
+        errmsg=errmsg)
+  end subroutine joint_set_spring_single_1
+
+  subroutine joint_set_spring_single_2(self, no_stiffness, damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    type(absent), intent(in), optional :: no_stiffness
+    real(c_float), intent(in) :: damping(6,6)
+    real(c_float), intent(in), optional :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_preload(:)
+
+    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(no_stiffness)) return
+    call joint_set_spring(self, damping=real(damping, c_double), preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_set_spring_single_2
+
+  subroutine joint_set_spring_single_3(self, no_stiffness, no_damping, preload, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    type(absent), intent(in), optional :: no_stiffness
+    type(absent), intent(in), optional :: no_damping
+    real(c_float), intent(in) :: preload(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_stiffness) .or. present(no_damping)) return
+    call joint_set_spring(self, preload=real(preload, c_double), stat=stat, errmsg=errmsg)
+  end subroutine joint_set_spring_single_3
+
+  subroutine joint_drive_single_1(self, motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_float), intent(in) :: motion(6)
+    real(c_float), intent(in), optional :: rate(6)
+    real(c_float), intent(in), optional :: acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rate(:)
+    real(c_double), allocatable :: c_acceleration(:)
+
+    if (present(rate)) c_rate = real(rate, c_double)
+    if (present(acceleration)) c_acceleration = real(acceleration, c_double)
+    call joint_drive(self, motion=real(motion, c_double), rate=c_rate, acceleration=c_acceleration, stat=stat, &
+        errmsg=errmsg)
+  end subroutine joint_drive_single_1
+
+  subroutine joint_set_load_single_1(self, load, stat, errmsg)
+    class(spar_joint), intent(inout) :: self
+    real(c_float), intent(in) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call joint_set_load(self, load=real(load, c_double), stat=stat, errmsg=errmsg)
+  end subroutine joint_set_load_single_1
+
+  subroutine joint_get_motion_single_1(self, motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_float), intent(inout) :: motion(6)
+    real(c_float), intent(inout), optional :: rate(6)
+    real(c_float), intent(inout), optional :: acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_motion(:)
+    real(c_double), allocatable :: c_rate(:)
+    real(c_double), allocatable :: c_acceleration(:)
+
+    allocate (c_motion(ubound(motion, 1, c_int64_t)), source=untouched)
+    if (present(rate)) allocate (c_rate(ubound(rate, 1, c_int64_t)), source=untouched)
+    if (present(acceleration)) allocate (c_acceleration(ubound(acceleration, 1, c_int64_t)), source=untouched)
+    call joint_get_motion(self, motion=c_motion, rate=c_rate, acceleration=c_acceleration, stat=stat, errmsg=errmsg)
+    call take(c_motion, motion)
+    call take(c_rate, rate)
+    call take(c_acceleration, acceleration)
+  end subroutine joint_get_motion_single_1
+
+  subroutine joint_get_motion_single_2(self, no_motion, rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    type(absent), intent(in), optional :: no_motion
+    real(c_float), intent(inout) :: rate(6)
+    real(c_float), intent(inout), optional :: acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rate(:)
+    real(c_double), allocatable :: c_acceleration(:)
+
+    allocate (c_rate(ubound(rate, 1, c_int64_t)), source=untouched)
+    if (present(acceleration)) allocate (c_acceleration(ubound(acceleration, 1, c_int64_t)), source=untouched)
+    if (present(no_motion)) return
+    call joint_get_motion(self, rate=c_rate, acceleration=c_acceleration, stat=stat, errmsg=errmsg)
+    call take(c_rate, rate)
+    call take(c_acceleration, acceleration)
+  end subroutine joint_get_motion_single_2
+
+  subroutine joint_get_motion_single_3(self, no_motion, no_rate, acceleration, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    type(absent), intent(in), optional :: no_motion
+    type(absent), intent(in), optional :: no_rate
+    real(c_float), intent(inout) :: acceleration(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_acceleration(:)
+
+    allocate (c_acceleration(ubound(acceleration, 1, c_int64_t)), source=untouched)
+    if (present(no_motion) .or. present(no_rate)) return
+    call joint_get_motion(self, acceleration=c_acceleration, stat=stat, errmsg=errmsg)
+    call take(c_acceleration, acceleration)
+  end subroutine joint_get_motion_single_3
+
+  subroutine joint_get_load_single_1(self, load, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_float), intent(inout) :: load(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_load(:)
+
+    allocate (c_load(ubound(load, 1, c_int64_t)), source=untouched)
+    call joint_get_load(self, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_load, load)
+  end subroutine joint_get_load_single_1
+
+  subroutine joint_get_energy_single_1(self, energy, stat, errmsg)
+    class(spar_joint), intent(in) :: self
+    real(c_float), intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_energy(:)
+
+    allocate (c_energy(ubound(energy, 1, c_int64_t)), source=untouched)
+    call joint_get_energy(self, energy=c_energy, stat=stat, errmsg=errmsg)
+    call take(c_energy, energy)
+  end subroutine joint_get_energy_single_1
+
+  subroutine fluid_set_motion_nodes_single_1(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_motion_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_nodes_single_1
+
+  subroutine fluid_get_motion_weights_single_1(self, w, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(inout) :: w(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_w(:)
+
+    allocate (c_w(ubound(w, 1, c_int64_t)), source=untouched)
+    call fluid_get_motion_weights(self, w=c_w, stat=stat, errmsg=errmsg)
+    call take(c_w, w)
+  end subroutine fluid_get_motion_weights_single_1
+
+  subroutine fluid_set_force_nodes_single_1(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_force_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_force_nodes_single_1
+
+  subroutine fluid_set_sections_single_1(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_offset(:,:)
+
+    if (present(offset)) c_offset = real(offset, c_double)
+    call fluid_set_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_sections_single_1
+
+  subroutine fluid_set_motion_sections_single_1(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_offset(:,:)
+
+    if (present(offset)) c_offset = real(offset, c_double)
+    call fluid_set_motion_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_sections_single_1
+
+  subroutine fluid_set_projection_single_1(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(in) :: method
+    real(c_float), intent(in) :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_projection(self, method=method, max_distance=real(max_distance, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_projection_single_1
+
+  subroutine fluid_get_projection_single_1(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(inout), optional :: method
+    real(c_float), intent(inout) :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_max_distance
+
+    allocate (c_max_distance, source=untouched)
+    call fluid_get_projection(self, method=method, max_distance=c_max_distance, stat=stat, errmsg=errmsg)
+    call take(c_max_distance, max_distance)
+  end subroutine fluid_get_projection_single_1
+
+  subroutine fluid_get_feet_single_1(self, which, x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_float), intent(inout) :: x_map(:,:)
+    real(c_float), intent(inout), optional :: q_map(:,:)
+    real(c_float), intent(inout), optional :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x_map(:,:)
+    real(c_double), allocatable :: c_q_map(:,:)
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_x_map(ubound(x_map, 1, c_int64_t), ubound(x_map, 2, c_int64_t)), source=untouched)
+    if (present(q_map)) allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
+    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    call fluid_get_feet(self, which=which, x_map=c_x_map, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_x_map, x_map)
+    call take(c_q_map, q_map)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_1
+
+  subroutine fluid_get_feet_single_2(self, which, no_x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x_map
+    real(c_float), intent(inout) :: q_map(:,:)
+    real(c_float), intent(inout), optional :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q_map(:,:)
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
+    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    if (present(no_x_map)) return
+    call fluid_get_feet(self, which=which, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_q_map, q_map)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_2
+
+  subroutine fluid_get_feet_single_3(self, which, no_x_map, no_q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x_map
+    type(absent), intent(in), optional :: no_q_map
+    real(c_float), intent(inout) :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    if (present(no_x_map) .or. present(no_q_map)) return
+    call fluid_get_feet(self, which=which, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_3
+
+  subroutine fluid_pull_motion_single_1(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:)
+    real(c_double), contiguous, intent(inout), optional :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_motion(self, theta=real(theta, c_double), x=x, v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_single_1
+
+  subroutine fluid_pull_motion_single_2(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: x(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_motion_f32(self, theta=theta, x=x, v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_single_2
+
+  subroutine fluid_pull_motion_single_3(self, theta, no_x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), contiguous, intent(inout) :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_x)) return
+    call fluid_pull_motion_f32(self, theta=theta, v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_single_3
+
+  subroutine fluid_pull_motion_single_4(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: x(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_motion_f32(self, theta=real(theta, c_double), x=x, v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_single_4
+
+  subroutine fluid_pull_motion_single_5(self, theta, no_x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), contiguous, intent(inout) :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_x)) return
+    call fluid_pull_motion_f32(self, theta=real(theta, c_double), v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_single_5
+
+  subroutine fluid_pull_sections_single_1(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: q(:,:)
+    real(c_double), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_double), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_1
+
+  subroutine fluid_pull_sections_single_2(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections_f32(self, theta=theta, q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_2
+
+  subroutine fluid_pull_sections_single_3(self, theta, no_q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call fluid_pull_sections_f32(self, theta=theta, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_3
+
+  subroutine fluid_pull_sections_single_4(self, theta, no_q, no_omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q) .or. present(no_omega)) return
+    call fluid_pull_sections_f32(self, theta=theta, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_4
+
+  subroutine fluid_pull_sections_single_5(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_5
+
+  subroutine fluid_pull_sections_single_6(self, theta, no_q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_6
+
+  subroutine fluid_pull_sections_single_7(self, theta, no_q, no_omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q) .or. present(no_omega)) return
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_7
+
+  subroutine fluid_pull_poses_single_1(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:)
+    real(c_double), contiguous, intent(inout), optional :: q(:,:)
+    real(c_double), contiguous, intent(inout), optional :: v(:,:)
+    real(c_double), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_double), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_double), contiguous, intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_poses(self, theta=real(theta, c_double), x=x, q=q, v=v, omega=omega, accel=accel, alpha=alpha, &
+        stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_poses_single_1
+
+  subroutine fluid_pull_poses_single_2(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    call fluid_pull_poses(self, theta=theta, x=c_x, q=c_q, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, &
+        stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_2
+
+  subroutine fluid_pull_poses_single_3(self, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call fluid_pull_poses(self, theta=theta, q=c_q, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
+        errmsg=errmsg)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_3
+
+  subroutine fluid_pull_poses_single_4(self, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q)) return
+    call fluid_pull_poses(self, theta=theta, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
+        errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_4
+
+  subroutine fluid_pull_poses_single_5(self, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v)) return
+    call fluid_pull_poses(self, theta=theta, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_5
+
+  subroutine fluid_pull_poses_single_6(self, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), intent(inout) :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega)) return
+    call fluid_pull_poses(self, theta=theta, accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_6
+
+  subroutine fluid_pull_poses_single_7(self, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    type(absent), intent(in), optional :: no_omega
+    type(absent), intent(in), optional :: no_accel
+    real(c_float), intent(inout) :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega) .or. present(no_accel)) return
+    call fluid_pull_poses(self, theta=theta, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_7
+
+  subroutine fluid_pull_poses_single_8(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    call fluid_pull_poses(self, theta=real(theta, c_double), x=c_x, q=c_q, v=c_v, omega=c_omega, accel=c_accel, &
+        alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_8
+
+  subroutine fluid_pull_poses_single_9(self, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call fluid_pull_poses(self, theta=real(theta, c_double), q=c_q, v=c_v, omega=c_omega, accel=c_accel, &
+        alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_9
+
+  subroutine fluid_pull_poses_single_10(self, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q)) return
+    call fluid_pull_poses(self, theta=real(theta, c_double), v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, &
+        stat=stat, errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_10
+
+  subroutine fluid_pull_poses_single_11(self, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: omega(:,:)
+    real(c_float), intent(inout), optional :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_omega(:,:)
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
+    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v)) return
+    call fluid_pull_poses(self, theta=real(theta, c_double), omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
+        errmsg=errmsg)
+    call take(c_omega, omega)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_11
+
+  subroutine fluid_pull_poses_single_12(self, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), intent(inout) :: accel(:,:)
+    real(c_float), intent(inout), optional :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_accel(:,:)
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
+    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega)) return
+    call fluid_pull_poses(self, theta=real(theta, c_double), accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_accel, accel)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_12
+
+  subroutine fluid_pull_poses_single_13(self, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_v
+    type(absent), intent(in), optional :: no_omega
+    type(absent), intent(in), optional :: no_accel
+    real(c_float), intent(inout) :: alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_alpha(:,:)
+
+    allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega) .or. present(no_accel)) return
+    call fluid_pull_poses(self, theta=real(theta, c_double), alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_alpha, alpha)
+  end subroutine fluid_pull_poses_single_13
+
+  subroutine fluid_get_travel_single_1(self, largest, node, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(inout) :: largest
+    integer(c_int64_t), intent(inout), optional :: node
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_largest
+
+    allocate (c_largest, source=untouched)
+    call fluid_get_travel(self, largest=c_largest, node=node, stat=stat, errmsg=errmsg)
+    call take(c_largest, largest)
+  end subroutine fluid_get_travel_single_1
+
+  subroutine fluid_pull_force_places_single_1(self, theta, x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:)
+    real(c_double), contiguous, intent(inout), optional :: v(:,:)
+    real(c_double), contiguous, intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_force_places(self, theta=real(theta, c_double), x=x, v=v, q=q, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_force_places_single_1
+
+  subroutine fluid_pull_force_places_single_2(self, theta, x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    call fluid_pull_force_places(self, theta=theta, x=c_x, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_v, v)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_2
+
+  subroutine fluid_pull_force_places_single_3(self, theta, no_x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call fluid_pull_force_places(self, theta=theta, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_3
+
+  subroutine fluid_pull_force_places_single_4(self, theta, no_x, no_v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_v)) return
+    call fluid_pull_force_places(self, theta=theta, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_4
+
+  subroutine fluid_pull_force_places_single_5(self, theta, x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    call fluid_pull_force_places(self, theta=real(theta, c_double), x=c_x, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_v, v)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_5
+
+  subroutine fluid_pull_force_places_single_6(self, theta, no_x, v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call fluid_pull_force_places(self, theta=real(theta, c_double), v=c_v, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_6
+
+  subroutine fluid_pull_force_places_single_7(self, theta, no_x, no_v, q, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_v)) return
+    call fluid_pull_force_places(self, theta=real(theta, c_double), q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+  end subroutine fluid_pull_force_places_single_7
+
+  subroutine fluid_get_places_single_1(self, which, x, v, q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_float), intent(inout) :: x(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    real(c_float), intent(inout), optional :: foot(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_foot(:,:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
+    call fluid_get_places(self, which=which, x=c_x, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_v, v)
+    call take(c_q, q)
+    call take(c_foot, foot)
+  end subroutine fluid_get_places_single_1
+
+  subroutine fluid_get_places_single_2(self, which, no_x, v, q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: v(:,:)
+    real(c_float), intent(inout), optional :: q(:,:)
+    real(c_float), intent(inout), optional :: foot(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_foot(:,:)
+
+    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call fluid_get_places(self, which=which, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call take(c_v, v)
+    call take(c_q, q)
+    call take(c_foot, foot)
+  end subroutine fluid_get_places_single_2
+
+  subroutine fluid_get_places_single_3(self, which, no_x, no_v, q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: q(:,:)
+    real(c_float), intent(inout), optional :: foot(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_foot(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_v)) return
+    call fluid_get_places(self, which=which, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+    call take(c_foot, foot)
+  end subroutine fluid_get_places_single_3
+
+  subroutine fluid_get_places_single_4(self, which, no_x, no_v, no_q, foot, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_v
+    type(absent), intent(in), optional :: no_q
+    real(c_float), intent(inout) :: foot(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_foot(:,:)
+
+    allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_v) .or. present(no_q)) return
+    call fluid_get_places(self, which=which, foot=c_foot, stat=stat, errmsg=errmsg)
+    call take(c_foot, foot)
+  end subroutine fluid_get_places_single_4
+
+  subroutine fluid_pull_forces_single_1(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_forces(self, theta=real(theta, c_double), force=force, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_forces_single_1
+
+  subroutine fluid_pull_forces_single_2(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_forces_f32(self, theta=theta, force=force, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_forces_single_2
+
+  subroutine fluid_pull_forces_single_3(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_forces_f32(self, theta=real(theta, c_double), force=force, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_forces_single_3
+
+  subroutine fluid_get_forces_single_1(self, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_force(:,:)
+
+    allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t)), source=untouched)
+    call fluid_get_forces(self, force=c_force, stat=stat, errmsg=errmsg)
+    call take(c_force, force)
+  end subroutine fluid_get_forces_single_1
+
+  subroutine fluid_pull_motion_f32_single_1(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: x(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_motion_f32(self, theta=real(theta, c_double), x=x, v=v, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_motion_f32_single_1
+
+  subroutine fluid_pull_sections_f32_single_1(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_pull_sections_f32_single_1
+
+  subroutine fluid_pull_forces_f32_single_1(self, theta, force, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_forces_f32(self, theta=real(theta, c_double), force=force, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_forces_f32_single_1
+
+  subroutine fluid_get_audit_single_1(self, audit, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(inout) :: audit(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_audit(:)
+
+    allocate (c_audit(ubound(audit, 1, c_int64_t)), source=untouched)
+    call fluid_get_audit(self, audit=c_audit, stat=stat, errmsg=errmsg)
+    call take(c_audit, audit)
+  end subroutine fluid_get_audit_single_1
+
+  subroutine fluid_get_total_single_1(self, point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: point(3)
+    real(c_float), intent(inout), optional :: force(3)
+    real(c_float), intent(inout), optional :: moment(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_force(:)
+    real(c_double), allocatable :: c_moment(:)
+
+    if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t)), source=untouched)
+    if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
+    call fluid_get_total(self, point=real(point, c_double), force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_force, force)
+    call take(c_moment, moment)
+  end subroutine fluid_get_total_single_1
+
+  subroutine fluid_get_total_single_2(self, no_point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    type(absent), intent(in), optional :: no_point
+    real(c_float), intent(inout) :: force(3)
+    real(c_float), intent(inout), optional :: moment(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_force(:)
+    real(c_double), allocatable :: c_moment(:)
+
+    allocate (c_force(ubound(force, 1, c_int64_t)), source=untouched)
+    if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
+    if (present(no_point)) return
+    call fluid_get_total(self, force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_force, force)
+    call take(c_moment, moment)
+  end subroutine fluid_get_total_single_2
+
+  subroutine fluid_get_total_single_3(self, no_point, no_force, moment, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    type(absent), intent(in), optional :: no_point
+    type(absent), intent(in), optional :: no_force
+    real(c_float), intent(inout) :: moment(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_moment(:)
+
+    allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
+    if (present(no_point) .or. present(no_force)) return
+    call fluid_get_total(self, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_moment, moment)
+  end subroutine fluid_get_total_single_3
+
+  subroutine aero_set_rotor_single_1(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: hub(3)
+    real(c_double), intent(in) :: axis(3)
+    real(c_float), intent(in) :: hub_radius
+    real(c_float), intent(in) :: tip_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_rotor(self, hub=hub, axis=axis, hub_radius=real(hub_radius, c_double), tip_radius=real(tip_radius, &
+        c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_rotor_single_1
+
+  subroutine aero_set_rotor_single_2(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: hub(3)
+    real(c_float), intent(in) :: axis(3)
+    real(c_double), intent(in) :: hub_radius
+    real(c_double), intent(in) :: tip_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_rotor(self, hub=real(hub, c_double), axis=real(axis, c_double), hub_radius=hub_radius, &
+        tip_radius=tip_radius, stat=stat, errmsg=errmsg)
+  end subroutine aero_set_rotor_single_2
+
+  subroutine aero_set_rotor_single_3(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: hub(3)
+    real(c_float), intent(in) :: axis(3)
+    real(c_float), intent(in) :: hub_radius
+    real(c_float), intent(in) :: tip_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_rotor(self, hub=real(hub, c_double), axis=real(axis, c_double), hub_radius=real(hub_radius, &
+        c_double), tip_radius=real(tip_radius, c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_rotor_single_3
+
+  subroutine aero_solve_single_1(self, density, inflow, theta, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: density
+    real(c_double), contiguous, intent(in) :: inflow(:,:,:)
+    real(c_float), intent(in) :: theta
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_solve(self, density=real(density, c_double), inflow=inflow, theta=real(theta, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine aero_solve_single_1
+
+  subroutine aero_solve_single_2(self, density, inflow, theta, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: density
+    real(c_float), intent(in) :: inflow(:,:,:)
+    real(c_double), intent(in) :: theta
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_solve(self, density=density, inflow=real(inflow, c_double), theta=theta, stat=stat, errmsg=errmsg)
+  end subroutine aero_solve_single_2
+
+  subroutine aero_solve_single_3(self, density, inflow, theta, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: density
+    real(c_float), intent(in) :: inflow(:,:,:)
+    real(c_float), intent(in) :: theta
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_solve(self, density=real(density, c_double), inflow=real(inflow, c_double), theta=real(theta, &
+        c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_solve_single_3
+
+  subroutine aero_get_rotor_single_1(self, thrust, torque, power, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_float), intent(inout) :: thrust
+    real(c_float), intent(inout), optional :: torque
+    real(c_float), intent(inout), optional :: power
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_thrust
+    real(c_double), allocatable :: c_torque
+    real(c_double), allocatable :: c_power
+
+    allocate (c_thrust, source=untouched)
+    if (present(torque)) allocate (c_torque, source=untouched)
+    if (present(power)) allocate (c_power, source=untouched)
+    call aero_get_rotor(self, thrust=c_thrust, torque=c_torque, power=c_power, stat=stat, errmsg=errmsg)
+    call take(c_thrust, thrust)
+    call take(c_torque, torque)
+    call take(c_power, power)
+  end subroutine aero_get_rotor_single_1
+
+  subroutine aero_get_rotor_single_2(self, no_thrust, torque, power, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_thrust
+    real(c_float), intent(inout) :: torque
+    real(c_float), intent(inout), optional :: power
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_torque
+    real(c_double), allocatable :: c_power
+
+    allocate (c_torque, source=untouched)
+    if (present(power)) allocate (c_power, source=untouched)
+    if (present(no_thrust)) return
+    call aero_get_rotor(self, torque=c_torque, power=c_power, stat=stat, errmsg=errmsg)
+    call take(c_torque, torque)
+    call take(c_power, power)
+  end subroutine aero_get_rotor_single_2
+
+  subroutine aero_get_rotor_single_3(self, no_thrust, no_torque, power, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_thrust
+    type(absent), intent(in), optional :: no_torque
+    real(c_float), intent(inout) :: power
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_power
+
+    allocate (c_power, source=untouched)
+    if (present(no_thrust) .or. present(no_torque)) return
+    call aero_get_rotor(self, power=c_power, stat=stat, errmsg=errmsg)
+    call take(c_power, power)
+  end subroutine aero_get_rotor_single_3
+
+  subroutine aero_get_sections_single_1(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_float), intent(inout) :: alpha(:,:)
+    real(c_float), intent(inout), optional :: cl(:,:)
+    real(c_float), intent(inout), optional :: cd(:,:)
+    real(c_float), intent(inout), optional :: a(:,:)
+    real(c_float), intent(inout), optional :: a_tangential(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_alpha(:,:)
+    real(c_double), allocatable :: c_cl(:,:)
+    real(c_double), allocatable :: c_cd(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+    real(c_double), allocatable :: c_a_tangential(:,:)
+
+    allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
+    if (present(cl)) allocate (c_cl(ubound(cl, 1, c_int64_t), ubound(cl, 2, c_int64_t)), source=untouched)
+    if (present(cd)) allocate (c_cd(ubound(cd, 1, c_int64_t), ubound(cd, 2, c_int64_t)), source=untouched)
+    if (present(a)) allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(a_tangential)) allocate (c_a_tangential(ubound(a_tangential, 1, c_int64_t), ubound(a_tangential, 2, &
+        c_int64_t)), source=untouched)
+    call aero_get_sections(self, alpha=c_alpha, cl=c_cl, cd=c_cd, a=c_a, a_tangential=c_a_tangential, stat=stat, &
+        errmsg=errmsg)
+    call take(c_alpha, alpha)
+    call take(c_cl, cl)
+    call take(c_cd, cd)
+    call take(c_a, a)
+    call take(c_a_tangential, a_tangential)
+  end subroutine aero_get_sections_single_1
+
+  subroutine aero_get_sections_single_2(self, no_alpha, cl, cd, a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_alpha
+    real(c_float), intent(inout) :: cl(:,:)
+    real(c_float), intent(inout), optional :: cd(:,:)
+    real(c_float), intent(inout), optional :: a(:,:)
+    real(c_float), intent(inout), optional :: a_tangential(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_cl(:,:)
+    real(c_double), allocatable :: c_cd(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+    real(c_double), allocatable :: c_a_tangential(:,:)
+
+    allocate (c_cl(ubound(cl, 1, c_int64_t), ubound(cl, 2, c_int64_t)), source=untouched)
+    if (present(cd)) allocate (c_cd(ubound(cd, 1, c_int64_t), ubound(cd, 2, c_int64_t)), source=untouched)
+    if (present(a)) allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(a_tangential)) allocate (c_a_tangential(ubound(a_tangential, 1, c_int64_t), ubound(a_tangential, 2, &
+        c_int64_t)), source=untouched)
+    if (present(no_alpha)) return
+    call aero_get_sections(self, cl=c_cl, cd=c_cd, a=c_a, a_tangential=c_a_tangential, stat=stat, errmsg=errmsg)
+    call take(c_cl, cl)
+    call take(c_cd, cd)
+    call take(c_a, a)
+    call take(c_a_tangential, a_tangential)
+  end subroutine aero_get_sections_single_2
+
+  subroutine aero_get_sections_single_3(self, no_alpha, no_cl, cd, a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_alpha
+    type(absent), intent(in), optional :: no_cl
+    real(c_float), intent(inout) :: cd(:,:)
+    real(c_float), intent(inout), optional :: a(:,:)
+    real(c_float), intent(inout), optional :: a_tangential(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_cd(:,:)
+    real(c_double), allocatable :: c_a(:,:)
+    real(c_double), allocatable :: c_a_tangential(:,:)
+
+    allocate (c_cd(ubound(cd, 1, c_int64_t), ubound(cd, 2, c_int64_t)), source=untouched)
+    if (present(a)) allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(a_tangential)) allocate (c_a_tangential(ubound(a_tangential, 1, c_int64_t), ubound(a_tangential, 2, &
+        c_int64_t)), source=untouched)
+    if (present(no_alpha) .or. present(no_cl)) return
+    call aero_get_sections(self, cd=c_cd, a=c_a, a_tangential=c_a_tangential, stat=stat, errmsg=errmsg)
+    call take(c_cd, cd)
+    call take(c_a, a)
+    call take(c_a_tangential, a_tangential)
+  end subroutine aero_get_sections_single_3
+
+  subroutine aero_get_sections_single_4(self, no_alpha, no_cl, no_cd, a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_alpha
+    type(absent), intent(in), optional :: no_cl
+    type(absent), intent(in), optional :: no_cd
+    real(c_float), intent(inout) :: a(:,:)
+    real(c_float), intent(inout), optional :: a_tangential(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_a(:,:)
+    real(c_double), allocatable :: c_a_tangential(:,:)
+
+    allocate (c_a(ubound(a, 1, c_int64_t), ubound(a, 2, c_int64_t)), source=untouched)
+    if (present(a_tangential)) allocate (c_a_tangential(ubound(a_tangential, 1, c_int64_t), ubound(a_tangential, 2, &
+        c_int64_t)), source=untouched)
+    if (present(no_alpha) .or. present(no_cl) .or. present(no_cd)) return
+    call aero_get_sections(self, a=c_a, a_tangential=c_a_tangential, stat=stat, errmsg=errmsg)
+    call take(c_a, a)
+    call take(c_a_tangential, a_tangential)
+  end subroutine aero_get_sections_single_4
+
+  subroutine aero_get_sections_single_5(self, no_alpha, no_cl, no_cd, no_a, a_tangential, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_alpha
+    type(absent), intent(in), optional :: no_cl
+    type(absent), intent(in), optional :: no_cd
+    type(absent), intent(in), optional :: no_a
+    real(c_float), intent(inout) :: a_tangential(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_a_tangential(:,:)
+
+    allocate (c_a_tangential(ubound(a_tangential, 1, c_int64_t), ubound(a_tangential, 2, c_int64_t)), source=untouched)
+    if (present(no_alpha) .or. present(no_cl) .or. present(no_cd) .or. present(no_a)) return
+    call aero_get_sections(self, a_tangential=c_a_tangential, stat=stat, errmsg=errmsg)
+    call take(c_a_tangential, a_tangential)
+  end subroutine aero_get_sections_single_5
+
+  subroutine aero_get_loads_single_1(self, per_length, force, moment, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_float), intent(inout) :: per_length(:,:,:)
+    real(c_float), intent(inout), optional :: force(:,:,:)
+    real(c_float), intent(inout), optional :: moment(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_per_length(:,:,:)
+    real(c_double), allocatable :: c_force(:,:,:)
+    real(c_double), allocatable :: c_moment(:,:,:)
+
+    allocate (c_per_length(ubound(per_length, 1, c_int64_t), ubound(per_length, 2, c_int64_t), ubound(per_length, 3, &
+        c_int64_t)), source=untouched)
+    if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t), ubound(force, 3, &
+        c_int64_t)), source=untouched)
+    if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t), ubound(moment, 2, c_int64_t), &
+        ubound(moment, 3, c_int64_t)), source=untouched)
+    call aero_get_loads(self, per_length=c_per_length, force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_per_length, per_length)
+    call take(c_force, force)
+    call take(c_moment, moment)
+  end subroutine aero_get_loads_single_1
+
+  subroutine aero_get_loads_single_2(self, no_per_length, force, moment, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_per_length
+    real(c_float), intent(inout) :: force(:,:,:)
+    real(c_float), intent(inout), optional :: moment(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_force(:,:,:)
+    real(c_double), allocatable :: c_moment(:,:,:)
+
+    allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t), ubound(force, 3, c_int64_t)), &
+        source=untouched)
+    if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t), ubound(moment, 2, c_int64_t), &
+        ubound(moment, 3, c_int64_t)), source=untouched)
+    if (present(no_per_length)) return
+    call aero_get_loads(self, force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_force, force)
+    call take(c_moment, moment)
+  end subroutine aero_get_loads_single_2
+
+  subroutine aero_get_loads_single_3(self, no_per_length, no_force, moment, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_per_length
+    type(absent), intent(in), optional :: no_force
+    real(c_float), intent(inout) :: moment(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_moment(:,:,:)
+
+    allocate (c_moment(ubound(moment, 1, c_int64_t), ubound(moment, 2, c_int64_t), ubound(moment, 3, c_int64_t)), &
+        source=untouched)
+    if (present(no_per_length) .or. present(no_force)) return
+    call aero_get_loads(self, moment=c_moment, stat=stat, errmsg=errmsg)
+    call take(c_moment, moment)
+  end subroutine aero_get_loads_single_3
+
+  subroutine series_add_single_1(path, time, part, file, stat, errmsg)
+    character(*), intent(in) :: path
+    real(c_float), intent(in) :: time
+    integer, intent(in) :: part
+    character(*), intent(in) :: file
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call series_add(path=path, time=real(time, c_double), part=part, file=file, stat=stat, errmsg=errmsg)
+  end subroutine series_add_single_1
+
+  elemental logical function is_set(number)
+    real(c_double), intent(in) :: number
+
+    is_set = transfer(number, 0_c_int64_t) /= transfer(untouched, 0_c_int64_t)
+  end function is_set
+
+  ! A result in the host's kind, where the library has set it; nothing for an argument that is not there.
+  subroutine take_0(from, to)
+    real(c_double), allocatable, intent(in) :: from
+    real(c_float), intent(inout), optional :: to
+
+    if (.not. present(to)) return
+    if (is_set(from)) to = real(from, c_float)
+  end subroutine take_0
+
+  subroutine take_1(from, to)
+    real(c_double), allocatable, intent(in) :: from(:)
+    real(c_float), intent(inout), optional :: to(:)
+
+    if (.not. present(to)) return
+    where (is_set(from)) to = real(from, c_float)
+  end subroutine take_1
+
+  subroutine take_2(from, to)
+    real(c_double), allocatable, intent(in) :: from(:,:)
+    real(c_float), intent(inout), optional :: to(:,:)
+
+    if (.not. present(to)) return
+    where (is_set(from)) to = real(from, c_float)
+  end subroutine take_2
+
+  subroutine take_3(from, to)
+    real(c_double), allocatable, intent(in) :: from(:,:,:)
+    real(c_float), intent(inout), optional :: to(:,:,:)
+
+    if (.not. present(to)) return
+    where (is_set(from)) to = real(from, c_float)
+  end subroutine take_3
 
   ! ---- status and messages ----
 
@@ -3413,11 +6876,13 @@ contains
     character(*), intent(in) :: array
     integer(c_int64_t), intent(in) :: has(:), n
     integer(c_int64_t) :: node, component, numbers
+    integer :: stat
 
     if (allocated(fault)) return
     node = 3
     component = 1
-    if (spar_fluid_get_layout(fluid%handle, to_c(which), node, component) /= SPAR_OK) return
+    call fluid%get_layout(which, node, component, stat)
+    if (stat /= SPAR_OK) return
     if (node == 3 .and. component == 1) then
       call need(fault, array, has, [3_c_int64_t, n])
       return

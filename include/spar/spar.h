@@ -80,7 +80,7 @@
    Clang, the library leaves all of this as it is.)
 
    Adding to the library (docs/adding.md):
-   - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, fortran/spar.f90, tests/contract.c, the tables of
+   - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, tests/contract.c, the tables of
      tests/torture;
    - a setting: a field of the session (src/base/scene.h) and a row of the table in src/session/settings.c;
    - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/solve/fidelity.h;
@@ -827,7 +827,7 @@ SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double 
    where they are with the forces that are kept, or of spar_fluid_set_force_nodes. For actuator lines whose velocities
    are sampled at fewer or other sections than forces are spread from (AMR-Wind), or at three quarters of the chord.
    Forces are pushed to, and pulled at (spar_fluid_pull_forces, spar_fluid_pull_force_places), the force nodes; all
-   other pulls are at the motion nodes. To be mapped. n, xi[n], offset[n][3]: in, as above. */
+   other pulls are at the motion nodes. To be mapped. n, xi[n]: in, as above; offset[n][3]: in, as above, NULL: 0. */
 SPAR_API int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
 /* Where this rank's arrays [n][3] have their numbers, for hosts that keep structures of arrays or wider records:
    component i of node j at number j * node + i * component. Holds for what is pulled at motion nodes (places,
