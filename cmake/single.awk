@@ -117,7 +117,7 @@ function variant(first,   i, d, name, names, actual, locals, before, after, decl
 
 # A result is filled first: with what it holds where it is an argument too, else with what no result is.
 function convert(d, w, optional,   text, i, k) {
-    text = w " = real(" d ", c_double)"
+    text = "allocate (" w ", source=real(" d ", c_double))"
     if (is_result(d) && !((P, d) in INOUT)) {
         k = DIMS[d] == "" ? 0 : ranks(DIMS[d])
         for (i = 1; i <= k; i++) text = (i > 1 ? text ", " : "allocate (" w "(") "ubound(" d ", " i ", c_int64_t)"

@@ -56,6 +56,8 @@ endif()
 
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+# the book, if the target of that name was built
+install(DIRECTORY "${PROJECT_BINARY_DIR}/book/html" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation OPTIONAL)
 
 # ---------------------------------------------------------------- Debian packages
 set(spar_deb_runtime libspar${SPAR_SOVERSION})

@@ -275,14 +275,16 @@ int turbine_view_draw(const turbine_view *v, const char *folder, int picture) {
     if (!file) {
         return 1;
     }
-    fprintf(file,
-            "set terminal pngcairo size 900,1100 font 'sans,12'\nset output 'turbine.png'\n"
-            "set view 86,38,1.75\nset view equal xyz\nunset border\nunset tics\nunset key\n"
-            "set xrange [-45:45]\nset yrange [-66:66]\nset zrange [0:156]\nset xyplane at 0\n"
-            "set pm3d depthorder lighting primary 0.5 specular 0.15\n"
-            "set palette defined (0 '#e8edf2', 2 '#bcd3e6', 4 '#f3c489', 8 '#d1603d')\nset cbrange [0:8]\n"
-            "set colorbox user origin 0.84,0.12 size 0.02,0.30\nset cblabel 'force of the air on the blades (kN/m)'\n"
-            "splot 'surface.txt' using 1:2:3:4 with pm3d\n");
+    fprintf(file, "set terminal pngcairo size 900,1100 font 'sans,12'\nset output 'turbine.png'\n"
+                  "set view 86,38,1.75\nset view equal xyz\nunset border\nunset tics\nunset key\n"
+                  "set xrange [-45:45]\nset yrange [-66:66]\nset zrange [0:156]\nset xyplane at 0\n"
+                  "set pm3d depthorder lighting primary 0.5 specular 0.15\n"
+                  "set palette defined (0 '#e8edf2', 2 '#bcd3e6', 4 '#f3c489', 8 '#d1603d')\nset cbrange [0:8]\n"
+                  "set colorbox user origin 0.84,0.12 size 0.02,0.30\n"
+                  "set cblabel 'force of the air on the blades (kN/m)' offset 1\n"
+                  "set cbtics 2 out\nset arrow from 0,-48,0 to 0,-48,50 heads size 1.5,90 lw 1.5 lc '#555555'\n"
+                  "set label '50 m' at 0,-52,25 center rotate by 90 tc '#555555'\n"
+                  "splot 'surface.txt' using 1:2:3:4 with pm3d\n");
     if (finish(file, path) != 0) {
         return 1;
     }

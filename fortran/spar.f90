@@ -3543,7 +3543,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_x(:)
 
-    c_x = real(x, c_double)
+    allocate (c_x, source=real(x, c_double))
     call session_sum(self, x=c_x, status=status, stat=stat, errmsg=errmsg)
     call take(c_x, x)
   end subroutine session_sum_single_1
@@ -4097,8 +4097,8 @@ contains
     real(c_double), allocatable :: c_damping(:,:)
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(damping)) c_damping = real(damping, c_double)
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(damping)) allocate (c_damping, source=real(damping, c_double))
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
         c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
   end subroutine joint_at_node_64_single_1
@@ -4115,7 +4115,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     if (present(no_stiffness)) return
     call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
         preload=c_preload, stat=stat, errmsg=errmsg)
@@ -4151,8 +4151,8 @@ contains
     real(c_double), allocatable :: c_damping(:,:)
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(damping)) c_damping = real(damping, c_double)
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(damping)) allocate (c_damping, source=real(damping, c_double))
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
         c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
   end subroutine joint_at_node_32_single_1
@@ -4169,7 +4169,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     if (present(no_stiffness)) return
     call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
         preload=c_preload, stat=stat, errmsg=errmsg)
@@ -4263,7 +4263,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_span(:)
 
-    if (present(span)) c_span = real(span, c_double)
+    if (present(span)) allocate (c_span, source=real(span, c_double))
     call fluid_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, q=real(q, c_double), span=c_span, &
         stat=stat, errmsg=errmsg)
   end subroutine fluid_read_aerodyn_single_1
@@ -4413,7 +4413,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_moment(:,:)
 
-    if (present(moment)) c_moment = real(moment, c_double)
+    if (present(moment)) allocate (c_moment, source=real(moment, c_double))
     call fluid_push_forces_at(self, theta=theta, force=real(force, c_double), moment=c_moment, stat=stat, errmsg=errmsg)
   end subroutine fluid_push_forces_at_single_2
 
@@ -4426,7 +4426,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_moment(:,:)
 
-    if (present(moment)) c_moment = real(moment, c_double)
+    if (present(moment)) allocate (c_moment, source=real(moment, c_double))
     call fluid_push_forces_at(self, theta=real(theta, c_double), force=real(force, c_double), moment=c_moment, &
         stat=stat, errmsg=errmsg)
   end subroutine fluid_push_forces_at_single_3
@@ -4455,8 +4455,8 @@ contains
     real(c_double), allocatable :: c_point(:)
     real(c_double), allocatable :: c_moment(:)
 
-    if (present(point)) c_point = real(point, c_double)
-    if (present(moment)) c_moment = real(moment, c_double)
+    if (present(point)) allocate (c_point, source=real(point, c_double))
+    if (present(moment)) allocate (c_moment, source=real(moment, c_double))
     call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=rtol, stat=stat, &
         errmsg=errmsg)
   end subroutine fluid_check_total_single_2
@@ -4472,8 +4472,8 @@ contains
     real(c_double), allocatable :: c_point(:)
     real(c_double), allocatable :: c_moment(:)
 
-    if (present(point)) c_point = real(point, c_double)
-    if (present(moment)) c_moment = real(moment, c_double)
+    if (present(point)) allocate (c_point, source=real(point, c_double))
+    if (present(moment)) allocate (c_moment, source=real(moment, c_double))
     call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=real(rtol, &
         c_double), stat=stat, errmsg=errmsg)
   end subroutine fluid_check_total_single_3
@@ -4488,7 +4488,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_cm(:)
 
-    if (present(cm)) c_cm = real(cm, c_double)
+    if (present(cm)) allocate (c_cm, source=real(cm, c_double))
     call polar_create(self, alpha_rad=real(alpha_rad, c_double), cl=real(cl, c_double), cd=real(cd, c_double), &
         cm=c_cm, stat=stat, errmsg=errmsg)
   end subroutine polar_create_single_1
@@ -4550,7 +4550,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_span(:)
 
-    if (present(span)) c_span = real(span, c_double)
+    if (present(span)) allocate (c_span, source=real(span, c_double))
     call aero_read_aerodyn(self, primary_path=primary_path, blade_path=blade_path, q=real(q, c_double), span=c_span, &
         stat=stat, errmsg=errmsg)
   end subroutine aero_read_aerodyn_single_1
@@ -4917,7 +4917,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_twist(:)
 
-    if (present(twist)) c_twist = real(twist, c_double)
+    if (present(twist)) allocate (c_twist, source=real(twist, c_double))
     call member_set_axis(self, eta=real(eta, c_double), xyz=real(xyz, c_double), twist=c_twist, stat=stat, &
         errmsg=errmsg)
   end subroutine member_set_axis_single_1
@@ -4930,7 +4930,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_q(:,:)
 
-    if (present(q)) c_q = real(q, c_double)
+    if (present(q)) allocate (c_q, source=real(q, c_double))
     call member_set_nodes(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
   end subroutine member_set_nodes_single_1
 
@@ -4943,7 +4943,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_mass(:,:,:)
 
-    if (present(mass)) c_mass = real(mass, c_double)
+    if (present(mass)) allocate (c_mass, source=real(mass, c_double))
     call member_set_sections(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), mass=c_mass, &
         stat=stat, errmsg=errmsg)
   end subroutine member_set_sections_single_1
@@ -4977,7 +4977,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_q(:)
 
-    if (present(q)) c_q = real(q, c_double)
+    if (present(q)) allocate (c_q, source=real(q, c_double))
     call member_set_placement(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
   end subroutine member_set_placement_single_1
 
@@ -5042,8 +5042,8 @@ contains
     real(c_double), allocatable :: c_v0(:)
     real(c_double), allocatable :: c_omega(:)
 
-    if (present(v0)) c_v0 = real(v0, c_double)
-    if (present(omega)) c_omega = real(omega, c_double)
+    if (present(v0)) allocate (c_v0, source=real(v0, c_double))
+    if (present(omega)) allocate (c_omega, source=real(omega, c_double))
     call member_set_initial_velocity(self, x0=real(x0, c_double), v0=c_v0, omega=c_omega, stat=stat, errmsg=errmsg)
   end subroutine member_set_initial_velocity_single_1
 
@@ -5056,7 +5056,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_omega(:)
 
-    if (present(omega)) c_omega = real(omega, c_double)
+    if (present(omega)) allocate (c_omega, source=real(omega, c_double))
     if (present(no_x0)) return
     call member_set_initial_velocity(self, v0=real(v0, c_double), omega=c_omega, stat=stat, errmsg=errmsg)
   end subroutine member_set_initial_velocity_single_2
@@ -5166,8 +5166,8 @@ contains
     real(c_double), allocatable :: c_v(:,:)
     real(c_double), allocatable :: c_a(:,:)
 
-    if (present(v)) c_v = real(v, c_double)
-    if (present(a)) c_a = real(a, c_double)
+    if (present(v)) allocate (c_v, source=real(v, c_double))
+    if (present(a)) allocate (c_a, source=real(a, c_double))
     call member_set_motion(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
   end subroutine member_set_motion_single_1
 
@@ -5180,7 +5180,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_a(:,:)
 
-    if (present(a)) c_a = real(a, c_double)
+    if (present(a)) allocate (c_a, source=real(a, c_double))
     if (present(no_q)) return
     call member_set_motion(self, v=real(v, c_double), a=c_a, stat=stat, errmsg=errmsg)
   end subroutine member_set_motion_single_2
@@ -5207,8 +5207,8 @@ contains
     real(c_double), allocatable :: c_v(:)
     real(c_double), allocatable :: c_a(:)
 
-    if (present(v)) c_v = real(v, c_double)
-    if (present(a)) c_a = real(a, c_double)
+    if (present(v)) allocate (c_v, source=real(v, c_double))
+    if (present(a)) allocate (c_a, source=real(a, c_double))
     call member_drive_root(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
   end subroutine member_drive_root_single_1
 
@@ -5307,7 +5307,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_q(:)
 
-    if (present(q)) c_q = real(q, c_double)
+    if (present(q)) allocate (c_q, source=real(q, c_double))
     call joint_set_frame(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
   end subroutine joint_set_frame_single_1
 
@@ -5321,8 +5321,8 @@ contains
     real(c_double), allocatable :: c_damping(:,:)
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(damping)) c_damping = real(damping, c_double)
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(damping)) allocate (c_damping, source=real(damping, c_double))
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     call joint_set_spring(self, stiffness=real(stiffness, c_double), damping=c_damping, preload=c_preload, stat=stat, &
         errmsg=errmsg)
   end subroutine joint_set_spring_single_1
@@ -5336,7 +5336,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_preload(:)
 
-    if (present(preload)) c_preload = real(preload, c_double)
+    if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     if (present(no_stiffness)) return
     call joint_set_spring(self, damping=real(damping, c_double), preload=c_preload, stat=stat, errmsg=errmsg)
   end subroutine joint_set_spring_single_2
@@ -5363,8 +5363,8 @@ contains
     real(c_double), allocatable :: c_rate(:)
     real(c_double), allocatable :: c_acceleration(:)
 
-    if (present(rate)) c_rate = real(rate, c_double)
-    if (present(acceleration)) c_acceleration = real(acceleration, c_double)
+    if (present(rate)) allocate (c_rate, source=real(rate, c_double))
+    if (present(acceleration)) allocate (c_acceleration, source=real(acceleration, c_double))
     call joint_drive(self, motion=real(motion, c_double), rate=c_rate, acceleration=c_acceleration, stat=stat, &
         errmsg=errmsg)
   end subroutine joint_drive_single_1
@@ -5493,7 +5493,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_offset(:,:)
 
-    if (present(offset)) c_offset = real(offset, c_double)
+    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
     call fluid_set_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_sections_single_1
 
@@ -5505,7 +5505,7 @@ contains
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_offset(:,:)
 
-    if (present(offset)) c_offset = real(offset, c_double)
+    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
     call fluid_set_motion_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_motion_sections_single_1
 

@@ -345,7 +345,9 @@ enum {
 };
 /* Relative motions of a joint that are free, in its own axes; or-ed. */
 enum { SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32 };
+/* Loads that are kept: in global axes, or in the section's, turning with it. */
 enum { SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1 };
+/* Rules of integration along an element, spar_beam_set_quadrature. */
 enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
 /* Effects: what is off is not computed, stored or sent. */
 enum {
@@ -764,6 +766,7 @@ enum {
     SPAR_INTERPOLATE_NODAL = 0,     /* (T4): normalised sum of quaternions, sums of velocities */
     SPAR_INTERPOLATE_CONSISTENT = 1 /* the same places; velocities are their exact derivative, moments the transpose */
 };
+/* The two sets of nodes of a fluid: those that move with the member, and those that forces are pushed at. */
 enum { SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1 };
 /* Flags of a mapped node. */
 enum {

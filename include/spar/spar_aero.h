@@ -19,8 +19,8 @@
 extern "C" {
 #endif
 
-typedef struct spar_polar spar_polar;
-typedef struct spar_aero spar_aero;
+typedef struct spar_polar spar_polar; /* lift, drag and moment coefficients by angle of attack */
+typedef struct spar_aero spar_aero;   /* the blades of a rotor on this rank, or wings */
 
 /* Effects. What is off costs nothing. */
 enum {

@@ -38,6 +38,9 @@ if(SPAR_MPI)
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
 endif()
 
+add_test(NAME package_recipes COMMAND sh "${here}/recipes" "${PROJECT_SOURCE_DIR}" "${PROJECT_VERSION}")
+spar_set_test(package_recipes package 30)
+
 function(spar_consumer name folder)
   spar_package_test(${name} "${CMAKE_CTEST_COMMAND}" --build-and-test "${here}/${folder}" "${work}/${name}"
     --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_PREFIX_PATH=${prefix}" ${ARGN}

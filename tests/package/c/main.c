@@ -14,7 +14,7 @@ int main(void) {
     for (int i = 0; i < 6; i++) {
         mass[7 * i] = 2.0;
     }
-    if (strcmp(spar_version(), "0.1.0") != 0 || spar_session_create(&session) || spar_session_set_gravity(session, g) ||
+    if (strcmp(spar_version(), "0.9.0") != 0 || spar_session_create(&session) || spar_session_set_gravity(session, g) ||
         spar_rigid_create(session, "body", NULL, NULL, mass, &body) || spar_member_commit(body)) {
         fprintf(stderr, "%s\n", spar_session_message(session));
         return 1;

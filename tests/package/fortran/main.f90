@@ -44,7 +44,7 @@ program main
   integer :: flags(1), held(1)
   logical :: done, on
 
-  if (spar_version() /= '0.1.0') error stop 'version'
+  if (spar_version() /= '0.9.0') error stop 'version'
   call describe()
   do i = 1, 10
     call session%step(0.1_c_double)
