@@ -451,8 +451,8 @@ static void try_curve(int kind, int p, outcome o[3]) {
     }
     for (int k = 0; k < 2; k++) {
         double t = now();
-        spari_line_project(line, k ? SPAR_PROJECT_RPOLY : SPAR_PROJECT_BOUNDED, POINTS, point[0], element, xi, foot[0],
-                           flags);
+        spari_line_project(line, NULL, k ? SPAR_PROJECT_RPOLY : SPAR_PROJECT_BOUNDED, POINTS, point[0], element, xi,
+                           foot[0], flags);
         o[k].seconds = now() - t;
         for (int j = 0; j < POINTS; j++) {
             d[k][j] = distance(line, xi[j], point[j]);

@@ -142,6 +142,8 @@ module spar
     generic :: get_relaxation => session_get_relaxation, session_get_relaxation_single_1
     procedure :: set_reproducible => session_set_reproducible
     procedure :: get_reproducible => session_get_reproducible
+    procedure :: set_threads => session_set_threads
+    procedure :: get_threads => session_get_threads
     procedure :: set_option => session_set_option
     procedure, private :: session_get_residual, session_get_residual_single_1, session_get_residual_single_2
     generic :: get_residual => session_get_residual, session_get_residual_single_1, session_get_residual_single_2
@@ -2183,6 +2185,27 @@ contains
     if (status == SPAR_OK) on = c_on /= 0
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_reproducible
+
+  subroutine session_set_threads(self, threads, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: threads
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_threads(self%handle, to_c(threads)), self%handle, stat, errmsg)
+  end subroutine session_set_threads
+
+  subroutine session_get_threads(self, threads, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout) :: threads
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_threads
+
+    status = spar_session_get_threads(self%handle, c_threads)
+    call hand(status, c_threads, threads)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_threads
 
   subroutine session_set_option(self, key, value, stat, errmsg)
     class(spar_session), intent(inout) :: self

@@ -162,6 +162,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_reproducible
 
+    function spar_session_set_threads(session, threads) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: threads
+      integer(c_int) :: status
+    end function spar_session_set_threads
+
+    function spar_session_get_threads(session, threads) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: threads
+      integer(c_int) :: status
+    end function spar_session_get_threads
+
     function spar_session_set_option(session, key, value) bind(c) result(status)
       import :: c_char, c_int, c_ptr
       type(c_ptr), value :: session

@@ -21,7 +21,7 @@ typedef struct feet {
 
 static feet foot_of(const spari_line *line, int method, const double p[3]) {
     feet f;
-    spari_line_project(line, method, 1, p, &f.element, &f.xi, f.x, &f.flags);
+    spari_line_project(line, NULL, method, 1, p, &f.element, &f.xi, f.x, &f.flags);
     double d[3] = {p[0] - f.x[0], p[1] - f.x[1], p[2] - f.x[2]};
     f.distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     return f;
@@ -320,7 +320,7 @@ static void feet_do_not_depend_on_neighbours(void **state) {
     for (int j = 0; j < N; j++) {
         make_point(&l, j, &seed, p[j]);
     }
-    spari_line_project(line, SPAR_PROJECT_BOUNDED, N, p[0], element, xi, x[0], flags);
+    spari_line_project(line, NULL, SPAR_PROJECT_BOUNDED, N, p[0], element, xi, x[0], flags);
     for (int j = N - 1; j >= 0; j--) {
         feet f = foot_of(line, SPAR_PROJECT_BOUNDED, p[j]);
         assert_int_equal(f.element, element[j]);

@@ -320,7 +320,7 @@ static void signs_do_not_matter(void **unused) {
     (void)unused;
     unsigned long long seed = 4;
     static scene s;
-    static double x[2][3][50][3], load[2][MOST][6], work[MOST * 14];
+    static double x[2][3][50][3], load[2][MOST][6], work[MOST * 28 + 44];
     static const int row[] = {SPARI_R_PLACE, SPARI_R_RATE, SPARI_R_ACCEL};
     for (int consistent = 0; consistent < 2; consistent++) {
         scene_start(&s, 2, 9, 50, &seed);
@@ -465,7 +465,7 @@ static void loads_are_the_formula(void **unused) {
     (void)unused;
     unsigned long long seed = 31;
     static scene s;
-    static double want[MOST][6], got[MOST][6], work[MOST * 14];
+    static double want[MOST][6], got[MOST][6], work[MOST * 28 + 44];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 5 ? 1 : 5) {
         for (int n = 0; n <= 300; n += n < 18 ? 1 : 94) {
             int elements = nodes == 1 ? 1 : 1 + n % 3;
@@ -563,7 +563,7 @@ static void reproducible_loads(void **unused) {
     unsigned long long seed = 41;
     static scene s;
     static spari_bins want[MOST][6], got[MOST][6];
-    static double plain[MOST][6], work[MOST * 14], share[SPARI_MAX_NODES][6];
+    static double plain[MOST][6], work[MOST * 28 + 44], share[SPARI_MAX_NODES][6];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 5 ? 1 : 5) {
         for (int n = 0; n <= 600; n += n < 18 ? 1 : 194) {
             int elements = nodes == 1 ? 1 : 1 + n % 3;
@@ -643,7 +643,7 @@ static void force_moment_and_power_are_kept(void **unused) {
     (void)unused;
     unsigned long long seed = 77;
     static scene s;
-    static double load[MOST][6], work[MOST * 14];
+    static double load[MOST][6], work[MOST * 28 + 44];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 6 ? 1 : 3) {
         for (int kind = 0; kind < 12; kind++) {
             int consistent = kind % 2, elements = nodes == 1 ? 1 : 1 + kind % 5, n = 40 + 150 * (kind % 3);

@@ -56,6 +56,8 @@ call spar_session_set_relaxation int session|session|value| omega|double|value|
 call spar_session_get_relaxation int session|session|value| omega|double|out|
 call spar_session_set_reproducible int session|session|value| on|int|value|
 call spar_session_get_reproducible int session|session|value| on|int|out|
+call spar_session_set_threads int session|session|value| threads|int|value|
+call spar_session_get_threads int session|session|value| threads|int|out|
 call spar_session_set_option int session|session|value| key|char|in|[] value|char|in|[]
 call spar_session_get_option int session|session|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
 call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]

@@ -229,6 +229,16 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
    host pushes for a node independent of the ranks. What it costs: docs/accuracy.md. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);
+/* Threads of this rank, the calling one with them, which work together inside the calls that solve (members and
+   assemblies at once; of a single long beam its elements), map, pull and push (nodes, from some thousands on). The bits
+   are the same with any number; with reproducible sums the nodes are summed by one. None is made unless asked for, and
+   none but the calling one ever runs code of the host, or talks to other ranks: MPI_THREAD_FUNNELED is enough.
+   Between calls the others sleep. They are counted in a host's plans: ranks times threads should be no more than there
+   are cores. Local, between steps; ranks may differ.
+     threads: in, 1 (default) to 64; out
+   SPAR_ERR_MEMORY: the system gives no more threads, or there is no work space for them; all is as before. */
+SPAR_API int spar_session_set_threads(spar_session *session, int threads);
+SPAR_API int spar_session_get_threads(const spar_session *session, int *threads);
 /* All other settings, by name and text. key, value: in.
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.patience      1 to 1000000, default 3: with coupling.unconverged = accept, so many steps on end that have

@@ -9,6 +9,12 @@
 
 /* A failed create has no session that could keep its message. */
 static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
+/* Where messages go instead; NULL: where they belong. */
+static _Thread_local char *aside;
+
+void spari_messages_aside(char *text) {
+    aside = text;
+}
 
 void spari_log(const spar_session *s, int level, const char *text) {
     if (s->log) {
@@ -35,6 +41,9 @@ static spar_session *teller(const spar_session *session) {
 }
 
 static char *message_of(const spar_session *session) {
+    if (aside) {
+        return aside;
+    }
     return session ? teller(session)->message : thread_message;
 }
 
@@ -49,7 +58,7 @@ int(spari_fail)(const spar_session *session, int status, const char *format, ...
     va_end(arguments);
     shorten(text);
     memcpy(message_of(session), text, strlen(text) + 1);
-    if (session) {
+    if (session && !aside) {
         teller(session)->failures++;
         spari_log(session, SPAR_LOG_ERROR, session->message);
     }

@@ -72,7 +72,8 @@ struct spar_session {
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
     int touched;                                           /* option ranks.state = all (default) | touched */
-    int coupling_stale;                                    /* settings of the coupling have changed since it was made */
+    struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
+    int coupling_stale;      /* settings of the coupling have changed since it was made */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
     int64_t step;
@@ -100,6 +101,10 @@ struct spar_session {
 
 /* What it is set to. */
 double spari_setting_value(const spar_session *session, const spari_setting *of);
+
+/* While `text` [SPARI_MESSAGE_SIZE] is not NULL, what fails in this thread writes its message there, and no session and
+   no log hears of it. */
+void spari_messages_aside(char *text);
 
 /* Tells the host's log, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);

@@ -1,4 +1,5 @@
 /* The map of a fluid's nodes: where their feet are, and what the host may ask of it. */
+#include "../base/crew.h"
 #include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"
@@ -21,15 +22,15 @@ static int prepare_member(spar_fluid *fluid) {
     double *q = spari_zalloc(nodes * 7, sizeof *q);
     struct {
         double **to;
-        int64_t width;
-    } all[] = {{&fluid->field[0], SPARI_FIELDS},
-               {&fluid->work, 14},
-               {&fluid->load, 6},
-               {&fluid->load_new, 6},
-               {&fluid->load_accepted, 6}};
-    int whole = fluid->modal && fluid->reference && q;
+        int64_t size;
+    } all[] = {{&fluid->field[0], nodes * SPARI_FIELDS},
+               {&fluid->work, spari_gather_room(nodes)},
+               {&fluid->load, 6 * nodes},
+               {&fluid->load_new, 6 * nodes},
+               {&fluid->load_accepted, 6 * nodes}};
+    int whole = fluid->modal && fluid->reference && q && !spari_crew_keep(m->session->crew, spari_fluid_room(fluid));
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        *all[i].to = spari_zalloc(nodes * all[i].width, sizeof(double));
+        *all[i].to = spari_zalloc(all[i].size, sizeof(double));
         whole = whole && *all[i].to;
     }
     if (!whole) {
@@ -51,6 +52,11 @@ static int prepare_member(spar_fluid *fluid) {
                      fluid->reference);
     free(q);
     return SPAR_OK;
+}
+
+int64_t spari_fluid_room(const spar_fluid *fluid) {
+    int64_t share = spari_gather_share(fluid->member->nodes), tile = SPARI_ROWS * SPARI_ROW;
+    return share > tile ? share : tile;
 }
 
 void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out) {
@@ -160,12 +166,13 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     if (set->sections) {
         feet_of_sections(fluid, set, &f);
     } else {
-        spari_line_project(line, fluid->method, n, x, f.element, f.xi, f.con, f.flags);
+        spari_line_project(line, m->session->crew, fluid->method, n, x, f.element, f.xi, f.con, f.flags);
         for (int64_t i = 0; i < 3 * n; i++) {
             f.con[i] = x[i] - f.con[i];
         }
         flag_far(fluid, n, &f, far);
     }
+    (*made)->crew = &m->session->crew;
     spari_nodes_put(*made, f.element, f.xi, f.con, f.flags);
     free_feet(&f);
     free(again);

@@ -1,4 +1,5 @@
 /* Motion of members, out to the fluid's nodes. */
+#include "../base/crew.h"
 #include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "../member/means.h"
@@ -305,38 +306,71 @@ static int check_turns(const spar_fluid *fluid, int which, const wanted *w, cons
     return SPAR_OK;
 }
 
+/* A pull of the nodes of one set. */
+typedef struct pulling {
+    const spar_fluid *fluid;
+    const spari_node_set *set;
+    const wanted *wanted;
+    int what, states;
+    double share[2];
+    double least[SPARI_CREW_MOST]; /* |Q|^2 that each thread has met */
+} pulling;
+
+static void pull_tile(pulling *p, int64_t first, const states *t, double *least) {
+    const spar_fluid *fluid = p->fluid;
+    const spari_nodes *s = p->set->nodes;
+    const wanted *w = p->wanted;
+    for (int i = 0; i < t->n; i++) {
+        *least = fmin(*least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, p->what, t->buf[i]));
+    }
+    for (int i = 0; i < t->n && p->set->weight; i++) {
+        spari_fluid_weigh(p->set, first, p->what & SPARI_UPTO, t->buf[i]);
+    }
+    emit(s, first, t, SPARI_R_PLACE, w->x, w->layout);
+    emit(s, first, t, SPARI_R_RATE, w->v, w->layout);
+    emit(s, first, t, SPARI_R_OMEGA, w->omega, w->layout);
+    emit(s, first, t, SPARI_R_ACCEL, w->accel, w->layout);
+    emit(s, first, t, SPARI_R_ALPHA, w->alpha, w->layout);
+    emit_orientations(fluid, p->set, first, t, w);
+}
+
+static void pull_slab(void *context, int64_t slab, int worker) {
+    pulling *p = context;
+    double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW];
+    states t = {.n = p->states, .share = {p->share[0], p->share[1]}, .buf = {a, second_tile(p->fluid)}, .reference = c};
+    if (worker > 0) {
+        const spari_crew *crew = p->fluid->member->session->crew;
+        t.buf[1] = (double(*)[SPARI_ROW])spari_crew_room(crew, worker, SPARI_ROWS * SPARI_ROW);
+    }
+    int64_t from = slab * SPARI_SLAB, end = from + SPARI_SLAB < p->set->nodes->n ? from + SPARI_SLAB : p->set->nodes->n;
+    for (int64_t first = from; first < end; first += SPARI_TILE) {
+        pull_tile(p, first, &t, &p->least[worker]);
+    }
+}
+
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
-    double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW], least = HUGE_VAL;
-    states t = {.buf = {a, second_tile(fluid)}, .reference = c};
-    const spari_node_set *set = spari_fluid_set(fluid, which);
+    spari_crew *crew = fluid->member->session->crew;
+    pulling p = {.fluid = fluid, .set = spari_fluid_set(fluid, which), .wanted = w, .what = what_of(w)};
     const spari_nodes *s;
-    int what = what_of(w);
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
     SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &s));
     if (!s || s->n == 0) {
         return SPAR_OK;
     }
-    t.n = fill_states(fluid, theta, what & SPARI_UPTO, t.share);
-    if (s->per_element == 1 && t.n == 1 && what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f && !set->weight &&
+    p.states = fill_states(fluid, theta, p.what & SPARI_UPTO, p.share);
+    if (s->per_element == 1 && p.states == 1 && p.what <= SPARI_UPTO_RATE && !w->x.f && !w->v.f && !p.set->weight &&
         !w->layout) {
         return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
     }
-    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
-        for (int i = 0; i < t.n; i++) {
-            least = fmin(least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, what, t.buf[i]));
-        }
-        for (int i = 0; i < t.n && set->weight; i++) {
-            spari_fluid_weigh(set, first, what & SPARI_UPTO, t.buf[i]);
-        }
-        emit(s, first, &t, SPARI_R_PLACE, w->x, w->layout);
-        emit(s, first, &t, SPARI_R_RATE, w->v, w->layout);
-        emit(s, first, &t, SPARI_R_OMEGA, w->omega, w->layout);
-        emit(s, first, &t, SPARI_R_ACCEL, w->accel, w->layout);
-        emit(s, first, &t, SPARI_R_ALPHA, w->alpha, w->layout);
-        emit_orientations(fluid, set, first, &t, w);
+    for (int k = 0; k < spari_crew_threads(crew); k++) {
+        p.least[k] = HUGE_VAL;
     }
-    return spari_fluid_check_rotation(fluid, least, caller);
+    spari_crew_run(crew, spari_slabs(s->n, SPARI_SLAB), pull_slab, &p);
+    for (int k = 1; k < spari_crew_threads(crew); k++) {
+        p.least[0] = fmin(p.least[0], p.least[k]);
+    }
+    return spari_fluid_check_rotation(fluid, p.least[0], caller);
 }
 
 /* The host's pulls. */

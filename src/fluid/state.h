@@ -62,7 +62,7 @@ struct spar_fluid {
     double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on, with
                           room for its tile behind */
     double *reference; /* of the reference configuration */
-    double *work;      /* [nodes][14] */
+    double *work;      /* spari_gather_room */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     spari_bins *bins[3];                     /* reproducible sums: what these three are the values of; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];

@@ -597,6 +597,9 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
         massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
         b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
         status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
+        if (b) {
+            b->crew = &member->session->crew;
+        }
     }
     free(points);
     if (status != SPAR_OK) {

@@ -39,7 +39,11 @@ typedef struct spari_body {
     double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; NULL: none */
     double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */
+    int64_t room;      /* doubles of work space that an element takes */
     double *scratch;   /* work space of one element, and of 6 doubles a node at least */
+    double *matrix;    /* [6P][6P] work space: an element's tangent */
+    double *tally;     /* [tiles][2] work space of sums over elements */
+    struct spari_crew *const *crew; /* who works on its elements (base/crew.h); NULL: one thread */
 } spari_body;
 
 /* Doubles of work space that an element with so many points takes. */
@@ -50,6 +54,19 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
 /* To be called when phi, dphi and the properties of all points are given. */
 void spari_body_complete(spari_body *body);
 void spari_body_free(spari_body *body);
+
+/* Sums over elements go by tiles of so many, the odd ones after the even ones: a tile's end is the next one's
+   beginning, where two shares add, which gives the same bits in either order. Tiles of long members may be worked on by
+   several threads at once. */
+enum { SPARI_BODY_TILE = 8 };
+static inline int spari_body_tiles(const spari_body *body) {
+    return (body->elements + SPARI_BODY_TILE - 1) / SPARI_BODY_TILE;
+}
+/* The elements [from, to) of a tile; the body has work space that is this thread's alone. */
+typedef void (*spari_body_work)(const spari_body *body, int tile, int from, int to, void *context);
+void spari_body_sweep(const spari_body *body, spari_body_work work, void *context);
+/* Doubles of work space that a thread takes in it. */
+int64_t spari_body_room(const spari_body *body);
 
 /* Rows of one slot to and from contiguous numbers x[rows]. */
 static inline void spari_slot_put(double *blocks, int rows, int64_t slot, const double *x) {

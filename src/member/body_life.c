@@ -1,6 +1,7 @@
 /* A body created and freed. */
 #include "body.h"
 
+#include "../base/crew.h"
 #include "../base/status.h"
 
 #include <stdlib.h>
@@ -41,7 +42,10 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (!damped || (body->D = spari_zalloc(slots * 36, sizeof *body->D)));
     ok = ok && (!massive || (body->mass = spari_zalloc(slots * 10, sizeof *body->mass)));
     int64_t element = spari_body_scratch(per_element, most, damped), nodes = 12 * (int64_t)body->unique;
+    body->room = element;
     ok = ok && (body->scratch = spari_zalloc(element > nodes ? element : nodes, sizeof *body->scratch));
+    ok = ok && (body->matrix = spari_zalloc(36 * P * P, sizeof *body->matrix));
+    ok = ok && (body->tally = spari_zalloc(2 * (int64_t)spari_body_tiles(body), sizeof *body->tally));
     if (!ok) {
         spari_body_free(body);
         return NULL;
@@ -80,6 +84,51 @@ void spari_body_complete(spari_body *body) {
     }
 }
 
+/* ---- elements, tile by tile ---- */
+
+typedef struct body_sweep {
+    const spari_body *body;
+    spari_body_work work;
+    void *context;
+    int odd;
+} body_sweep;
+
+static void sweep_tile(const spari_body *body, int tile, spari_body_work work, void *context) {
+    int from = tile * SPARI_BODY_TILE, to = from + SPARI_BODY_TILE;
+    work(body, tile, from, to < body->elements ? to : body->elements, context);
+}
+
+/* In a worker's own work space. */
+static void sweep_item(void *context, int64_t item, int worker) {
+    const body_sweep *s = context;
+    spari_body mine = *s->body;
+    if (worker > 0) {
+        mine.scratch = spari_crew_room(*mine.crew, worker, spari_body_room(s->body));
+        mine.matrix = mine.scratch + mine.room;
+    }
+    sweep_tile(&mine, (int)(2 * item) + s->odd, s->work, s->context);
+}
+
+int64_t spari_body_room(const spari_body *body) {
+    return body->room + 36 * (int64_t)body->per_element * body->per_element;
+}
+
+void spari_body_sweep(const spari_body *body, spari_body_work work, void *context) {
+    int tiles = spari_body_tiles(body);
+    spari_crew *crew =
+        body->crew && tiles > 3 ? *body->crew : NULL; /* with two of a kind there is something to share */
+    if (!spari_crew_is_free(crew) || !spari_crew_room(crew, 1, spari_body_room(body))) {
+        for (int tile = 0; tile < tiles; tile++) {
+            sweep_tile(body, tile, work, context);
+        }
+        return;
+    }
+    body_sweep s = {.body = body, .work = work, .context = context};
+    for (s.odd = 0; s.odd < 2; s.odd++) {
+        spari_crew_run(crew, (tiles + 1 - s.odd) / 2, sweep_item, &s);
+    }
+}
+
 void spari_body_free(spari_body *body) {
     if (!body) {
         return;
@@ -101,5 +150,7 @@ void spari_body_free(spari_body *body) {
     free(body->weights);
     free(body->at_rest);
     free(body->scratch);
+    free(body->matrix);
+    free(body->tally);
     free(body);
 }

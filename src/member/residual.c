@@ -36,22 +36,41 @@ static void add_element(const spari_body *body, int e, const double *g, const do
     }
 }
 
+/* What the forces of elements are asked of. */
+typedef struct force_state {
+    spari_regime how;
+    const double *q, *v, *a;
+    double *r;
+} force_state;
+
+static void add_forces(const spari_body *body, int tile, int from, int to, void *context) {
+    const force_state *s = context;
+    double *z = body->scratch, *g = z + (int64_t)body->per_element * ROW, *f = g + BACK * SPARI_MAX_NODES,
+           *back = f + SPARI_LANES * POINT_ROWS, *sum = body->tally + 2 * (int64_t)tile;
+    spari_tally tally = {{0}, {0}};
+    for (int e = from; e < to; e++) {
+        spari_point_gather(body, e, s->q, s->v, s->a, z);
+        spari_lanes_forces(body, e, &s->how, z, f, back, &tally);
+        spari_lanes_collect(body, e, back, g);
+        add_element(body, e, g, z, s->r);
+    }
+    sum[0] = sum[1] = 0;
+    for (int i = 0; i < SPARI_LANES; i++) {
+        sum[0] = tally.most[i] > sum[0] ? tally.most[i] : sum[0];
+        sum[1] += tally.power[i];
+    }
+}
+
 double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
                                  double factor, double *r, double *power) {
-    const spari_regime how = spari_point_regime(body, v, a, factor);
-    double *z = body->scratch, *g = z + (int64_t)body->per_element * ROW, *f = g + BACK * SPARI_MAX_NODES,
-           *back = f + SPARI_LANES * POINT_ROWS, scale = 0, damped = 0;
-    spari_tally tally = {{0}, {0}};
+    force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
+    double scale = 0, damped = 0;
     memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
-    for (int e = 0; e < body->elements; e++) {
-        spari_point_gather(body, e, q, v, a, z);
-        spari_lanes_forces(body, e, &how, z, f, back, &tally);
-        spari_lanes_collect(body, e, back, g);
-        add_element(body, e, g, z, r);
-    }
-    for (int i = 0; i < SPARI_LANES; i++) {
-        scale = tally.most[i] > scale ? tally.most[i] : scale;
-        damped += tally.power[i];
+    spari_body_sweep(body, add_forces, &s);
+    for (int64_t tile = 0; tile < spari_body_tiles(body); tile++) {
+        const double *sum = body->tally + 2 * tile;
+        scale = sum[0] > scale ? sum[0] : scale;
+        damped += sum[1];
     }
     if (power) {
         *power = damped;

@@ -15,8 +15,10 @@ struct spari_own {
     int64_t pack_count;
     spari_bins *bins; /* reproducible sums: of the same numbers, in their order; room for bins_room of them */
     int64_t bins_room;
-    int64_t *first;              /* several ranks: where the block of each rank's members begins in `motion` */
-    double *motion;              /* several ranks: motion of all solved members, by owner */
+    int64_t *first;          /* several ranks: where the block of each rank's members begins in `motion` */
+    double *motion;          /* several ranks: motion of all solved members, by owner */
+    struct spari_unit *unit; /* what the threads solve, one each (threads.h); NULL: not made, room for unit_room */
+    int64_t unit_room;
     struct spari_spread *spread; /* option ranks.state = touched, while the clock runs (spread.h); else NULL */
     spari_coupling *coupling;    /* from the first step on */
     spari_coupling *aside; /* that of the steps, while a solution is under way that is none; NULL: there was none */

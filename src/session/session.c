@@ -3,6 +3,7 @@
 #include "own.h"
 #include "settings.h"
 #include "spread.h"
+#include "threads.h"
 
 #include "../base/quiet.h"
 #include "../comm/comm.h"
@@ -80,6 +81,7 @@ void spar_session_destroy(spar_session **session) {
         next = m->next;
         spari_member_free(m);
     }
+    spari_threads_free(s);
     spari_comm_destroy(&s->comm);
     spari_coupling_free(&s->own->coupling);
     spari_coupling_free(&s->own->aside);

@@ -13,6 +13,7 @@
 #include "own.h"
 #include "spread.h"
 #include "start.h"
+#include "threads.h"
 
 #include "../comm/enter.h"
 
@@ -32,6 +33,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 /* ---- begin ---- */
 
 static int check_begin(spar_session *s, const char *call, double dt) {
+
     if (s->phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
     }
@@ -48,6 +50,7 @@ static int check_begin(spar_session *s, const char *call, double dt) {
         "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
         "it to touched again, or save, and load into a session with ranks.state = all",
         call);
+    SPARI_TRY(spari_named(s, call, spari_threads_prepare(s)));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
@@ -151,10 +154,6 @@ int spar_step_begin_start(spar_session *session, double dt) {
 
 /* ---- solve ---- */
 
-static int solve_member(spar_member *m, double dt) {
-    return spari_fidelity_is_here(m) ? m->row->advance(m, dt) : SPAR_OK;
-}
-
 /* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
 static int check_finite(const spar_member *m) {
     const spari_motion *x = &m->after;
@@ -183,12 +182,7 @@ int spar_step_solve(spar_session *session) {
     if (s->standing) {
         return spari_start_solve(s, __func__);
     }
-    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = m->assembly ? SPAR_OK : solve_member(m, s->dt);
-    }
-    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
-    }
+    status = spari_threads_solve(s);
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;
     }

@@ -1,6 +1,7 @@
 /* The life of a member: see life.h. */
 #include "life.h"
 
+#include "../base/crew.h"
 #include "../base/quiet.h"
 
 #include "../comm/comm.h"
@@ -295,6 +296,8 @@ static int build_body(spar_member *m) {
     int damped = m->beam && m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
     SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, m->row->massive, damped ? m->beam->mu : NULL, &m->body)
                                     : spari_rigid_build(m, &m->body));
+    SPARI_REQUIRE(m->session, !spari_crew_keep(m->session->crew, spari_body_room(m->body)), SPAR_ERR_MEMORY,
+                  "no memory for what the threads do of '%s'", m->name);
     m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     spari_member_gravity(m);
     return SPAR_OK;

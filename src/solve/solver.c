@@ -32,7 +32,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
         ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
     }
-    ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) && (s->element = spari_zalloc(m * m, sizeof(double)));
+    ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) != NULL;
     ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
@@ -73,7 +73,6 @@ void spari_solver_free(spari_solver *s) {
     free(s->tinv);
     free(s->kept_q);
     free(s->turn);
-    free(s->element);
     free(s->best);
     spari_linear_free(s->linear);
     spari_condensed_free(s->condensed);
@@ -97,24 +96,41 @@ void spari_solver_accept(spari_solver *s) {
     s->power_begin = s->power;
 }
 
+/* What the tangents of elements are asked of. */
+typedef struct tangent_state {
+    const spari_solver *s;
+    const spar_member *member;
+    const double *q, *v, *a, *tinv;
+    double factor, cm, cv;
+} tangent_state;
+
+static void add_tangents(const spari_body *body, int tile, int from, int to, void *context) {
+    const tangent_state *t = context;
+    const spar_member *m = t->member;
+    (void)tile;
+    for (int e = from; e < to; e++) {
+        spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, body->matrix);
+        if (spari_solver_has_applied(t->s, m) && t->factor != 0) {
+            spari_applied_tangent(m, e, t->q, t->factor, body->matrix);
+        }
+        if (t->s->arms && t->factor != 0) {
+            spari_arms_tangent(t->s->arms, t->q + 3, body->matrix);
+        }
+        if (t->tinv && m->added) { /* it belongs to the balance of a step, not to what begins one */
+            spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
+        }
+        spari_linear_add(t->s->linear, e, body->matrix);
+    }
+}
+
 int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
                         double factor, double cm, double cv, const double *tinv) {
-    int end = spari_member_held(member), applied = spari_solver_has_applied(s, member);
+    int end = spari_member_held(member);
+    tangent_state t = {
+        .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
     s->factored = 0;
     spari_linear_zero(s->linear);
-    for (int e = 0; e < s->body->elements; e++) {
-        spari_body_tangent(s->body, e, q, v, a, factor, cm, cv, tinv, s->element);
-        if (applied && factor != 0) {
-            spari_applied_tangent(member, e, q, factor, s->element);
-        }
-        if (s->arms && factor != 0) {
-            spari_arms_tangent(s->arms, q + 3, s->element);
-        }
-        if (tinv && member->added) { /* it belongs to the balance of a step, not to what begins one */
-            spari_added_tangent(member, e, cm, tinv, s->element);
-        }
-        spari_linear_add(s->linear, e, s->element);
-    }
+    spari_body_sweep(s->body, add_tangents, &t);
     if (s->condensed) {
         spari_condensed_take(s->condensed, s->linear, end);
     }

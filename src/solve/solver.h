@@ -29,7 +29,7 @@ struct spari_solver {
     double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
     double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
     spari_steps steps;
-    double *r, *dx, *element;
+    double *r, *dx;
     double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
     double h_leapt; /* 0: none */
     double *best;   /* static: state to go back to */

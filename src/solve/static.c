@@ -53,14 +53,14 @@ static void form_static_tangent(const spari_solver *s, const spar_member *m, loa
     spari_linear_zero(s->linear);
     for (int e = 0; e < s->body->elements; e++) {
         if (l->turning) {
-            spari_turn_tangent(s->body, &l->part, e, q, l->v, l->a, f, s->element, l->mass);
+            spari_turn_tangent(s->body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
         } else {
-            spari_body_tangent(s->body, e, q, NULL, NULL, f, 0, 0, NULL, s->element);
+            spari_body_tangent(s->body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
         }
         if (m->applied) {
-            spari_applied_tangent(m, e, q, f, s->element);
+            spari_applied_tangent(m, e, q, f, s->body->matrix);
         }
-        spari_linear_add(s->linear, e, s->element);
+        spari_linear_add(s->linear, e, s->body->matrix);
     }
     for (int i = 0; i < spari_member_held(m); i++) {
         spari_linear_fix(s->linear, i);

@@ -1,6 +1,7 @@
 /* The nearest point of a curved line, found for sure: balls around its pieces, then zeros of a polynomial. */
 #include "projection.h"
 
+#include "../base/crew.h"
 #include "../base/status.h"
 #include "../math/roots.h"
 #include "../math/rotation.h"
@@ -715,8 +716,21 @@ static int is_beyond(const search *q) {
     return first ? ahead < -small : ahead > small;
 }
 
-void spari_line_project(const spari_line *line, int method, int64_t n, const double *x, int *element, double *xi,
-                        double *feet, uint8_t *flags) {
+/* Points looked for one after the other. */
+typedef struct points {
+    const spari_line *line;
+    int method;
+    int64_t n;
+    const double *x;
+    int *element;
+    double *xi, *feet;
+    uint8_t *flags;
+} points;
+
+enum { SLAB = 1024 }; /* a thread's share; the first of them knows no neighbour */
+
+static void project_slab(const spari_line *line, int method, int64_t n, const double *x, int *element, double *xi,
+                         double *feet, uint8_t *flags) {
     search q = {.line = line, .method = method, .xi = line->per_element > 1 ? -1 : 0};
     for (int64_t j = 0; j < n; j++) {
         for (int i = 0; i < 3; i++) {
@@ -736,4 +750,18 @@ void spari_line_project(const spari_line *line, int method, int64_t n, const dou
         flags[j] = (uint8_t)((q.ambiguous ? SPAR_MAP_AMBIGUOUS : 0) | (is_beyond(&q) ? SPAR_MAP_END : 0));
         spari_line_point(line, q.element, q.xi, feet + 3 * j, NULL);
     }
+}
+
+static void project_item(void *context, int64_t item, int worker) {
+    const points *p = context;
+    int64_t first = item * SLAB, n = p->n - first < SLAB ? p->n - first : SLAB;
+    (void)worker;
+    project_slab(p->line, p->method, n, p->x + 3 * first, p->element + first, p->xi + first, p->feet + 3 * first,
+                 p->flags + first);
+}
+
+void spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
+                        double *xi, double *feet, uint8_t *flags) {
+    points p = {line, method, n, x, element, xi, feet, flags};
+    spari_crew_run(crew, (n + SLAB - 1) / SLAB, project_item, &p);
 }

@@ -1,6 +1,7 @@
 /* Between lines and nodes: which kernels this processor has, and what they are given. */
 #include "transfer.h"
 
+#include "../base/crew.h"
 #include "../base/status.h"
 #include "../math/lanes.h"
 #include "../math/rotation.h"
@@ -372,7 +373,115 @@ static void spread(int elements, int per_element, const double *modal, int consi
     }
 }
 
-static void finish_audit(const double sums[18], const double tops[3], spari_audit *audit) {
+/* ---- sums of loads ---- */
+
+/* What is summed over nodes, in one block of doubles: modal sums [elements][P][7][2] and those of the audit, each with
+   its rounding error; the extremes, least first. */
+typedef struct load_sums {
+    double *modal, *audit, *tops, *least;
+} load_sums;
+
+static load_sums sums_at(double *block, int64_t nodes) {
+    double *audit = block + 14 * nodes;
+    return (load_sums){block, audit, audit + 18, audit + 21};
+}
+
+/* What the loads of nodes are asked of. */
+typedef struct gathering {
+    const spari_nodes *s;
+    kernels kernel;
+    const double *c;
+    int consistent, has_moment, audited;
+    spari_source force, moment;
+    int64_t nodes, slab, first; /* of the line; of fluid nodes in a slab; the slab that goes to work space 0 */
+    double *work;
+} gathering;
+
+static void clear_sums(double *block, int64_t nodes) {
+    memset(block, 0, (size_t)spari_gather_share(nodes) * sizeof *block);
+    *sums_at(block, nodes).least = HUGE_VAL;
+}
+
+static void add_tile(const gathering *g, int64_t first, const load_sums *to) {
+    const spari_nodes *s = g->s;
+    double f[6][SPARI_ROW];
+    int count = spari_tile_count(s, first);
+    fetch_rows(&g->kernel, s, first, count, g->force, f);
+    if (g->has_moment) {
+        fetch_rows(&g->kernel, s, first, count, g->moment, f + 3);
+    }
+    for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
+        f[0][i] = f[1][i] = f[2][i] = 0;
+    }
+    for (int at = 0; at < count;) {
+        int run = run_length(s, first + at, count - at);
+        ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
+        double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, f, at,
+                                   g->audited, to->modal + node * 14, to->audit, to->tops);
+        *to->least = d < *to->least ? d : *to->least;
+        at += run;
+    }
+}
+
+static void add_slab(const gathering *g, int64_t slab, double *block) {
+    const load_sums to = sums_at(block, g->nodes);
+    int64_t from = slab * g->slab, end = from + g->slab < g->s->n ? from + g->slab : g->s->n;
+    clear_sums(block, g->nodes);
+    for (int64_t first = from; first < end; first += SPARI_TILE) {
+        add_tile(g, first, &to);
+    }
+}
+
+static spari_crew *crew_of(const spari_nodes *s) {
+    return s->crew ? *s->crew : NULL;
+}
+
+/* Of several slabs at once each has a block of its own. */
+static double *block_of(const gathering *g, int64_t k) {
+    int64_t size = spari_gather_share(g->nodes);
+    return k == 0 ? g->work + size : spari_crew_room(crew_of(g->s), (int)k, size);
+}
+
+static void gather_item(void *context, int64_t item, int worker) {
+    const gathering *g = context;
+    (void)worker;
+    add_slab(g, g->first + item, block_of(g, item));
+}
+
+static void join_sums(const double *block, double *total, int64_t nodes) {
+    const load_sums to = sums_at(total, nodes);
+    const double *tops = block + 14 * nodes + 18;
+    for (int64_t i = 0; i < 14 * nodes + 18; i += 2) {
+        spari_add(total + i, block[i]);
+        spari_add(total + i, block[i + 1]);
+    }
+    for (int i = 0; i < 4; i++) { /* with the least */
+        to.tops[i] = tops[i] < to.tops[i] ? tops[i] : to.tops[i];
+    }
+}
+
+/* All loads, into the first block of the work space. */
+static void sum_all_loads(gathering *g) {
+    int64_t slabs = spari_slabs(g->s->n, g->slab);
+    spari_crew *crew = crew_of(g->s);
+    if (slabs < 2) {
+        add_slab(g, 0, g->work);
+        return;
+    }
+    int shared = spari_crew_is_free(crew) && spari_crew_room(crew, 1, spari_gather_share(g->nodes));
+    int64_t most = shared ? spari_crew_threads(crew) : 1;
+    clear_sums(g->work, g->nodes);
+    for (g->first = 0; g->first < slabs; g->first += most) {
+        int64_t here = slabs - g->first < most ? slabs - g->first : most;
+        spari_crew_run(crew, here, gather_item, g);
+        for (int64_t k = 0; k < here; k++) {
+            join_sums(block_of(g, k), g->work, g->nodes);
+        }
+    }
+}
+
+static void finish_audit(const load_sums *of, spari_audit *audit) {
+    const double *sums = of->audit;
     for (int i = 0; i < 3; i++) {
         audit->force[i] = sums[2 * i] + sums[2 * i + 1];
         audit->moment[i] = sums[2 * (i + 3)] + sums[2 * (i + 3) + 1];
@@ -380,39 +489,23 @@ static void finish_audit(const double sums[18], const double tops[3], spari_audi
     audit->power = sums[12] + sums[13];
     audit->force_sum = -(sums[14] + sums[15]);
     audit->moment_sum = -(sums[16] + sums[17]);
-    audit->x_max = sqrt(-tops[0]), audit->v_max = sqrt(-tops[1]), audit->omega_max = sqrt(-tops[2]);
+    audit->x_max = sqrt(-of->tops[0]), audit->v_max = sqrt(-of->tops[1]), audit->omega_max = sqrt(-of->tops[2]);
 }
 
 double spari_gather_loads(const spari_nodes *s, const double *modal, const double *c, int consistent, const double *q,
                           spari_source force, spari_source moment, double *work, double *load, spari_audit *audit) {
-    const kernels kernel = choose_kernels(s);
-    double f[6][SPARI_ROW], sums[18] = {0}, tops[3] = {0}, least = HUGE_VAL;
-    ptrdiff_t nodes = (ptrdiff_t)s->elements * s->per_element;
-    const int has_moment = moment.d || moment.f;
-    memset(work, 0, sizeof *work * (size_t)nodes * 14);
-    for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
-        int count = spari_tile_count(s, first);
-        fetch_rows(&kernel, s, first, count, force, f);
-        if (has_moment) {
-            fetch_rows(&kernel, s, first, count, moment, f + 3);
-        }
-        for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
-            f[0][i] = f[1][i] = f[2][i] = 0;
-        }
-        for (int at = 0; at < count;) {
-            int run = run_length(s, first + at, count - at);
-            ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-            double d = kernel.loads(s, first + at, run, c + node * SPARI_FIELDS, consistent, has_moment, f, at,
-                                    audit != NULL, work + node * 14, sums, tops);
-            least = d < least ? d : least;
-            at += run;
-        }
-    }
-    spread(s->elements, s->per_element, modal, consistent, q, work, load);
+    int64_t nodes = (int64_t)s->elements * s->per_element;
+    gathering g = {.s = s, .kernel = choose_kernels(s), .c = c, .consistent = consistent, .force = force};
+    g.moment = moment, g.has_moment = moment.d || moment.f, g.audited = audit != NULL;
+    g.nodes = nodes, g.work = work;
+    g.slab = SPARI_SUM_SLAB * (1 + nodes / 1024); /* to join the sums is little beside making them */
+    sum_all_loads(&g);
+    const load_sums total = sums_at(work, nodes);
+    spread(s->elements, s->per_element, modal, consistent, q, total.modal, load);
     if (audit) {
-        finish_audit(sums, tops, audit);
+        finish_audit(&total, audit);
     }
-    return least;
+    return *total.least;
 }
 
 double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent, const double *q, spari_source force,

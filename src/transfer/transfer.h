@@ -27,7 +27,15 @@ typedef struct spari_nodes {
     uint16_t *place; /* [n] storage place -> node within its tile; NULL: as they come */
     uint8_t *flags;  /* [n] SPAR_MAP_*, by node */
     int lanes;       /* widest vectors to use; 0: what the processor has (tests try all) */
+    struct spari_crew *const *crew; /* who works on them (base/crew.h); NULL: one thread */
 } spari_nodes;
+
+/* Nodes that one thread takes at a time where each is by itself, whole tiles; and at least so many where they are
+   summed: the sums of more are sums over such slabs in their order, whoever has made them. */
+enum { SPARI_SLAB = 16 * SPARI_TILE, SPARI_SUM_SLAB = 64 * SPARI_TILE };
+static inline int64_t spari_slabs(int64_t n, int64_t slab) {
+    return (n + slab - 1) / slab;
+}
 
 /* Coefficients of the nodal fields of one state, [element][mode][SPARI_FIELDS]. */
 enum {
@@ -129,7 +137,14 @@ void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)
 void spari_tile_store_at(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
                          double *d, float *f);
 
-/* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: elements * P * 7 * 2 doubles. nodal
+/* Work space of the loads on so many nodes of a line, in doubles: of the call, and of each thread. */
+static inline int64_t spari_gather_share(int64_t nodes) {
+    return nodes * 7 * 2 + 22;
+}
+static inline int64_t spari_gather_room(int64_t nodes) {
+    return 2 * spari_gather_share(nodes);
+}
+/* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: spari_gather_room doubles. nodal
    quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */
 double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,
                           const double *q, spari_source force, spari_source moment, double *work, double *load,

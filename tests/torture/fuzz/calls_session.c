@@ -179,6 +179,12 @@ void do_spar_session_set_reproducible(call *c) {
     RUN(c, spar_session_set_reproducible(l->s, on));
 }
 
+void do_spar_session_set_threads(call *c) {
+    live_session *l = arg_session(c);
+    int threads = arg_int(c, 1, 3);
+    RUN(c, spar_session_set_threads(l->s, threads));
+}
+
 void do_spar_session_set_option(call *c) {
     static const char *const keys[] = {"coupling.unconverged", "fluid.theta",     "fluid.far",
                                        "fluid.audit",          "advise.dt",       "advise.nodes",
@@ -270,6 +276,12 @@ void do_spar_session_get_reproducible(call *c) {
     live_session *l = arg_session(c);
     int *on = arg_out(c, (int64_t)sizeof *on, 1);
     RUN(c, spar_session_get_reproducible(l->s, on));
+}
+
+void do_spar_session_get_threads(call *c) {
+    live_session *l = arg_session(c);
+    int *threads = arg_out(c, (int64_t)sizeof *threads, 1);
+    RUN(c, spar_session_get_threads(l->s, threads));
 }
 
 void do_spar_session_get_phase(call *c) {

@@ -45,6 +45,7 @@ enum {
     CALL(spar_session_set_coupling, 100, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
+    CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_get_gravity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_session_get_integrator, 20, FUZZ_PURE)                                                                   \
@@ -53,6 +54,7 @@ enum {
     CALL(spar_session_get_coupling, 20, FUZZ_PURE)                                                                     \
     CALL(spar_session_get_relaxation, 20, FUZZ_PURE)                                                                   \
     CALL(spar_session_get_reproducible, 20, FUZZ_PURE)                                                                 \
+    CALL(spar_session_get_threads, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_placement, 20, FUZZ_PURE)                                                                     \
     CALL(spar_member_get_root, 20, FUZZ_PURE)                                                                          \
     CALL(spar_member_get_external, 20, FUZZ_PURE)                                                                      \

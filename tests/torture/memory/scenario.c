@@ -284,6 +284,7 @@ static void settings(spar_session *s) {
     CALL(spar_session_set_relaxation, s, 0.9);
     if (run.ranks == 1) {
         CALL(spar_session_set_reproducible, s, 1);
+        CALL(spar_session_set_threads, s, 3);
     }
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         CALL(spar_session_set_option, s, option[i][0], option[i][1]);
@@ -349,6 +350,7 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_session_get_coupling, s, whole + 0, number + 8, number + 16, whole + 24);
     CALL(spar_session_get_relaxation, s, number + 0);
     CALL(spar_session_get_reproducible, s, whole + 0);
+    CALL(spar_session_get_threads, s, whole + 0);
     CALL(spar_member_get_placement, b, number + 0, number + 8);
     CALL(spar_member_get_root, b, whole + 0);
     CALL(spar_member_get_external, b, whole + 0);

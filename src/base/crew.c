@@ -1,0 +1,209 @@
+/* A small crew of POSIX threads: see crew.h. */
+#include "crew.h"
+
+#include "quiet.h"
+#include "status.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+/* Looks this often before it sleeps: some ten microseconds, about what going to sleep and being woken takes. */
+enum { SPIN = 4000 };
+
+typedef struct hand {
+    spari_crew *crew;
+    pthread_t thread;
+    int worker;
+    double *room;
+} hand;
+
+struct spari_crew {
+    int threads;
+    hand *hands; /* [threads]; the first is the caller's and has no thread of its own */
+    int64_t room;
+    pthread_mutex_t lock;
+    pthread_cond_t begun, ended;
+    atomic_long round;  /* counts the runs */
+    atomic_int at_work; /* threads that have not ended the round */
+    atomic_int leave;   /* no more rounds */
+    atomic_llong next;  /* item to be done */
+    int64_t items;
+    spari_task task;
+    void *context;
+    fenv_t surroundings;
+};
+
+static _Thread_local int inside; /* this thread works on an item */
+
+static inline void rest(void) {
+#if defined(__GNUC__) && defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+}
+
+/* Takes items until there are none left. */
+static void work_on(spari_crew *c, int worker) {
+    inside = 1;
+    for (int64_t i; (i = atomic_fetch_add_explicit(&c->next, 1, memory_order_relaxed)) < c->items;) {
+        c->task(c->context, i, worker);
+    }
+    inside = 0;
+}
+
+/* Waits for the round after `last`. */
+static long next_round(spari_crew *c, long last) {
+    long round = last;
+    for (int k = 0; k < SPIN && round == last; k++) {
+        rest();
+        round = atomic_load_explicit(&c->round, memory_order_acquire);
+    }
+    if (round == last) {
+        (void)pthread_mutex_lock(&c->lock);
+        while ((round = atomic_load_explicit(&c->round, memory_order_acquire)) == last) {
+            (void)pthread_cond_wait(&c->begun, &c->lock);
+        }
+        (void)pthread_mutex_unlock(&c->lock);
+    }
+    return round;
+}
+
+static void *serve(void *argument) {
+    const hand *h = argument;
+    spari_crew *c = h->crew;
+    for (long round = 0;;) {
+        round = next_round(c, round);
+        if (atomic_load(&c->leave)) {
+            return NULL;
+        }
+        spari_quiet_begin();
+        (void)fesetenv(&c->surroundings); /* rounding and denormal numbers are as in the caller's thread */
+        work_on(c, h->worker);
+        spari_quiet_end();
+        if (atomic_fetch_sub_explicit(&c->at_work, 1, memory_order_acq_rel) == 1) {
+            (void)pthread_mutex_lock(&c->lock);
+            (void)pthread_cond_signal(&c->ended);
+            (void)pthread_mutex_unlock(&c->lock);
+        }
+    }
+}
+
+/* Tells all threads that there is a round, or that they may leave. */
+static void call_hands(spari_crew *c) {
+    (void)pthread_mutex_lock(&c->lock);
+    atomic_fetch_add_explicit(&c->round, 1, memory_order_release);
+    (void)pthread_cond_broadcast(&c->begun);
+    (void)pthread_mutex_unlock(&c->lock);
+}
+
+static void wait_for_hands(spari_crew *c) {
+    for (int k = 0; k < SPIN && atomic_load_explicit(&c->at_work, memory_order_acquire) > 0; k++) {
+        rest();
+    }
+    if (atomic_load_explicit(&c->at_work, memory_order_acquire) > 0) {
+        (void)pthread_mutex_lock(&c->lock);
+        while (atomic_load_explicit(&c->at_work, memory_order_acquire) > 0) {
+            (void)pthread_cond_wait(&c->ended, &c->lock);
+        }
+        (void)pthread_mutex_unlock(&c->lock);
+    }
+}
+
+/* The first `threads` hands; their threads are waiting. */
+static void dismiss(spari_crew *c) {
+    atomic_store(&c->leave, 1);
+    call_hands(c);
+    for (int k = 1; k < c->threads; k++) {
+        (void)pthread_join(c->hands[k].thread, NULL);
+        free(c->hands[k].room);
+    }
+    (void)pthread_cond_destroy(&c->ended);
+    (void)pthread_cond_destroy(&c->begun);
+    (void)pthread_mutex_destroy(&c->lock);
+    free(c->hands);
+    free(c);
+}
+
+/* The host's signals go to the host's threads. */
+static int start_hand(hand *h) {
+    sigset_t all, before;
+    (void)sigfillset(&all);
+    (void)pthread_sigmask(SIG_SETMASK, &all, &before);
+    int failed = pthread_create(&h->thread, NULL, serve, h);
+    (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return failed;
+}
+
+spari_crew *spari_crew_create(int threads) {
+    spari_crew *c = spari_zalloc(1, sizeof *c);
+    hand *hands = spari_zalloc(threads, sizeof *hands);
+    if (!c || !hands) {
+        free(c);
+        free(hands);
+        return NULL;
+    }
+    c->hands = hands;
+    (void)pthread_mutex_init(&c->lock, NULL); /* with default attributes nothing can fail where there are threads */
+    (void)pthread_cond_init(&c->begun, NULL);
+    (void)pthread_cond_init(&c->ended, NULL);
+    for (c->threads = 1; c->threads < threads; c->threads++) {
+        hand *h = hands + c->threads;
+        *h = (hand){.crew = c, .worker = c->threads};
+        if (start_hand(h) != 0) {
+            dismiss(c);
+            return NULL;
+        }
+    }
+    return c;
+}
+
+void spari_crew_free(spari_crew *crew) {
+    if (crew) {
+        dismiss(crew);
+    }
+}
+
+int spari_crew_threads(const spari_crew *crew) {
+    return crew ? crew->threads : 1;
+}
+
+int spari_crew_is_free(const spari_crew *crew) {
+    return crew && !inside;
+}
+
+void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *context) {
+    if (items < 2 || !spari_crew_is_free(crew)) {
+        for (int64_t i = 0; i < items; i++) {
+            task(context, i, 0);
+        }
+        return;
+    }
+    crew->items = items, crew->task = task, crew->context = context;
+    (void)fegetenv(&crew->surroundings);
+    atomic_store_explicit(&crew->next, 0, memory_order_relaxed);
+    atomic_store_explicit(&crew->at_work, crew->threads - 1, memory_order_relaxed);
+    call_hands(crew);
+    work_on(crew, 0);
+    wait_for_hands(crew);
+}
+
+int spari_crew_keep(spari_crew *crew, int64_t doubles) {
+    if (!crew || doubles <= crew->room) {
+        return 0;
+    }
+    for (int k = 1; k < crew->threads; k++) {
+        double *room = spari_zalloc(doubles, sizeof *room);
+        if (!room) {
+            return 1;
+        }
+        free(crew->hands[k].room);
+        crew->hands[k].room = room;
+    }
+    crew->room = doubles;
+    return 0;
+}
+
+double *spari_crew_room(const spari_crew *crew, int worker, int64_t doubles) {
+    return crew && doubles <= crew->room ? crew->hands[worker].room : NULL;
+}

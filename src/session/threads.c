@@ -1,0 +1,158 @@
+/* Threads: asked for, and what they solve. */
+#include "threads.h"
+
+#include "../base/crew.h"
+#include "../base/quiet.h"
+#include "../fluid/fluid.h"
+#include "../member/body.h"
+#include "../member/structure.h"
+#include "../solve/assembly.h"
+#include "../solve/fidelity.h"
+#include "coupling.h"
+#include "own.h"
+
+#include <stdlib.h>
+
+/* A member that no joint ties to another, or an assembly. */
+typedef struct spari_unit {
+    spar_member *member;
+    spari_assembly *assembly;
+    int status;
+    char message[SPARI_MESSAGE_SIZE]; /* of a failure */
+} spari_unit;
+
+static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
+    if (a) {
+        return spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
+    }
+    return m->row->advance(m, s->dt);
+}
+
+static int is_unit(const spar_member *m) {
+    return !m->assembly && m->row->advance && spari_fidelity_is_here(m);
+}
+
+/* ---- one after the other ---- */
+
+/* After a failure, whose message stays, the others go on all the same. */
+static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int status) {
+    char unheard[SPARI_MESSAGE_SIZE];
+    if (status == SPAR_OK) {
+        return solve_unit(s, m, a);
+    }
+    spari_messages_aside(unheard);
+    (void)solve_unit(s, m, a);
+    spari_messages_aside(NULL);
+    return status;
+}
+
+static int solve_in_turn(spar_session *s) {
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m; m = m->next) {
+        status = is_unit(m) ? solve_next(s, m, NULL, status) : status;
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        status = solve_next(s, NULL, a, status);
+    }
+    return status;
+}
+
+/* ---- several at once ---- */
+
+static void solve_item(void *context, int64_t item, int worker) {
+    spar_session *s = context;
+    spari_unit *u = s->own->unit + item;
+    (void)worker;
+    spari_messages_aside(u->message);
+    u->status = solve_unit(s, u->member, u->assembly);
+    spari_messages_aside(NULL);
+}
+
+static int64_t list_units(const spar_session *s, spari_unit *unit) {
+    int64_t n = 0;
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (is_unit(m)) {
+            unit[n].member = m, unit[n++].assembly = NULL;
+        }
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        unit[n].member = NULL, unit[n++].assembly = a;
+    }
+    return n;
+}
+
+/* With fewer of them than threads the elements of each are shared out instead (spari_body_sweep). */
+int spari_threads_solve(spar_session *s) {
+    int64_t n = s->crew ? list_units(s, s->own->unit) : 0;
+    if (n < 2 || n < spari_crew_threads(s->crew)) {
+        return solve_in_turn(s);
+    }
+    spari_crew_run(s->crew, n, solve_item, s);
+    for (const spari_unit *u = s->own->unit; u < s->own->unit + n; u++) {
+        SPARI_REQUIRE(s, u->status == SPAR_OK, u->status, "%s", u->message);
+    }
+    return SPAR_OK;
+}
+
+int spari_threads_prepare(spar_session *s) {
+    int64_t most = (int64_t)s->member_count + s->joint_count; /* a joint between nodes that all are driven is one */
+    if (!s->crew || most <= s->own->unit_room) {
+        return SPAR_OK;
+    }
+    spari_unit *unit = spari_zalloc(most, sizeof *unit);
+    SPARI_REQUIRE(s, unit, SPAR_ERR_MEMORY, "no memory for what the threads solve");
+    free(s->own->unit);
+    s->own->unit = unit, s->own->unit_room = most;
+    return SPAR_OK;
+}
+
+void spari_threads_free(spar_session *s) {
+    spari_crew_free(s->crew);
+    free(s->own->unit);
+    s->crew = NULL;
+    s->own->unit = NULL, s->own->unit_room = 0;
+}
+
+/* ---- the host's calls ---- */
+
+/* Work space of each of them for the largest element, and for the fluids' tiles. */
+static int keep_room(const spar_session *s, spari_crew *crew) {
+    int failed = 0;
+    for (const spar_member *m = s->members; m && !failed; m = m->next) {
+        failed = m->body && spari_crew_keep(crew, spari_body_room(m->body));
+    }
+    for (const spar_fluid *f = s->fluids; f && !failed; f = spari_fluid_next(f)) {
+        failed = spari_crew_keep(crew, spari_fluid_room(f));
+    }
+    return failed;
+}
+
+int spar_session_set_threads(spar_session *session, int threads) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is under way; change the number of threads between steps", __func__);
+    SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_CREW_MOST, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
+                  __func__, threads, SPARI_CREW_MOST);
+    if (threads == spari_crew_threads(s->crew)) {
+        return SPAR_OK;
+    }
+    spari_crew *crew = threads > 1 ? spari_crew_create(threads) : NULL;
+    if (threads > 1 && (!crew || keep_room(s, crew))) {
+        spari_crew_free(crew);
+        return spari_fail(s, SPAR_ERR_MEMORY, "%s: the system has no memory or no room for %d threads; ask for fewer",
+                          __func__, threads);
+    }
+    spari_threads_free(s);
+    s->crew = crew;
+    return SPAR_OK;
+}
+
+int spar_session_get_threads(const spar_session *session, int *threads) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    if (threads) {
+        *threads = spari_crew_threads(session->crew);
+    }
+    return SPAR_OK;
+}

@@ -1,0 +1,305 @@
+/* Threads of a session (spar_session_set_threads): whatever their number, the same bits. The oracle is the run of one
+   thread: places, velocities, loads and messages of runs with 2, 3 and 7 threads are compared with its memory. And: as
+   many threads as were asked for, none otherwise. */
+#include "scene.h"
+
+#include <dirent.h>
+#include <fenv.h>
+#include <stdio.h>
+#include <time.h>
+
+/* This process' threads, where the system says (Linux); else 0. */
+static int threads_of_process(void) {
+    int n = 0;
+    DIR *all = opendir("/proc/self/task");
+    for (struct dirent *one = all ? readdir(all) : NULL; one; one = readdir(all)) {
+        n += one->d_name[0] != '.';
+    }
+    if (all) {
+        (void)closedir(all);
+    }
+    return n;
+}
+
+/* That they have become so many: a thread that has ended may stay on the list for a moment. */
+static void assert_threads(int n) {
+    const struct timespec moment = {0, 1000000};
+    for (int k = 0; k < 60000 && threads_of_process() != n; k++) {
+        (void)nanosleep(&moment, NULL);
+    }
+    assert_int_equal(threads_of_process(), n);
+}
+
+static const int counts[] = {1, 2, 3, 7};
+enum { COUNTS = sizeof counts / sizeof *counts };
+
+/* ---- a scene with all that threads share out ---- */
+
+/* Beams of several sizes, two of them tied end to end, a rigid body, and fluid of many nodes on two beams. */
+enum { BEAMS = 6, STEPS = 4, MANY = 40000, FEW = 300, RECORD = 40 * STEPS + 12 * MANY };
+static const int elements[BEAMS] = {1, 3, 40, 2, 1, 30}, per_element[BEAMS] = {7, 4, 3, 5, 9, 4};
+
+typedef struct whole_scene {
+    spar_session *s;
+    spar_member *beam[BEAMS], *body;
+    spar_fluid *fluid[2];
+    double *place, *x, *v, *force;
+} whole_scene;
+
+static double weight_of(int64_t i) {
+    return 0.5 + 0.5 * sin(0.37 * (double)i);
+}
+
+static void add_fluid(whole_scene *w, int which, spar_member *m, int64_t n, double length) {
+    for (int64_t i = 0; i < n; i++) {
+        w->place[3 * i] = length * (1.02 * weight_of(7 * i) - 0.01);
+        w->place[3 * i + 1] = 0.1 * weight_of(3 * i), w->place[3 * i + 2] = 0.1 * cos((double)i);
+    }
+    OK(w->s, spar_fluid_create(m, which ? "few" : "many", &w->fluid[which]));
+    OK(w->s, spar_fluid_set_motion_nodes(w->fluid[which], n, w->place));
+    OK(w->s, spar_fluid_set_force_nodes(w->fluid[which], n, w->place));
+    OK(w->s, spar_fluid_map(w->fluid[which]));
+}
+
+static void whole_create(whole_scene *w, int threads, int late) {
+    double K[36], M[36], J[3] = {1, 2, 3}, centre[3] = {0.1, 0, 0}, mass[36];
+    const double rest[4] = {1, 0, 0, 0}, g[3] = {0, 0, -9.81};
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    scene_mass(mass, 3, centre, J);
+    *w = (whole_scene){.s = scene_session()};
+    double **triples[] = {&w->place, &w->x, &w->v, &w->force};
+    for (int i = 0; i < 4; i++) {
+        *triples[i] = calloc(3 * MANY, sizeof(double));
+    }
+    if (!late) {
+        OK(w->s, spar_session_set_threads(w->s, threads));
+    }
+    OK(w->s, spar_session_set_gravity(w->s, g));
+    OK(w->s, spar_session_set_coupling(w->s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 40));
+    for (int i = 0; i < BEAMS; i++) {
+        char name[8] = {'b', (char)('0' + i), 0};
+        const double at[3] = {i == 4 ? 2 : 0, i == 4 ? 3 : i, 0}, mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3};
+        w->beam[i] = scene_beam(w->s, name, elements[i], per_element[i], 2, K, M);
+        OK(w->s, spar_member_set_placement(w->beam[i], at, rest));
+        OK(w->s, spar_beam_set_damping(w->beam[i], mu));
+        if (i == 4) {
+            OK(w->s, spar_member_set_root(w->beam[i], SPAR_ROOT_FREE));
+        }
+        OK(w->s, spar_member_commit(w->beam[i]));
+    }
+    OK(w->s, spar_rigid_create(w->s, "body", NULL, rest, mass, &w->body));
+    OK(w->s, spar_member_commit(w->body));
+    spar_joint *tie = NULL;
+    int64_t last;
+    OK(w->s, spar_member_get_count(w->beam[3], &last));
+    OK(w->s, spar_joint_create(w->s, "tie", w->beam[3], last - 1, w->beam[4], 0, SPAR_FREE_RY, &tie));
+    add_fluid(w, 0, w->beam[2], MANY, 2);
+    add_fluid(w, 1, w->beam[0], FEW, 2);
+    if (late) {
+        OK(w->s, spar_session_set_threads(w->s, threads));
+    }
+}
+
+static void whole_destroy(whole_scene *w) {
+    spar_session_destroy(&w->s);
+    free(w->place);
+    free(w->x);
+    free(w->v);
+    free(w->force);
+}
+
+/* A fluid that damps, with a part of mass in it. */
+static int whole_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    whole_scene *w = context;
+    for (int which = 0; which < 2; which++) {
+        int64_t n = which ? FEW : MANY;
+        int status = spar_fluid_pull_motion(w->fluid[which], 1, w->x, w->v);
+        for (int64_t i = 0; i < 3 * n && status == SPAR_OK; i++) {
+            w->force[i] = (-4 * w->v[i] + 0.3 * sin(20 * t + (double)i)) / (double)n;
+        }
+        status = status == SPAR_OK ? spar_fluid_push_forces(w->fluid[which], w->force, NULL) : status;
+        if (status != SPAR_OK) {
+            return status;
+        }
+    }
+    (void)s, (void)dt, (void)iteration;
+    return SPAR_OK;
+}
+
+/* All that a host sees of a run. */
+static void whole_run(int threads, int late, double *record) {
+    whole_scene w;
+    whole_create(&w, threads, late);
+    memset(record, 0, RECORD * sizeof *record);
+    for (int step = 0; step < STEPS; step++) {
+        int iterations;
+        double *at = record + 40 * step;
+        OK(w.s, spar_step(w.s, step == 2 ? 0.02 : 0.005, whole_fluid, &w, &iterations));
+        for (int i = 0; i < 5; i++) {
+            scene_tip(w.beam[i], at + 7 * i);
+        }
+        at[35] = iterations;
+        OK(w.s, spar_fluid_get_audit(w.fluid[0], 4, at + 36));
+    }
+    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 0.5, record + 40 * STEPS, record + 40 * STEPS + 3 * MANY));
+    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 1, record + 40 * STEPS + 6 * MANY, record + 40 * STEPS + 9 * MANY));
+    whole_destroy(&w);
+}
+
+static void test_same_bits(void **state) {
+    (void)state;
+    double *one = malloc(RECORD * sizeof *one), *more = malloc(RECORD * sizeof *more);
+    whole_run(1, 0, one);
+    for (int i = 0; i < COUNTS; i++) {
+        whole_run(counts[i], i == 2, more);
+        assert_memory_equal(one, more, RECORD * sizeof *one);
+    }
+    free(one);
+    free(more);
+}
+
+/* A host that rounds upwards: its threads do too, so that the bits are the same, and are others than to nearest. */
+static void test_rounding_of_the_host(void **state) {
+    (void)state;
+    double *one = malloc(RECORD * sizeof *one), *two = malloc(RECORD * sizeof *two);
+    whole_run(1, 0, one);
+    int mode = fegetround();
+    if (fesetround(FE_UPWARD) == 0) {
+        whole_run(2, 0, two);
+        assert_memory_not_equal(one, two, RECORD * sizeof *one);
+        whole_run(1, 0, one);
+        (void)fesetround(mode);
+        assert_memory_equal(one, two, RECORD * sizeof *one);
+    }
+    free(one);
+    free(two);
+}
+
+/* ---- maps ---- */
+
+static void test_same_feet(void **state) {
+    (void)state;
+    static double feet[2][2][MANY];
+    static int flags[2][MANY];
+    double K[36], M[36];
+    scene_box(K, M);
+    for (int k = 0; k < 2; k++) {
+        spar_session *s = scene_session();
+        spar_fluid *f = NULL;
+        OK(s, spar_session_set_threads(s, k ? 3 : 1));
+        const double eta[3] = {0, 0.5, 1}, bow[9] = {0, 0, 0, 1, 0.5, 0, 2, 0, 0};
+        spar_member *b = NULL;
+        OK(s, spar_beam_create(s, "bow", 4, 5, &b));
+        OK(s, spar_beam_set_axis(b, 3, eta, bow, NULL));
+        OK(s, spar_beam_set_sections(b, 1, eta, K, M));
+        OK(s, spar_member_commit(b));
+        double *x = malloc(3 * MANY * sizeof *x);
+        for (int64_t i = 0; i < MANY; i++) {
+            x[3 * i] = 2.4 * weight_of(i) - 0.2, x[3 * i + 1] = 0.3 * weight_of(2 * i) - 0.5, x[3 * i + 2] = 0;
+        }
+        OK(s, spar_fluid_create(b, "f", &f));
+        OK(s, spar_fluid_set_motion_nodes(f, MANY, x));
+        OK(s, spar_fluid_map(f));
+        OK(s, spar_fluid_get_map(f, SPAR_NODES_MOTION, feet[k][0], feet[k][1], flags[k]));
+        free(x);
+        spar_session_destroy(&s);
+    }
+    assert_memory_equal(feet[0], feet[1], sizeof feet[0]);
+    assert_memory_equal(flags[0], flags[1], sizeof flags[0]);
+}
+
+/* ---- failures ---- */
+
+/* Two of five bodies are given loads beyond the numbers: the message is that of the first, no log hears of the other,
+   and the steps after it are the same to the last bit. */
+static int heard;
+static void hear(const spar_session *s, int level, const char *text, void *context) {
+    (void)s, (void)text, (void)context;
+    heard += level == SPAR_LOG_ERROR;
+}
+
+static void test_failures(void **state) {
+    (void)state;
+    char said[2][2048];
+    double after[2][5][7];
+    for (int k = 0; k < 2; k++) {
+        spar_session *s = scene_session();
+        spar_member *b[5];
+        double K[36], M[36];
+        const double far[6] = {0, 0, 1e306, 0, 1e306, 0}, push[6] = {0, 0, 1, 0, 0, 0}, none[6] = {0};
+        scene_box(K, M);
+        OK(s, spar_session_set_threads(s, k ? 3 : 1));
+        OK(s, spar_session_set_log(s, hear, NULL));
+        for (int i = 0; i < 5; i++) {
+            char name[8] = {'b', (char)('0' + i), 0};
+            b[i] = scene_beam(s, name, 2, 4, 1 + i, K, M);
+            OK(s, spar_member_commit(b[i]));
+            OK(s, spar_member_set_load(b[i], 7, SPAR_LOAD_DEAD, push));
+        }
+        scene_run(s, 0.01, 3);
+        OK(s, spar_member_set_load(b[1], 7, SPAR_LOAD_DEAD, far));
+        OK(s, spar_member_set_load(b[3], 7, SPAR_LOAD_DEAD, far));
+        OK(s, spar_step_begin(s, 0.01));
+        heard = 0;
+        assert_int_equal(spar_step_solve(s), SPAR_ERR_NUMERIC);
+        (void)snprintf(said[k], sizeof said[k], "%s", spar_session_message(s));
+        assert_non_null(strstr(said[k], "'b1'"));
+        assert_int_equal(heard, 1);
+        OK(s, spar_step_reject(s));
+        OK(s, spar_member_set_load(b[1], 7, SPAR_LOAD_DEAD, none));
+        OK(s, spar_member_set_load(b[3], 7, SPAR_LOAD_DEAD, none));
+        scene_run(s, 0.01, 3);
+        for (int i = 0; i < 5; i++) {
+            scene_tip(b[i], after[k][i]);
+        }
+        spar_session_destroy(&s);
+    }
+    assert_string_equal(said[0], said[1]);
+    assert_memory_equal(after[0], after[1], sizeof after[0]);
+}
+
+/* ---- the number ---- */
+
+static void test_number(void **state) {
+    (void)state;
+    int before = threads_of_process(), n = 0;
+    spar_session *s = scene_session();
+    OK(s, spar_session_get_threads(s, &n));
+    assert_int_equal(n, 1);
+    assert_threads(before);
+    const int bad[] = {0, -1, 65, 1 << 30};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(spar_session_set_threads(s, bad[i]), SPAR_ERR_ARGUMENT);
+        assert_non_null(strstr(spar_session_message(s), "1 to 64"));
+    }
+    assert_int_equal(spar_session_set_threads(NULL, 2), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_get_threads(NULL, &n), SPAR_ERR_ARGUMENT);
+    OK(s, spar_session_get_threads(s, NULL));
+    OK(s, spar_session_set_threads(s, 2)); /* the first thread of all may bring one of a sanitizer's along */
+    before = before > 0 ? threads_of_process() - 1 : 0;
+    for (int i = 0; i < 3; i++) {
+        const int wanted[3] = {5, 2, 1};
+        OK(s, spar_session_set_threads(s, wanted[i]));
+        OK(s, spar_session_get_threads(s, &n));
+        assert_int_equal(n, wanted[i]);
+        assert_threads(before > 0 ? before + wanted[i] - 1 : 0);
+    }
+    OK(s, spar_session_set_threads(s, 64));
+    OK(s, spar_step_begin(s, 0.1));
+    assert_int_equal(spar_session_set_threads(s, 2), SPAR_ERR_STATE);
+    OK(s, spar_step_reject(s));
+    spar_session_destroy(&s);
+    assert_threads(before);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_number),
+        cmocka_unit_test(test_same_feet),
+        cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_rounding_of_the_host),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
