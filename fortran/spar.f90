@@ -475,6 +475,8 @@ module spar
     type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
     integer(c_int64_t) :: blades = 0, sections = 0
   contains
+    procedure, private :: aero_get_chord, aero_get_chord_single_1, aero_get_chord_single_2
+    generic :: get_chord => aero_get_chord, aero_get_chord_single_1, aero_get_chord_single_2
     procedure, private :: aero_set_rotor, aero_set_rotor_single_1, aero_set_rotor_single_2, aero_set_rotor_single_3
     generic :: set_rotor => aero_set_rotor, aero_set_rotor_single_1, aero_set_rotor_single_2, aero_set_rotor_single_3
     procedure :: set_turn => aero_set_turn
@@ -3370,6 +3372,22 @@ contains
   end subroutine polar_set_interpolation
 
   ! Written by cmake/make-bindings.sh.
+
+  subroutine aero_get_chord(self, chord, twist, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: chord(:), twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    if (present(chord)) call need(fault, 'chord', shape(chord, kind=c_int64_t), [self%sections])
+    if (present(twist)) call need(fault, 'twist', shape(twist, kind=c_int64_t), [self%sections])
+    if (allocated(fault)) then
+      call refuse('aero%get_chord', fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_aero_get_chord(self%handle, chord, twist), self%session, stat, errmsg)
+  end subroutine aero_get_chord
 
   subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
     class(spar_aero), intent(inout) :: self
@@ -6455,6 +6473,36 @@ contains
     call fluid_get_total(self, moment=c_moment, stat=stat, errmsg=errmsg)
     call take(c_moment, moment)
   end subroutine fluid_get_total_single_3
+
+  subroutine aero_get_chord_single_1(self, chord, twist, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    real(c_float), intent(inout) :: chord(:)
+    real(c_float), intent(inout), optional :: twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_chord(:)
+    real(c_double), allocatable :: c_twist(:)
+
+    allocate (c_chord(ubound(chord, 1, c_int64_t)), source=untouched)
+    if (present(twist)) allocate (c_twist(ubound(twist, 1, c_int64_t)), source=untouched)
+    call aero_get_chord(self, chord=c_chord, twist=c_twist, stat=stat, errmsg=errmsg)
+    call take(c_chord, chord)
+    call take(c_twist, twist)
+  end subroutine aero_get_chord_single_1
+
+  subroutine aero_get_chord_single_2(self, no_chord, twist, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    type(absent), intent(in), optional :: no_chord
+    real(c_float), intent(inout) :: twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_twist(:)
+
+    allocate (c_twist(ubound(twist, 1, c_int64_t)), source=untouched)
+    if (present(no_chord)) return
+    call aero_get_chord(self, twist=c_twist, stat=stat, errmsg=errmsg)
+    call take(c_twist, twist)
+  end subroutine aero_get_chord_single_2
 
   subroutine aero_set_rotor_single_1(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
     class(spar_aero), intent(inout) :: self

@@ -1238,6 +1238,13 @@ module spar_calls
       integer(c_int) :: status
     end function spar_aero_set_section
 
+    function spar_aero_get_chord(aero, chord, twist) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(inout), optional :: chord(*), twist(*)
+      integer(c_int) :: status
+    end function spar_aero_get_chord
+
     function spar_fluid_read_aerodyn(fluid, primary_path, blade_path, q, n, span) bind(c) result(status)
       import :: c_char, c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid

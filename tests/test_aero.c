@@ -541,6 +541,10 @@ static void test_wing(void **state) {
     OK(spar_fluid_map(fluid));
     OK(spar_aero_create(1, &fluid, &aero));
     OK(spar_polar_create(3, alpha, cl, cd, cm, &polar));
+    double chord[3] = {7.0, 7.0, 7.0}, twist[3];
+    OK(spar_aero_set_section(aero, 0, 1.0, 0.0, polar));
+    assert_int_equal(spar_aero_get_chord(aero, chord, twist), SPAR_ERR_STATE); /* two have none */
+    assert_true(chord[0] == 7.0);
     for (int i = 0; i < 3; i++) {
         OK(spar_aero_set_section(aero, i, 1.0, 0.0, polar));
     }
@@ -580,6 +584,18 @@ static void test_wing(void **state) {
     OK(spar_aero_get_sections(aero, NULL, lift, NULL, NULL, NULL));
     assert_true(flags[0] == 0 && flags[1] == SPAR_AERO_FLAG_BEYOND_POLAR && flags[2] == 0);
     assert_true(lift[0] == 0.8 && lift[1] == 0.5);
+    /* What was set is read, the twist within a turn; a refused section stays as it was. */
+    OK(spar_polar_create(3, alpha, cl, cd, cm, &polar));
+    OK(spar_aero_set_section(aero, 1, 2.5, -0.3, polar));
+    OK(spar_aero_set_section(aero, 2, 0.0, 4.0, polar));
+    assert_int_equal(spar_aero_set_section(aero, 0, -1.0, 0.2, polar), SPAR_ERR_ARGUMENT);
+    spar_polar_destroy(&polar);
+    OK(spar_aero_get_chord(aero, chord, NULL));
+    OK(spar_aero_get_chord(aero, NULL, twist));
+    assert_true(chord[0] == 1.0 && chord[1] == 2.5 && chord[2] == 0.0);
+    assert_true(twist[0] == 0.0 && fabs(twist[1] + 0.3) < 1e-15);
+    assert_true(fabs(twist[2] - (4.0 - 2.0 * acos(-1.0))) < 1e-15);
+    assert_int_equal(spar_aero_get_chord(NULL, chord, twist), SPAR_ERR_ARGUMENT);
     spar_aero_destroy(&aero);
     spar_session_destroy(&session);
 }

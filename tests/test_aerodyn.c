@@ -74,6 +74,12 @@ static void test_rotor(void **state) {
     OK(s, nrel5mw_create_aero(&data, &rotor, BLADES, fluid[0], twist, &aero[0]));
     OK(s, spar_aero_create(BLADES, fluid[1], &aero[1]));
     OK(s, spar_aero_read_aerodyn(aero[1], PRIMARY, NULL, to_edge, NULL));
+    double chord[64], read_twist[64]; /* by the file, and as the tables of the example have them */
+    OK(s, spar_aero_get_chord(aero[1], chord, read_twist));
+    for (int64_t i = 0; i < n; i++) {
+        NEAR(chord[i], data.chord[i], 1e-12);
+        NEAR(read_twist[i], twist[i], 1e-12);
+    }
     OK(s, spar_aero_set_rotor(aero[1], rotor.hub, rotor.axis, cos(rotor.precone) * data.hub_radius,
                               cos(rotor.precone) * data.tip_radius));
     double *inflow = calloc((size_t)(3 * all), sizeof *inflow), *force[2], *moment[2], largest = 0;

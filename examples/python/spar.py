@@ -218,6 +218,7 @@ call spar_polar_destroy none polar|polar|out|
 call spar_aero_create int blades|int|value| sections|fluid|list|[n] aero|aero|out|
 call spar_aero_destroy none aero|aero|out|
 call spar_aero_set_section int aero|aero|value| i|int64_t|value| chord|double|value| twist|double|value| polar|polar|value|
+call spar_aero_get_chord int aero|aero|value| chord|double|out|[n] twist|double|out|[n]
 call spar_fluid_read_aerodyn int fluid|fluid|value| primary_path|char|in|[] blade_path|char|in|[] q|double|in|[4] n|int64_t|value| span|double|in|[n]
 call spar_aero_read_aerodyn int aero|aero|value| primary_path|char|in|[] blade_path|char|in|[] q|double|in|[4] span|double|in|[n]
 call spar_aero_set_rotor int aero|aero|value| hub|double|in|[3] axis|double|in|[3] hub_radius|double|value| tip_radius|double|value|

@@ -73,6 +73,12 @@ SPAR_API void spar_aero_destroy(spar_aero **aero);
            right-handed turn about the section's x
      polar: in */
 SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
+/* What the sections of every blade were given, one by one or from AeroDyn's files: a kernel's width goes by the chord.
+   Nothing on a rank without blades. Each NULL: not wanted.
+     chord[n]: out, m
+     twist[n]: out, rad, in [-pi, pi], as of spar_aero_set_section
+   SPAR_ERR_STATE: a section has none yet. */
+SPAR_API int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist);
 /* Blades of AeroDyn's files (AeroDyn 15 and later): the primary file's airfoils, the blade file's stations, the airfoil
    files' tables. Lengths, curve, sweep, twist and chord are linear in the span between stations, and so are the polars'
    coefficients where two stations have different airfoils. Common to both calls:

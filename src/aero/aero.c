@@ -311,6 +311,14 @@ static int check_blades(const spar_aero *aero, const char *call) {
     return SPAR_OK;
 }
 
+static int check_described(const spar_aero *aero, const char *call) {
+    for (int64_t i = 0; i < aero->n; i++) {
+        SPARI_REQUIRE(aero->session, aero->section[i].table, SPAR_ERR_STATE,
+                      "%s: section %lld has no chord and polar; call spar_aero_set_section", call, (long long)i);
+    }
+    return SPAR_OK;
+}
+
 static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     spar_session *session = aero->session;
     SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT, "%s: density %g; give a number >= 0",
@@ -320,10 +328,7 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
     SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
     SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
                   "%s: induction is asked for but the rotor is not described; call spar_aero_set_rotor", call);
-    for (int64_t i = 0; i < aero->n; i++) {
-        SPARI_REQUIRE(session, aero->section[i].table, SPAR_ERR_STATE,
-                      "%s: section %lld has no chord and polar; call spar_aero_set_section", call, (long long)i);
-    }
+    SPARI_TRY(check_described(aero, call));
     int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
     if (bad >= 0) {
         int blade = (int)(bad / (3 * aero->n));
@@ -469,6 +474,22 @@ int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, dou
             if (out[i]) {
                 out[i][k] = value[i];
             }
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist) {
+    SPARI_QUIET;
+    REQUIRE_HANDLE(aero);
+    SPARI_TRY(check_described(aero, __func__));
+    for (int64_t i = 0; i < aero->n; i++) {
+        const spari_section *section = aero->section + i;
+        if (chord) {
+            chord[i] = section->chord;
+        }
+        if (twist) {
+            twist[i] = atan2(section->sin_twist, section->cos_twist);
         }
     }
     return SPAR_OK;

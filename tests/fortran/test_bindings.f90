@@ -196,6 +196,7 @@ program test_bindings
   call refused(spar_aero_get_rotor(none), 'spar_aero_get_rotor')
   call refused(spar_aero_get_sections(none), 'spar_aero_get_sections')
   call refused(spar_aero_get_flags(none), 'spar_aero_get_flags')
+  call refused(spar_aero_get_chord(none), 'spar_aero_get_chord')
   call refused(spar_aero_get_loads(none), 'spar_aero_get_loads')
   call check(c_associated(spar_aero_effect_name(0_c_int)), 'spar_aero_effect_name')
   call refused(spar_aero_report_effects(none, none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &

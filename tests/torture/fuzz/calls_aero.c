@@ -219,6 +219,12 @@ void do_spar_aero_get_sections(call *c) {
     RUN(c, spar_aero_get_sections(a->a, alpha, cl, cd, ax, at));
 }
 
+void do_spar_aero_get_chord(call *c) {
+    live_aero *a = arg_aero(c);
+    double *chord = OUT_OR_NULL(c, places(a)), *twist = OUT_OR_NULL(c, places(a));
+    RUN(c, spar_aero_get_chord(a->a, chord, twist));
+}
+
 void do_spar_aero_get_flags(call *c) {
     live_aero *a = arg_aero(c);
     int *flags = arg_out(c, places(a) * (int64_t)sizeof(int), 1);

@@ -201,6 +201,7 @@ enum {
     CALL(spar_aero_get_rotor, 30, FUZZ_PURE)                                                                           \
     CALL(spar_aero_get_sections, 30, FUZZ_PURE)                                                                        \
     CALL(spar_aero_get_flags, 30, FUZZ_PURE)                                                                           \
+    CALL(spar_aero_get_chord, 30, FUZZ_PURE)                                                                           \
     CALL(spar_aero_get_loads, 30, FUZZ_PURE)                                                                           \
     CALL(spar_aero_report_effects, 4, FUZZ_TRIAL)                                                                      \
     CALL(damage_file, 6, FUZZ_HARNESS)

@@ -104,6 +104,9 @@ static void see_aero(const live_aero *a, uint64_t *h) {
     add_seen(h, spar_aero_get_rotor(a->a, seen, seen + 1, seen + 2), 3);
     add_seen(h, spar_aero_get_sections(a->a, seen, seen + n, seen + 2 * n, seen + 3 * n, seen + 4 * n), 5 * n);
     add_seen(h, spar_aero_get_loads(a->a, seen, seen + 6 * n, seen + 9 * n), 12 * n);
+    if (n > 0) {
+        add_seen(h, spar_aero_get_chord(a->a, seen, seen + a->n), 2 * a->n);
+    }
     if (spar_aero_get_flags(a->a, seen_flags, &no_root) == SPAR_OK) {
         add(h, seen_flags, (size_t)n * sizeof *seen_flags);
         add(h, &no_root, sizeof no_root);

@@ -837,6 +837,7 @@ static void act_aero(void) {
         CALL(spar_aero_get_sections, w.aero, a, b, c, NULL, NULL);
         NOTE(a);
         CALL(spar_aero_get_flags, w.aero, flags, &none);
+        CALL(spar_aero_get_chord, w.aero, a, b);
         CALL(spar_aero_get_loads, w.aero, NULL, force, NULL);
         NOTE(force);
         PLAIN(spar_aero_effect_name, 0);
