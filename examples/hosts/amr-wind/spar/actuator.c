@@ -17,8 +17,10 @@ struct actuator_machine {
     double angle, speed; /* of the rotor where they are given */
     const float *velocity;
     int points;
-    double *force, *half; /* [blades][sections][3], at the end of the step and half-way through it */
-    double *x, *v, *axes; /* of a blade's sections */
+    double *force;                     /* [blades][sections][3], at the end of the step */
+    float *half;                       /* [3][points], half-way through it */
+    double *axes;                      /* of a blade's sections */
+    spar_fluid *point[TURBINE_BLADES]; /* the sections once more, for AMR-Wind's arrays by component */
     char message[256];
 };
 
@@ -70,8 +72,11 @@ static int blow(actuator_machine *a) {
     }
     TRY(spar_aero_solve(t->aero, a->options.density, t->inflow, 1));
     TRY(spar_aero_get_loads(t->aero, NULL, a->force, NULL));
-    for (int b = 0; b < TURBINE_BLADES; b++) {
-        TRY(spar_fluid_pull_forces(t->air[b], 0.5, a->half + 3 * b * n));
+    for (int b = 0; b < TURBINE_BLADES; b++) { /* spar_aero wants its fluids packed: back at once */
+        TRY(spar_fluid_set_layout(t->air[b], SPAR_NODES_FORCE, 1, a->points));
+        int status = spar_fluid_pull_forces_f32(t->air[b], 0.5, a->half + 1 + b * n);
+        TRY(spar_fluid_set_layout(t->air[b], SPAR_NODES_FORCE, 3, 1));
+        TRY(status);
     }
     return SPAR_OK;
 }
@@ -82,6 +87,14 @@ static int solve_flow(spar_session *session, double t, double dt, int iteration,
 }
 
 /* ---- the turbine, made ---- */
+
+static void matrix(const double q[4], double axes[9]) {
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                         2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                         2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    memcpy(axes, r, sizeof r);
+}
 
 static void uniform(const double x[3], double t, void *context, double wind[3]) {
     (void)x, (void)t;
@@ -115,11 +128,37 @@ static int allocate(actuator_machine *a) {
     const size_t n = (size_t)a->turbine.sections, all = (size_t)TURBINE_BLADES * n;
     a->points = 1 + TURBINE_BLADES * (int)a->turbine.sections;
     a->force = calloc(3 * all, sizeof *a->force);
-    a->half = calloc(3 * all, sizeof *a->half);
-    a->x = calloc(3 * n, sizeof *a->x);
-    a->v = calloc(3 * n, sizeof *a->v);
+    a->half = calloc(3 * (size_t)a->points, sizeof *a->half);
     a->axes = calloc(9 * n, sizeof *a->axes);
-    return a->force && a->half && a->x && a->v && a->axes ? SPAR_OK : say(a, SPAR_ERR_MEMORY, "no memory");
+    return a->force && a->half && a->axes ? SPAR_OK : say(a, SPAR_ERR_MEMORY, "no memory");
+}
+
+/* Sections that nothing is pushed to, at the places of a blade's own, whose numbers lie in AMR-Wind's arrays: single
+   precision, one component behind the other, the hub's before the blades'. */
+static int make_points(actuator_machine *a, int b) {
+    const turbine *t = &a->turbine;
+    const int64_t n = t->sections;
+    double *work = calloc(11 * (size_t)n, sizeof *work), *xi = work;
+    if (!work) {
+        return say(a, SPAR_ERR_MEMORY, "no memory");
+    }
+    double *q = xi + n, *arm = q + 4 * n, *offset = arm + 3 * n, axes[9];
+    char name[32];
+    snprintf(name, sizeof name, "points%d", b + 1);
+    int status = spar_fluid_get_map(t->air[b], SPAR_NODES_MOTION, xi, NULL, NULL);
+    status = status ? status : spar_fluid_get_feet(t->air[b], SPAR_NODES_MOTION, NULL, q, arm);
+    for (int64_t i = 0; status == SPAR_OK && i < 3 * n; i++) {
+        matrix(q + 4 * (i / 3), axes);
+        for (int64_t k = 0; k < 3; k++) { /* the arm in the section's own axes, which are the matrix's columns */
+            offset[i] += axes[3 * k + i % 3] * arm[3 * (i / 3) + k];
+        }
+    }
+    status = status ? status : spar_fluid_create(t->blade[b], name, &a->point[b]);
+    status = status ? status : spar_fluid_set_motion_sections(a->point[b], n, xi, offset);
+    status = status ? status : spar_fluid_map(a->point[b]);
+    status = status ? status : spar_fluid_set_layout(a->point[b], SPAR_NODES_MOTION, 1, a->points);
+    free(work);
+    return status;
 }
 
 static int describe(actuator_machine *a) {
@@ -137,7 +176,11 @@ static int describe(actuator_machine *a) {
     TRY(spar_session_set_integrator(a->session, o->rho_inf, o->substeps));
     TRY(spar_session_set_coupling(a->session, SPAR_COUPLING_FIXED_POINT, 0, 1e-6, 30));
     TRY(turbine_create(&a->turbine, a->session, &how));
-    return allocate(a);
+    TRY(allocate(a));
+    for (int b = 0; b < TURBINE_BLADES; b++) {
+        TRY(make_points(a, b));
+    }
+    return SPAR_OK;
 }
 
 int actuator_create(const actuator_options *options, actuator_machine **out) {
@@ -169,8 +212,6 @@ void actuator_destroy(actuator_machine **out) {
     spar_session_destroy(&a->session);
     free(a->force);
     free(a->half);
-    free(a->x);
-    free(a->v);
     free(a->axes);
     free(a);
     *out = NULL;
@@ -227,14 +268,6 @@ static void product(const double p[4], const double q[4], double out[4]) {
     out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
 }
 
-static void matrix(const double q[4], double axes[9]) {
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                         2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                         2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
-    memcpy(axes, r, sizeof r);
-}
-
 int actuator_get_hub(actuator_machine *a, double x[3], double omega[3], double axes[9]) {
     const turbine *t = &a->turbine;
     double place[3], axis[3], turn[4], q[4], v[6];
@@ -277,13 +310,6 @@ int actuator_get_rotor(actuator_machine *a, double *thrust, double *torque, doub
     return SPAR_OK;
 }
 
-/* Point p of n, by component. */
-static void put(float *to, int n, int p, const double *from) {
-    for (int k = 0; to && k < 3; k++) {
-        to[k * n + p] = (float)from[k];
-    }
-}
-
 /* A section's axes with y along the chord: turned by the aerodynamic twist that the structure's have not. */
 static void turn_to_chord(const double *axes, double twist, float *out) {
     const double c = cos(twist), s = sin(twist);
@@ -294,17 +320,20 @@ static void turn_to_chord(const double *axes, double twist, float *out) {
     }
 }
 
-static int get_hub_point(actuator_machine *a, float *place, float *speed, float *force, float *orientation,
-                         float *chord) {
-    const double zero[3] = {0};
+static int get_hub_point(actuator_machine *a, float *place, float *speed, float *orientation, float *chord) {
     double x[3], axes[9], v[6] = {0};
     TRY(actuator_get_hub(a, x, NULL, axes));
     if (a->turbine.hub) {
         TRY(spar_member_get_motion(a->turbine.hub, NULL, v, NULL));
     }
-    put(place, a->points, 0, x);
-    put(speed, a->points, 0, v);
-    put(force, a->points, 0, zero);
+    for (int k = 0; k < 3; k++) {
+        if (place) {
+            place[k * a->points] = (float)x[k];
+        }
+        if (speed) {
+            speed[k * a->points] = (float)v[k];
+        }
+    }
     for (int i = 0; orientation && i < 9; i++) {
         orientation[i] = (float)axes[i];
     }
@@ -314,25 +343,30 @@ static int get_hub_point(actuator_machine *a, float *place, float *speed, float 
     return SPAR_OK;
 }
 
+/* Of blade b, from point `first` on. */
+static int get_axes(actuator_machine *a, int b, int first, float *orientation) {
+    const turbine *t = &a->turbine;
+    TRY(spar_fluid_pull_matrices(a->point[b], 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, a->axes));
+    for (int64_t i = 0; i < t->sections; i++) {
+        turn_to_chord(a->axes + 9 * i, t->twist[i], orientation + 9 * (first + i));
+    }
+    return SPAR_OK;
+}
+
 int actuator_get_points(actuator_machine *a, float *place, float *speed, float *force, float *orientation,
                         float *chord) {
     const turbine *t = &a->turbine;
     const int n = (int)t->sections;
-    TRY(get_hub_point(a, place, speed, force, orientation, chord));
+    TRY(get_hub_point(a, place, speed, orientation, chord));
+    if (force) {
+        memcpy(force, a->half, 3 * (size_t)a->points * sizeof *force);
+    }
     for (int b = 0; b < TURBINE_BLADES; b++) {
-        TRY(spar_fluid_pull_motion(t->air[b], 1, a->x, a->v));
-        TRY(spar_fluid_pull_matrices(t->air[b], 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, a->axes));
-        for (int i = 0; i < n; i++) {
-            const int p = 1 + b * n + i;
-            put(place, a->points, p, a->x + 3 * (int64_t)i);
-            put(speed, a->points, p, a->v + 3 * (int64_t)i);
-            put(force, a->points, p, a->half + 3 * (int64_t)(p - 1));
-            if (orientation) {
-                turn_to_chord(a->axes + 9 * (int64_t)i, t->twist[i], orientation + 9 * (int64_t)p);
-            }
-            if (chord) {
-                chord[p] = (float)t->data.chord[i];
-            }
+        const int first = 1 + b * n;
+        TRY(spar_fluid_pull_motion_f32(a->point[b], 1, place ? place + first : NULL, speed ? speed + first : NULL));
+        TRY(orientation ? get_axes(a, b, first, orientation) : SPAR_OK);
+        for (int i = 0; chord && i < n; i++) {
+            chord[first + i] = (float)t->data.chord[i];
         }
     }
     return SPAR_OK;
@@ -350,7 +384,10 @@ static int save_host(actuator_machine *a, const char *path) {
     good =
         good && fprintf(file, "%a %a %a %a %a %a\n", c->speed, c->integral, c->pitch, c->torque, c->rate, a->angle) > 0;
     for (int i = 0; good && i < 3 * (a->points - 1); i++) {
-        good = fprintf(file, "%a %a\n", a->force[i], a->half[i]) > 0;
+        good = fprintf(file, "%a\n", a->force[i]) > 0;
+    }
+    for (int i = 0; good && i < 3 * a->points; i++) {
+        good = fprintf(file, "%a\n", (double)a->half[i]) > 0;
     }
     good = file && fclose(file) == 0 && good;
     return good ? SPAR_OK : say(a, SPAR_ERR_IO, "%s cannot be written", name);
@@ -366,7 +403,10 @@ static int load_host(actuator_machine *a, const char *path) {
                fscanf(file, "%la %la %la %la %la %la", &c.speed, &c.integral, &c.pitch, &c.torque, &c.rate, /* NOLINT */
                       &angle) == 6;
     for (int i = 0; good && i < 3 * (a->points - 1); i++) {
-        good = fscanf(file, "%la %la", &a->force[i], &a->half[i]) == 2; /* NOLINT */
+        good = fscanf(file, "%la", &a->force[i]) == 1; /* NOLINT */
+    }
+    for (int i = 0; good && i < 3 * a->points; i++) {
+        good = fscanf(file, "%a", &a->half[i]) == 1; /* NOLINT */
     }
     if (file) {
         fclose(file);
