@@ -22,6 +22,7 @@ static struct {
     double *x0, *x;                                   /* [n_vertices][3], at the start and now */
     double *force;                                    /* [n_faces][3] */
     int stepping, done;
+    double later[2]; /* from this time on this step, s */
 } host;
 
 /* ---- once ---- */
@@ -109,6 +110,8 @@ void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfa
         fade_mesh();
     }
     saturne_clock_end();
+    const double never[2] = {0, 0};
+    saturne_check_case(spar_case_get_numbers(saturne_scene(), "later", 2, never, host.later));
     saturne_report_begin();
     saturne_check_case(spar_case_check(saturne_scene())); /* all keys have been asked for */
 }
@@ -168,6 +171,16 @@ void cs_ast_coupling_send_cvg(int icved) {
     saturne_clock_end();
     host.stepping = 0;
     saturne_report_step(host.wet, host.surface);
+}
+
+/* A run to a limit cycle may start with a long step: code_saturne takes the next one from here. */
+void cs_user_extra_operations(cs_domain_t *domain) {
+    if (host.later[1] > 0 && cs_glob_time_step->t_cur >= host.later[0] - 0.5 * host.later[1]) {
+        domain->time_step->dt_ref = host.later[1];
+        for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells_with_ghosts; cell++) {
+            CS_F_(dt)->val[cell] = host.later[1];
+        }
+    }
 }
 
 /* ---- at the end ---- */

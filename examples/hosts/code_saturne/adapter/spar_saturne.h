@@ -4,6 +4,7 @@
    Keys of [host code_saturne]; criteria are code_saturne's, which knows gmsh's numbers of faces and no names:
      flow NAME            folder of flow.c, mesh and comparison, for the run script
      dt S, steps N        the run's; precision R: that of its linear solvers [1e-8]
+     later T S            from the time T on steps of S seconds, of a mesh that moves; steps N counts all
      wetted CRITERION     faces that the structure moves, and member NAME that they hang on; its last node is watched
      loaded CRITERION     faces whose force the history has, per metre of span S; default: the wetted ones, 1 m
      fixed CRITERION      faces whose vertices stand still; sliding CRITERION: faces that vertices stay in
