@@ -5,6 +5,8 @@
 #include "case.h"
 #include "nrel5mw.h"
 #include <locale.h>
+#include <math.h>
+#include <spar/spar_aero.h>
 #include <spar/spar_output.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -647,13 +649,225 @@ static void test_no_output(void **state) {
     spar_session_destroy(&s);
 }
 
+/* ---- what fluids bring ---- */
+
+/* Guesses of the added mass, of a beam by stations and of a rigid body, are those of the file. */
+static void test_added_mass(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_case *c =
+        read_text(s, NULL,
+                  "[beam wing]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
+                  ".02 .01 .01\nadded_mass 0 1 2 3 .4 .5 .6\nadded_mass 1 2 4 6 .8 1 1.2\n"
+                  "[rigid body]\nplace 5 0 0\nmass 2 2 2 1 1 1\nadded_mass 7 8 9 .7 .8 .9\nroot free\n");
+    const double given[6] = {1, 2, 3, .4, .5, .6};
+    double eta[2], mass[2][36];
+    int64_t n = 0;
+    OK(s, spar_member_get_added_mass(spar_case_member_at(c, 0), &n, 2, eta, mass[0]));
+    assert_true(n == 2 && eta[0] == 0 && eta[1] == 1);
+    for (int i = 0; i < 6; i++) {
+        assert_true(mass[0][7 * i] == given[i] && mass[1][7 * i] == 2 * given[i]);
+    }
+    assert_true(mass[0][1] == 0);
+    OK(s, spar_member_get_added_mass(spar_case_member_at(c, 1), &n, 1, NULL, mass[0]));
+    assert_true(n == 1 && mass[0][0] == 7 && mass[0][7] == 8 && mass[0][35] == .9);
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
+static const char wing_text[] = "[beam wing]\nnodes 5\naxis 0 0 0 0\naxis 1 4 0 0\n"
+                                "section 0 4e6 4e6 4e6 3e4 2e4 2e4 5 5 5 .2 .1 .1\n";
+
+static int blow_case(spar_session *s, double t, double dt, int iteration, void *scene) {
+    (void)s, (void)t, (void)dt, (void)iteration;
+    return spar_case_blow(scene);
+}
+
+typedef struct by_hand {
+    spar_aero *aero;
+    double wind[9];
+} by_hand;
+
+static int blow_by_hand(spar_session *s, double t, double dt, int iteration, void *context) {
+    (void)s, (void)t, (void)dt, (void)iteration;
+    by_hand *h = context;
+    return spar_aero_solve(h->aero, 1.2, h->wind, 1.0);
+}
+
+static const double wing_chord[3] = {1, .8, .5};
+
+static void air_by_hand(spar_session *s, spar_member *wing, by_hand *h) {
+    const double xi[3] = {-1, 0, 1}, offset[9] = {0, 0, 0, 0, .1, .02, 0, 0, 0}, twist[3] = {.05, 0, -.05};
+    const double alpha[2] = {-.5, .5}, cl[2] = {-2.5, 2.5}, cd[2] = {.1, .1}, cm[2] = {0, -.05};
+    spar_fluid *fluid = NULL;
+    spar_polar *polar = NULL;
+    OK(s, spar_fluid_create(wing, "air", &fluid));
+    OK(s, spar_fluid_set_sections(fluid, 3, xi, offset));
+    OK(s, spar_fluid_map(fluid));
+    OK(s, spar_aero_create(1, &fluid, &h->aero));
+    OK(NULL, spar_polar_create(2, alpha, cl, cd, cm, &polar));
+    for (int i = 0; i < 3; i++) {
+        OK(s, spar_aero_set_section(h->aero, i, wing_chord[i], twist[i], polar));
+    }
+    spar_polar_destroy(&polar);
+    OK(s, spar_aero_set_effects(h->aero, SPAR_AERO_DRAG));
+}
+
+static spar_case *air_by_text(spar_session *s) {
+    char text[2048];
+    FILE *file = fopen("test_case_polar.txt", "w");
+    assert_non_null(file);
+    assert_true(fputs("# alpha cl cd cm\n-0.5 -2.5 0.1 0\n0.5 2.5 0.1 -.05\n", file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    (void)snprintf(text, sizeof text,
+                   "%s[aero air]\nblades wing\nsection -1 1 .05 test_case_polar.txt\n"
+                   "section 0 .8 0 test_case_polar.txt 0.1 0.02\nsection 1 .5 -.05 test_case_polar.txt\n"
+                   "density 1.2\nwind 0 30 -3\neffects drag\n",
+                   wing_text);
+    spar_case *c = read_text(s, NULL, text);
+    assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "this host has no blade elements; take [aero air] out"));
+    GOOD(spar_case_make_aero(c, 0));
+    GOOD(spar_case_check(c));
+    assert_int_equal(spar_case_make_aero(c, 0), SPAR_ERR_STATE);
+    (void)remove("test_case_polar.txt");
+    return c;
+}
+
+/* A wing in a wind, by a file with its polar and by the calls: ten steps with the same bits, in which the wind moves
+   it. A host without blade elements refuses the file. */
+static void test_aero(void **state) {
+    (void)state;
+    by_hand h = {.wind = {0, 30, -3, 0, 30, -3, 0, 30, -3}};
+    spar_session *s[2] = {scene_session(), scene_session()};
+    spar_case *c[2] = {air_by_text(s[0]), read_text(s[1], NULL, wing_text)};
+    double q[2][7 * 5], chord[3];
+    spar_aero *aero = NULL;
+    air_by_hand(s[1], spar_case_member_at(c[1], 0), &h);
+    GOOD(spar_case_aero(c[0], "air", &aero));
+    OK(s[0], spar_aero_get_chord(aero, chord, NULL));
+    assert_memory_equal(chord, wing_chord, sizeof chord);
+    assert_int_equal(spar_case_aero(c[0], "water", &aero), SPAR_ERR_ARGUMENT);
+    for (int i = 0; i < 10; i++) {
+        OK(s[0], spar_step(s[0], 0.01, blow_case, c[0], NULL));
+        OK(s[1], spar_step(s[1], 0.01, blow_by_hand, &h, NULL));
+    }
+    for (int k = 0; k < 2; k++) {
+        OK(s[k], spar_member_get_motion(spar_case_member_at(c[k], 0), q[k], NULL, NULL));
+    }
+    assert_memory_equal(q[0], q[1], sizeof q[0]);
+    assert_true(fabs(q[0][7 * 4 + 2]) > 1e-3);
+    spar_aero_destroy(&h.aero);
+    for (int k = 0; k < 2; k++) {
+        spar_case_free(&c[k]);
+        spar_session_destroy(&s[k]);
+    }
+}
+
+/* AeroDyn's files, at as many sections as are wanted: chords between those of the stations, from the cylinder's 3.542 m
+   at the root, 4.652 at most; on other ranks nothing. */
+static void test_aero_files(void **state) {
+    (void)state;
+    const char *const text =
+        "[beam blade]\nnodes 6\naxis 0 0 0 0\naxis 1 61.5 0 0\n"
+        "section 0 4e9 4e9 4e9 3e9 2e9 2e9 500 500 500 20 10 10\n"
+        "[aero rotor]\nblades blade\naerodyn \"" SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat\"\n"
+        "stations 12 0 61.4\nrotor 0 0 0 0 0 1 1.5 63\ndensity 1.225\nwind 0 0 8\ntotal 3\n";
+    double chord[12], least = 10, most = 0;
+    for (int rank = 0; rank < 2; rank++) {
+        spar_session *s = scene_session();
+        spar_case *c = read_text(s, NULL, text);
+        spar_aero *aero = NULL;
+        GOOD(spar_case_make_aero(c, rank));
+        assert_int_equal(spar_case_aero(c, "rotor", &aero), rank ? SPAR_ERR_ARGUMENT : SPAR_OK);
+        if (rank == 0) {
+            OK(s, spar_aero_get_chord(aero, chord, NULL));
+            for (int i = 0; i < 12; i++) {
+                least = fmin(least, chord[i]);
+                most = fmax(most, chord[i]);
+            }
+            assert_true(fabs(chord[0] - 3.542) < 1e-12 && least > 1 && most > 4.4 && most <= 4.652);
+        }
+        spar_case_free(&c);
+        spar_session_destroy(&s);
+    }
+}
+
+/* What is wrong about [aero] is told when it is made. */
+static void test_aero_mistakes(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *what;
+    } wrong[] = {
+        {"[aero a]\nblades wing\n", "line 8: [aero a] wants blades MEMBER ..., and either"},
+        {"[aero a]\nblades wnig\nsection 0 1 0 p\n", "line 9: there is no member 'wnig'; did you mean 'wing'?"},
+        {"[aero a]\nblades wing\nsection 0 1 0 none.txt\nsection 1 1 0 none.txt\n", "none.txt: cannot be read"},
+        {"[aero a]\nblades wing\nsection 0 1 0 p 1\n", "line 10: section has 5 values"},
+        {"[aero a]\nblades wing\naerodyn none.dat\n", "line 10: spar_fluid_read_aerodyn: "},
+        {"[aero a]\nblades wing\nstations 3 0 1\nsection 0 1 0 p\n", "line 10: stations is about AeroDyn's files"},
+        {"[aero a]\nblades wing\nsection 0 1 0 p\naerodyn p\n", "line 8: [aero a] wants blades"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        char text[1024];
+        (void)snprintf(text, sizeof text, "%s\n\n%s", wing_text, wrong[i].text);
+        spar_session *s = scene_session();
+        spar_case *c = read_text(s, NULL, text);
+        if (spar_case_make_aero(c, 0) == SPAR_OK || !strstr(spar_case_message(), wrong[i].what)) {
+            fail_msg("\"%s\" gave: %s\nexpected: %s", wrong[i].text, spar_case_message(), wrong[i].what);
+        }
+        spar_case_free(&c);
+        spar_session_destroy(&s);
+    }
+}
+
+/* ---- a run that goes on ---- */
+
+/* Saved after the third step of six, loaded, three more: the same bits. A host that cannot refuses `restart`. */
+static void test_restart(void **state) {
+    (void)state;
+    char text[1024];
+    double q[2][7 * 5];
+    int restarted = -1;
+    for (int k = 0; k < 2; k++) {
+        (void)snprintf(text, sizeof text, "%s[session]\ngravity 0 0 -9.81\n%s", wing_text,
+                       k ? "restart test_case_save.000003\n" : "[output]\nsave test_case_save 3\n");
+        spar_session *s = scene_session();
+        spar_case *c = read_text(s, NULL, text);
+        assert_int_equal(spar_case_check(c), k ? SPAR_ERR_ARGUMENT : SPAR_OK);
+        assert_true(!k || strstr(spar_case_message(), "cannot go on from a saved run; take restart out"));
+        GOOD(spar_case_restart(c, &restarted));
+        GOOD(spar_case_check(c));
+        assert_int_equal(restarted, k);
+        for (int i = 0; i < (k ? 3 : 6); i++) {
+            OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+            GOOD(spar_case_output(c, 0, 0, NULL));
+            assert_true(k || exists("test_case_save.000003") == (i >= 2));
+        }
+        OK(s, spar_member_get_motion(spar_case_member_at(c, 0), q[k], NULL, NULL));
+        spar_case_free(&c);
+        spar_session_destroy(&s);
+    }
+    assert_memory_equal(q[0], q[1], sizeof q[0]);
+    assert_true(exists("test_case_save.000006") && !exists("test_case_save.000004"));
+    (void)remove("test_case_save.000003");
+    (void)remove("test_case_save.000006");
+    spar_session *s = scene_session();
+    spar_case *c = read_text(s, NULL, "[session]\nrestart nowhere.spar\n");
+    assert_int_equal(spar_case_restart(c, NULL), SPAR_ERR_IO);
+    assert_non_null(strstr(spar_case_message(), "line 2: spar_session_load"));
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     (void)setlocale(LC_ALL, "C"); /* examples/nrel5mw.c and what is read back below keep to it */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_everything), cmocka_unit_test(test_nothing),  cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_flag),       cmocka_unit_test(test_blade),    cmocka_unit_test(test_beamdyn),
-        cmocka_unit_test(test_host),       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_comma),      cmocka_unit_test(test_output),   cmocka_unit_test(test_no_output),
+        cmocka_unit_test(test_everything),    cmocka_unit_test(test_nothing),  cmocka_unit_test(test_cylinder),
+        cmocka_unit_test(test_flag),          cmocka_unit_test(test_blade),    cmocka_unit_test(test_beamdyn),
+        cmocka_unit_test(test_host),          cmocka_unit_test(test_mistakes), cmocka_unit_test(test_files),
+        cmocka_unit_test(test_comma),         cmocka_unit_test(test_output),   cmocka_unit_test(test_no_output),
+        cmocka_unit_test(test_added_mass),    cmocka_unit_test(test_aero),     cmocka_unit_test(test_aero_files),
+        cmocka_unit_test(test_aero_mistakes), cmocka_unit_test(test_restart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,8 +48,7 @@ static int open_case(spar_case *c, const char *path, const char *host) {
     return SPAR_OK;
 }
 
-/* What a rank alone has found wrong is known to all before the next collective call. */
-static int agree(const spar_case *c, int status) {
+int case_agree(const spar_case *c, int status) {
     int all = spar_session_sum(c->session, status, 0, NULL);
     if (all != SPAR_OK && status == SPAR_OK) {
         const char *why = spar_session_message(c->session);
@@ -76,12 +75,12 @@ int spar_case_read(const char *path, const char *host, spar_session *session, sp
         status = status == SPAR_OK ? case_set_session(c) : status;
         status = status == SPAR_OK ? case_describe_members(c) : status;
     }
-    status = agree(c ? c : &none, status);
+    status = case_agree(c ? c : &none, status);
     if (status == SPAR_OK) {
         status = case_commit_members(c);
         status = status == SPAR_OK ? case_describe_joints(c) : status;
         status = status == SPAR_OK ? case_output_read(c) : status;
-        status = agree(c, status);
+        status = case_agree(c, status);
     }
     if (numbers) {
         case_locale_end(&locale);
@@ -108,6 +107,7 @@ void spar_case_free(spar_case **scene) {
     }
     void *all[] = {c->host, c->member, c->joint, c->member_name, c->joint_name, c->joined, c};
     case_output_free(&c->output);
+    case_air_free(c);
     case_text_free(&c->text);
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
@@ -266,12 +266,26 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
     return status;
 }
 
+/* What a host does only if it calls for it. */
+static int check_host(const spar_case *c, const case_block *block) {
+    if (case_is(block, "aero") && !c->blown) {
+        return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
+                         "this host has no blade elements; take [aero %s] out", block->name);
+    }
+    const case_line *line =
+        case_is(block, "session") && case_is_for(block, c->host) ? case_find(block, "restart") : NULL;
+    return line && !c->restarts ? case_fail(&c->text, line->number, SPAR_ERR_ARGUMENT,
+                                            "this host cannot go on from a saved run; take restart out")
+                                : SPAR_OK;
+}
+
 int spar_case_check(const spar_case *scene) {
     if (!scene) {
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_check: scene is NULL");
     }
     for (int64_t b = 0; b < scene->text.n; b++) {
         const case_block *block = scene->text.block + b;
+        CASE_TRY(check_host(scene, block));
         for (int64_t i = 0; case_is(block, "host") && case_is_for(block, scene->host) && i < block->n; i++) {
             if (!block->line[i].used) {
                 return case_fail(&scene->text, block->line[i].number, SPAR_ERR_ARGUMENT,

@@ -23,6 +23,7 @@
      scheme explicit|fixed-point|aitken|iqn-ils         atol a (N)              rtol r
      max_iterations n           relaxation omega        predictor 0|1|2         reproducible on|off
      option* KEY VALUE          as of spar_session_set_option
+     restart FILE               that save has written: where a host can, the run goes on from it
    [beam NAME]
      elements n                 default 1
      nodes n                    of an element, default 8
@@ -35,8 +36,9 @@
      damping mu1 .. mu6         modal_damping mode ratio mode ratio
      fidelity exact|linear|rigid|prescribed, or modal n
      line_load* dead|follower eta fx fy fz mx my mz
+     added_mass* eta mass       a guess of the fluid's, per length (spar_member_set_added_mass)
    [rigid NAME]
-     mass                       a 6x6 matrix
+     mass                       a 6x6 matrix            added_mass              likewise, a guess of the fluid's
    [point NAME]
    these three
      place x y z                orientation qw qx qy qz
@@ -54,17 +56,28 @@
      a MEMBER NODE x y z        b MEMBER NODE x y z, or b ground x y z
      stiffness k                damping c       length l             tension_only on|off
      driven on|off
+   [aero NAME]: blade elements in a steady wind, where a host has them (spar_case_make_aero); as of spar_aero.h
+     blades MEMBER ...          alike, one fluid on each
+     aerodyn PRIMARY [BLADE]    chord, twist and polars by AeroDyn's files
+       axes qw qx qy qz         of the blade's axes there in the members' own
+       stations n first last    n sections at even distances (m from the root); default: those of the file
+     section* xi chord twist POLAR [y z]      instead; POLAR: a file of rows alpha cl cd [cm], rad
+     rotor x y z  ax ay az  hub_radius tip_radius     a point of the shaft, its direction, the blades' ends
+     turn 1|-1                  total n, blades of the whole rotor
+     effects none|induction|tip_loss|hub_loss|swirl|drag|moment ...
+     density rho                wind x y z
    [output], [output HOST]: what spar_case_output writes; the second is for one adapter and replaces the first
      folder DIR                 of the pictures, made if it is not there; default: the working folder
      every n                    steps from picture to picture (VTK, by spar_output.h); default 0: none
      fluids on|off              pictures of fluids too
      history FILE               a line a step: t, step, iterations, residual (N), loads (N), added mass / mass
+     save FILE [n]              the session, to FILE.STEP, after every n-th step; default 1
      watch* MEMBER NODE         nine more columns: displacement, velocity, and the sum of the member's loads
    [host], [host HOST]: what the adapter asks for; any keys */
 #ifndef SPAR_CASE_H
 #define SPAR_CASE_H
 
-#include <spar/spar.h>
+#include <spar/spar_aero.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -102,10 +115,22 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
 /* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt. To be called when all were. */
 int spar_case_check(const spar_case *scene);
 
-/* After spar_step_accept: pictures and the history line that are due at this step. Local; members and history are
-   written by rank 0, fluids by their ranks.
-     rank: in, of this process
-     fluids: in, how many; fluid[fluids]: in, this rank's */
+/* Makes what [aero] describes, once, on rank 0, whose fluids they are; the members may be solved anywhere. Collective.
+     rank: in, of this process */
+int spar_case_make_aero(spar_case *scene, int rank);
+/* The loads of all [aero] in their winds, from the latest motion: in every iteration, after spar_step_solve. Local. */
+int spar_case_blow(spar_case *scene);
+/* One of them, on rank 0, for spar_aero_get_*. */
+int spar_case_aero(const spar_case *scene, const char *name, spar_aero **aero);
+
+/* Goes on from the file that `restart` names, if it names one: after all fluids are mapped, before the first step.
+   Collective.
+     restarted: out, NULL: not wanted */
+int spar_case_restart(spar_case *scene, int *restarted);
+
+/* After spar_step_accept: pictures and the history line that are due at this step, and the session where the file has
+   `save`. Called by all ranks; local but where the session is saved. Members and history are written by rank 0, fluids
+   by their ranks. rank: in, of this process fluids: in, how many; fluid[fluids]: in, this rank's */
 int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *fluid);
 
 #ifdef __cplusplus

@@ -286,6 +286,30 @@ static int set_fidelity(const spar_case *c, const case_line *line, spar_member *
     return case_told(c, line->number, spar_member_set_fidelity(beam, kind, modes));
 }
 
+/* A guess of what the fluid adds to a beam, by its stations. */
+static int set_added_mass(const spar_case *c, const case_block *block, spar_member *beam) {
+    rows r = {0};
+    int status = read_rows(&c->text, block, "added_mass", 1, &r), form = r.width - 1;
+    if (status == SPAR_OK && r.n > 0 && form != 6 && form != 21 && form != 36) {
+        status =
+            case_fail(&c->text, r.line, SPAR_ERR_ARGUMENT,
+                      "a row of added_mass has %d numbers; give eta and 6, 21 or 36 of the mass per length", r.width);
+    }
+    double *all = status == SPAR_OK && r.n > 0 ? calloc(37 * (size_t)r.n, sizeof *all) : NULL;
+    if (status == SPAR_OK && r.n > 0) {
+        status = all ? SPAR_OK : case_no_memory(c);
+        double *eta = all ? columns(&r, 0, 1, all) : NULL;
+        for (int64_t i = 0; all && i < r.n; i++) {
+            case_unfold(form, r.x + i * r.width + 1, all + r.n + 36 * i);
+        }
+        status =
+            status == SPAR_OK ? case_told(c, r.line, spar_member_set_added_mass(beam, r.n, eta, all + r.n)) : status;
+    }
+    free(all);
+    free(r.x);
+    return status;
+}
+
 static int describe_beam(const spar_case *c, const case_block *block, spar_member **beam) {
     static const char *const rules[] = {"gauss", "lobatto", "sections", NULL};
     const case_line *elements = case_find(block, "elements"), *nodes = case_find(block, "nodes"), *line;
@@ -307,6 +331,7 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
         CASE_TRY(case_numbers(&c->text, line, 1, 6, mu));
         DO(c, line->number, spar_beam_set_damping(*beam, mu));
     }
+    CASE_TRY(set_added_mass(c, block, *beam));
     line = case_find(block, "fidelity");
     return line ? set_fidelity(c, line, *beam) : SPAR_OK;
 }
@@ -319,7 +344,12 @@ static int describe_rigid(const spar_case *c, const case_block *block, spar_memb
                          "[rigid %s] has no mass; give 6 numbers (m m m Jx Jy Jz), 21 or 36", block->name);
     }
     CASE_TRY(case_matrix(&c->text, line, mass));
-    return case_told(c, line->number, spar_rigid_create(c->session, block->name, NULL, NULL, mass, body));
+    DO(c, line->number, spar_rigid_create(c->session, block->name, NULL, NULL, mass, body));
+    if ((line = case_find(block, "added_mass"))) {
+        CASE_TRY(case_matrix(&c->text, line, mass));
+        DO(c, line->number, spar_member_set_added_mass(*body, 1, NULL, mass));
+    }
+    return SPAR_OK;
 }
 
 static int set_effects(const spar_case *c, const case_line *line, spar_member *member) {

@@ -13,7 +13,7 @@ static const known_key session_keys[] = {
     {"gravity", 3, 3, 0},    {"rho_inf", 1, 1, 0},   {"substeps", 1, 1, 0}, {"newton", 3, 3, 0},
     {"scheme", 1, 1, 0},     {"atol", 1, 1, 0},      {"rtol", 1, 1, 0},     {"max_iterations", 1, 1, 0},
     {"relaxation", 1, 1, 0}, {"predictor", 1, 1, 0}, {"option", 2, 2, 1},   {"reproducible", 1, 1, 0},
-    {NULL, 0, 0, 0},
+    {"restart", 1, 1, 0},    {NULL, 0, 0, 0},
 };
 static const known_key member_keys[] = {
     {"place", 3, 3, 0}, {"orientation", 4, 4, 0}, {"root", 1, 1, 0},  {"external", 1, 1, 0},
@@ -21,13 +21,12 @@ static const known_key member_keys[] = {
     {"load", 8, 8, 1},  {"effects", 1, 16, 0},    {NULL, 0, 0, 0},
 };
 static const known_key beam_keys[] = {
-    {"elements", 1, 1, 0},    {"nodes", 1, 1, 0},         {"quadrature", 2, 2, 0},
-    {"axis", 4, 5, 1},        {"axis_file", 1, 1, 0},     {"node", 3, 7, 1},
-    {"twist_scale", 1, 1, 0}, {"section", 7, 73, 1},      {"beamdyn", 1, 2, 0},
-    {"damping", 6, 6, 0},     {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
-    {"fidelity", 1, 2, 0},    {"line_load", 8, 8, 1},     {NULL, 0, 0, 0},
+    {"elements", 1, 1, 0},  {"nodes", 1, 1, 0},     {"quadrature", 2, 2, 0},    {"axis", 4, 5, 1},
+    {"axis_file", 1, 1, 0}, {"node", 3, 7, 1},      {"twist_scale", 1, 1, 0},   {"section", 7, 73, 1},
+    {"beamdyn", 1, 2, 0},   {"damping", 6, 6, 0},   {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
+    {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1}, {"added_mass", 7, 37, 1},   {NULL, 0, 0, 0},
 };
-static const known_key rigid_keys[] = {{"mass", 6, 36, 0}, {NULL, 0, 0, 0}};
+static const known_key rigid_keys[] = {{"mass", 6, 36, 0}, {"added_mass", 6, 36, 0}, {NULL, 0, 0, 0}};
 static const known_key joint_keys[] = {
     {"a", 2, 2, 0},      {"b", 1, 2, 0},          {"free", 1, 6, 0},     {"place", 3, 3, 0},
     {"axes", 4, 4, 0},   {"stiffness", 6, 36, 0}, {"damping", 6, 36, 0}, {"preload", 6, 6, 0},
@@ -38,8 +37,13 @@ static const known_key line_keys[] = {
     {"length", 1, 1, 0}, {"driven", 1, 1, 0}, {"tension_only", 1, 1, 0}, {NULL, 0, 0, 0},
 };
 static const known_key output_keys[] = {
-    {"folder", 1, 1, 0},  {"every", 1, 1, 0}, {"fluids", 1, 1, 0},
-    {"history", 1, 1, 0}, {"watch", 2, 2, 1}, {NULL, 0, 0, 0},
+    {"folder", 1, 1, 0}, {"every", 1, 1, 0}, {"fluids", 1, 1, 0}, {"history", 1, 1, 0},
+    {"watch", 2, 2, 1},  {"save", 1, 2, 0},  {NULL, 0, 0, 0},
+};
+static const known_key aero_keys[] = {
+    {"blades", 1, 16, 0}, {"aerodyn", 1, 2, 0}, {"axes", 4, 4, 0},    {"stations", 3, 3, 0},
+    {"section", 4, 6, 1}, {"rotor", 8, 8, 0},   {"turn", 1, 1, 0},    {"total", 1, 1, 0},
+    {"effects", 1, 7, 0}, {"wind", 3, 3, 0},    {"density", 1, 1, 0}, {NULL, 0, 0, 0},
 };
 static const known_key no_keys[] = {{NULL, 0, 0, 0}};
 
@@ -49,10 +53,15 @@ static const struct known_kind {
     int naming;
     const known_key *keys[2];
 } kinds[] = {
-    {"session", NAME_HOST, {session_keys, no_keys}}, {"beam", NAME_OWN, {beam_keys, member_keys}},
-    {"rigid", NAME_OWN, {rigid_keys, member_keys}},  {"point", NAME_OWN, {member_keys, no_keys}},
-    {"joint", NAME_OWN, {joint_keys, no_keys}},      {"line", NAME_OWN, {line_keys, no_keys}},
-    {"output", NAME_HOST, {output_keys, no_keys}},   {"host", NAME_HOST, {NULL, NULL}},
+    {"session", NAME_HOST, {session_keys, no_keys}},
+    {"beam", NAME_OWN, {beam_keys, member_keys}},
+    {"rigid", NAME_OWN, {rigid_keys, member_keys}},
+    {"point", NAME_OWN, {member_keys, no_keys}},
+    {"joint", NAME_OWN, {joint_keys, no_keys}},
+    {"line", NAME_OWN, {line_keys, no_keys}},
+    {"aero", NAME_OWN, {aero_keys, no_keys}},
+    {"output", NAME_HOST, {output_keys, no_keys}},
+    {"host", NAME_HOST, {NULL, NULL}},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0], MOST_KEYS = 64 };
 
@@ -94,7 +103,10 @@ static int check_key(const case_text *text, const case_block *block, const struc
 
 /* Members share their names, and so do joints and lines. */
 static int name_group(const case_block *block) {
-    return case_is(block, "joint") || case_is(block, "line") ? 1 : find_kind(block)->naming == NAME_OWN ? 2 : 0;
+    return case_is(block, "joint") || case_is(block, "line") ? 1
+           : case_is(block, "aero")                          ? 3
+           : find_kind(block)->naming == NAME_OWN            ? 2
+                                                             : 0;
 }
 
 static int check_heading(const case_text *text, int64_t at) {
@@ -105,10 +117,11 @@ static int check_heading(const case_text *text, int64_t at) {
         for (int i = 0; i < KINDS; i++) {
             names[i] = kinds[i].kind;
         }
-        return case_fail(text, block->number, SPAR_ERR_ARGUMENT,
-                         "no heading [%.60s]; did you mean [%s]? (session, beam, rigid, point, joint, line, output, "
-                         "host)",
-                         block->kind, case_nearest(block->kind, KINDS, names));
+        return case_fail(
+            text, block->number, SPAR_ERR_ARGUMENT,
+            "no heading [%.60s]; did you mean [%s]? (session, beam, rigid, point, joint, line, aero, output, "
+            "host)",
+            block->kind, case_nearest(block->kind, KINDS, names));
     }
     if (kind->naming == NAME_OWN && block->name[0] == '\0') {
         return case_fail(text, block->number, SPAR_ERR_ARGUMENT, "[%s] needs a name of its own, as in [%s wing]",

@@ -43,8 +43,11 @@ static int read_watches(spar_case *c, const case_block *block) {
 static int read_block(spar_case *c, const case_block *block) {
     const case_line *folder = case_find(block, "folder"), *every = case_find(block, "every"),
                     *fluids = case_find(block, "fluids"), *history = case_find(block, "history"),
-                    *watch = case_find(block, "watch");
+                    *watch = case_find(block, "watch"), *save = case_find(block, "save");
     case_output *o = &c->output;
+    o->save_every = 1;
+    CASE_TRY(save && save->n > 1 ? case_whole(&c->text, save, 2, 1, INT32_MAX, &o->save_every) : SPAR_OK);
+    o->save_path = save ? save->word[1] : NULL;
     CASE_TRY(every ? case_whole(&c->text, every, 1, 0, INT32_MAX, &o->every) : SPAR_OK);
     CASE_TRY(fluids ? case_on_or_off(c, fluids, &o->fluids) : SPAR_OK);
     o->folder = folder ? folder->word[1] : ".";
@@ -192,6 +195,14 @@ static int write_history(spar_case *c, double t, int64_t step, int iteration) {
     return SPAR_OK;
 }
 
+/* The session under the step's name, by all ranks: also by those whose picture could not be written. */
+static int save_session(const spar_case *c, int status, int64_t step) {
+    char path[LONGEST_PATH + 32];
+    (void)snprintf(path, sizeof path, "%.*s.%06" PRId64, LONGEST_PATH, c->output.save_path, step);
+    int saved = spar_session_save(c->session, path);
+    return status == SPAR_OK ? case_told(c, 0, saved) : status;
+}
+
 int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *fluid) {
     if (!scene || rank < 0 || fluids < 0 || (fluids > 0 && !fluid)) {
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT,
@@ -212,5 +223,34 @@ int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *
         status = write_pictures(scene, rank, fluids, fluid, t, step);
     }
     case_locale_end(&locale);
+    if (scene->output.save_path && step % scene->output.save_every == 0) {
+        return save_session(scene, status, step);
+    }
     return status;
+}
+
+/* ---- a run that goes on ---- */
+
+int spar_case_restart(spar_case *scene, int *restarted) {
+    const case_line *line = NULL;
+    if (!scene) {
+        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_restart: scene is NULL");
+    }
+    for (int own = 0; own < 2; own++) { /* what is this host's holds */
+        for (int64_t b = 0; b < scene->text.n; b++) {
+            const case_block *block = scene->text.block + b;
+            if (case_is(block, "session") && case_is_for(block, scene->host) && own == (block->name[0] != '\0')) {
+                const case_line *found = case_find(block, "restart");
+                line = found ? found : line;
+            }
+        }
+    }
+    scene->restarts = 1;
+    if (line) {
+        CASE_TRY(case_told(scene, line->number, spar_session_load(scene->session, line->word[1])));
+    }
+    if (restarted) {
+        *restarted = line != NULL;
+    }
+    return SPAR_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "case.h"
 
+#include <spar/spar_aero.h>
 #include <stdio.h>
 
 #ifdef __cplusplus
@@ -84,10 +85,21 @@ typedef struct case_output {
     const char *history_path;
     int64_t every, watches;
     int fluids, headed;
+    const char *save_path; /* NULL: nothing is saved */
+    int64_t save_every;
     FILE *history;
     case_watch *watch;
     double *q, *v, *load; /* of the watched member with the most nodes */
 } case_output;
+
+/* Blade elements, on rank 0. */
+typedef struct case_air {
+    const char *name; /* a part of the text */
+    spar_aero *aero;
+    int blades;
+    spar_fluid **fluid; /* [blades] */
+    double density, *inflow;
+} case_air;
 
 struct spar_case {
     spar_session *session;
@@ -99,6 +111,9 @@ struct spar_case {
     spar_joint **joint;
     char **joined; /* [lines of the text] the values of a line of the host as one text, NULL: not asked for */
     case_output output;
+    int64_t airs;
+    case_air *air;       /* [airs] */
+    int blown, restarts; /* the host has called spar_case_make_aero, spar_case_restart */
 };
 
 #define CASE_TRY(call)                                                                                                 \
@@ -119,6 +134,8 @@ int case_told(const spar_case *c, int line, int status);
 static inline int case_no_memory(const spar_case *c) {
     return case_fail(&c->text, 0, SPAR_ERR_MEMORY, "no memory");
 }
+/* What a rank alone has found wrong is known to all. Collective. */
+int case_agree(const spar_case *c, int status);
 int case_on_or_off(const spar_case *c, const case_line *line, int *on);
 /* The member that value i of the line names, and the node that value i + 1 does. */
 int case_find_member(const spar_case *c, const case_line *line, int i, spar_member **member);
@@ -132,6 +149,7 @@ int case_describe_joints(spar_case *c);
 /* [output] into scene->output, and its end. */
 int case_output_read(spar_case *c);
 void case_output_free(case_output *output);
+void case_air_free(spar_case *c);
 
 #ifdef __cplusplus
 }

@@ -104,6 +104,7 @@ void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfa
     }
     saturne_clock_begin();
     saturne_check_case(spar_case_member(saturne_scene(), saturne_text("member", NULL), &host.wet));
+    saturne_check_case(spar_case_make_aero(saturne_scene(), CS_MAX(cs_glob_rank_id, 0)));
     collect_vertices(all);
     couple_surface();
     if (all) {
@@ -135,6 +136,7 @@ void CS_PROCF(astcin, ASTCIN)(cs_int_t *ntcast, cs_real_3_t *disale) {
     }
     saturne_clock_begin();
     saturne_check(spar_step_solve(saturne_session()));
+    saturne_check_case(spar_case_blow(saturne_scene()));
     saturne_check(spar_fluid_pull_motion(host.surface, 1.0, host.x, NULL));
     saturne_clock_end();
     for (cs_lnum_t i = 0; i < host.n_vertices; i++) {

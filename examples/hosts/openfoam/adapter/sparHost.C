@@ -91,6 +91,7 @@ Foam::sparHost::sparHost
     check(spar_session_set_log(session_, tell, nullptr));
     checkCase(spar_case_read(caseFile.c_str(), "openfoam", session_, &scene_));
     checkCase(spar_case_member(scene_, member.c_str(), &wet));
+    checkCase(spar_case_make_aero(scene_, Pstream::myProcNo()));
     checkCase(spar_case_check(scene_));
     check(spar_fluid_create(wet, "openfoam", &surface_));
     check(spar_fluid_set_motion_nodes(surface_, x0_.size(), triples(x0_)));
@@ -115,6 +116,7 @@ Foam::tmp<Foam::vectorField> Foam::sparHost::solve()
 {
     const stopwatch watch(spar_);
     check(spar_step_solve(session_));
+    checkCase(spar_case_blow(scene_));
     check(spar_fluid_pull_motion(surface_, 1, triples(x_), nullptr));
     return x_ - x0_;
 }
