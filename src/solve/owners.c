@@ -15,7 +15,7 @@
    An iteration of Newton: a node and its six unknowns, a quadrature point, a node that a point sees, an entry of a
    row of the band; a linear or modal member's: a node, an entry of its matrices; a rigid body; a joint, with what
    remains of the bodies it ties. Newton takes some iterations where a linear member takes one solution. */
-static const double NODE = 3500, POINT = 235, POINT_NODE = 26, ENTRY = 1.25, FRAME_NODE = 3200, FRAME_ENTRY = 2.75,
+static const double NODE = 2500, POINT = 390, POINT_NODE = 11, ENTRY = 0.87, FRAME_NODE = 3200, FRAME_ENTRY = 2.75,
                     RIGID = 5000, JOINT = 22000, NEWTON = 2.5;
 
 double spari_member_expected(const spar_member *m) {
