@@ -56,10 +56,10 @@ function(spar_add_test file label timeout)
 endfunction()
 
 # spar_add_ranks(<target> <label> <timeout> [arguments]): the program of a target under 1, 2 and 4 ranks; where sums
-# have to have the same bits, under 3 and 7 too
+# have to have the same bits, and for files, under 3 and 7 too
 function(spar_add_ranks target label timeout)
   set(counts 1 2 4)
-  if(target MATCHES "_sums$")
+  if(target MATCHES "_(sums|save)$")
     set(counts 1 2 3 4 7)
   endif()
   foreach(ranks IN LISTS counts)

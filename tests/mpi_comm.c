@@ -55,6 +55,25 @@ static void sums(void **state) {
     assert_int_equal(spari_comm_sum(ranks, x, 0, SPAR_OK, text, sizeof text), SPAR_OK); /* nothing but the status */
 }
 
+/* From each rank to each other in turn, in one message or several; who is neither of the two makes no call. */
+static void moves(void **state) {
+    (void)state;
+    char text[SPARI_MESSAGE_SIZE] = "";
+    int most = ranks->most;
+    for (int k = 0; k < size * size; k++) {
+        int from = k / size, to = k % size;
+        int64_t data[3] = {10 * rank, 10 * rank + 1, 10 * rank + 2};
+        ranks->most = k % 2 ? most : 7;
+        if (rank == from || rank == to) {
+            assert_int_equal(spari_comm_move(ranks, from, to, data, sizeof data, text, sizeof text), SPAR_OK);
+        }
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(data[i], 10 * (rank == to ? from : rank) + i);
+        }
+    }
+    ranks->most = most;
+}
+
 /* The bits of a sum that rounds are the same on all ranks. */
 static void same_bits(void **state) {
     (void)state;
@@ -296,7 +315,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(shares),    cmocka_unit_test(different_calls),
         cmocka_unit_test(arguments), cmocka_unit_test(refused_on_one_rank),
         cmocka_unit_test(gone),      cmocka_unit_test(parts),
-        cmocka_unit_test(pieces),
+        cmocka_unit_test(pieces),    cmocka_unit_test(moves),
     };
     char text[SPARI_MESSAGE_SIZE] = "";
     int failed, worst = 0;

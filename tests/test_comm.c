@@ -27,6 +27,7 @@ static void alone(void **state) {
     assert_true(x[0] == 1 && x[1] == 2 && x[2] == 3);
     assert_int_equal(spari_comm_sum(c, x, 3, SPAR_ERR_USER, text, sizeof text), SPAR_ERR_USER);
     assert_int_equal(spari_comm_share(c, x, first, SPAR_ERR_USER, text, sizeof text), SPAR_ERR_USER);
+    assert_int_equal(spari_comm_move(c, 0, 0, x, sizeof x, text, sizeof text), SPAR_OK);
     assert_string_equal(text, "own text");
     spari_comm_destroy(&c);
     assert_null(c);

@@ -972,7 +972,8 @@ SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, cons
    dt, and the parts' impulse is kept. Loads that are known at t^{n+1} itself: spar_fluid_push_forces. Not before the
    first step; otherwise as that. theta: in, in (0, 1], rising from push to push; one that does not rise begins anew
    (the next iteration)
-   SPAR_ERR_UNSUPPORTED: on several ranks with spar_session_set_reproducible, whose sums such loads have not. */
+   SPAR_ERR_UNSUPPORTED: on several ranks with spar_session_set_reproducible: (e - e^n) / 2 would be half of a sum, and
+   sums that are the same in any order are of whole multiples, which cannot be halved. */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The host's model has failed on this rank: there are no loads of this fluid, for the reason given. spar_step_check (or
    the call that runs the step, or the first spar_step_begin) then fails on all ranks unless a good push follows, with
@@ -1101,14 +1102,16 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, joints with
    their springs, solvers, the fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with
    the same bits. Collective.
-     path: in; rank 0 writes and reads; on the other ranks it must be given and is not used
+     path: in, rank 0's; on the other ranks it must be given and is not used. Ranks that see rank 0's file write and read
+           their own parts of it, all at the same time; if any does not, all goes through rank 0, piece by piece, to the
+           same bytes. No rank has more in memory than what is its own, twice
    save: the file is written under path.new, flushed and renamed: there is always a whole one, and what a killed process
    has left at path.new goes with the next save. Where path is a symbolic link, all this happens where it leads, and the
    link stays; a file with several hard links is replaced under this name only; mode and owner stay as far as the system
    allows. What is no file (a pipe, a device, a folder) is SPAR_ERR_IO and stays; so is a file that another process is
    writing. load: into a session with the same members, committed, the same joints, and the same fluids, mapped, by
    name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them
-   by their reference places. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut
+   by their reference places, to 1e-9 of the member's length. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut
    off or damaged or cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it
    was. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);

@@ -7,6 +7,7 @@
 #define SPARI_FILE_H
 
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef struct spari_file {
@@ -21,6 +22,13 @@ int spari_file_begin(spari_file *file, const char *path, const char *suffix, cha
 /* Closes and renames; or, after a failure of this or of what was written, removes. safe: on the disc before it answers.
    Answers as above. */
 int spari_file_end(spari_file *file, int safe, char *why, size_t size);
+/* Bytes of a file that is being written into its temporary one, or from it, by another process than the one that began
+   it: where no other writes, and on the disc when it answers. Answer as above. */
+int spari_file_put_part(const char *temporary, int64_t offset, const void *data, size_t n, char *why, size_t size);
+int spari_file_get_part(const char *temporary, int64_t offset, void *data, size_t n, char *why, size_t size);
+/* For a while others may lock it; hold: again nobody but this process, before the end. 0: another process has it. */
+void spari_file_release(spari_file *file);
+int spari_file_hold(spari_file *file);
 /* Closes and removes instead. */
 void spari_file_drop(spari_file *file);
 

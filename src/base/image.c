@@ -1,7 +1,6 @@
-/* The words of a saved session in memory, written to a file and read from it with a check sum. */
+/* The words of a saved session: in memory, and piece by piece to a file and from it, with a check sum. */
 #include "image.h"
 
-#include "../base/file.h"
 #include "status.h"
 
 #include <errno.h>
@@ -12,7 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { VERSION = 6, HEAD_BYTES = 24, CHECK_BYTES = 8 };
+/* A file is the heading, the words, and their check sum, which is of all before it. */
+enum { VERSION = 6, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
 
 static const char magic[8] = {'s', 'p', 'a', 'r', '-', 'r', 'u', 'n'};
 
@@ -23,21 +23,26 @@ void spari_image_free(spari_image *image) {
     *image = (spari_image){0};
 }
 
-void spari_image_put(spari_image *image, const void *words, int64_t n) {
+uint64_t *spari_image_add(spari_image *image, int64_t n) {
     if (image->count + n > image->room) {
-        int64_t room = 2 * (image->count + n);
-        uint64_t *more = realloc(image->word, (size_t)room * sizeof *more);
+        int64_t room = image->count + n, more_room = room + room / 4;
+        uint64_t *more = realloc(image->word, (size_t)more_room * sizeof *more);
         if (!more) {
             image->failed = 1;
-            return;
+            return NULL;
         }
         image->word = more;
-        image->room = room;
-    }
-    if (n > 0) {
-        memcpy(image->word + image->count, words, (size_t)n * sizeof *image->word);
+        image->room = more_room;
     }
     image->count += n;
+    return image->word + image->count - n;
+}
+
+void spari_image_put(spari_image *image, const void *words, int64_t n) {
+    uint64_t *to = n > 0 ? spari_image_add(image, n) : NULL;
+    if (to) {
+        memcpy(to, words, (size_t)n * sizeof *to);
+    }
 }
 
 void spari_image_put_int(spari_image *image, int64_t value) {
@@ -94,19 +99,57 @@ static uint64_t get_word(const unsigned char *from) {
     return word;
 }
 
-static uint64_t crc64(const unsigned char *data, size_t n) {
-    uint64_t table[256], crc = ~UINT64_C(0);
+void spari_words_to_disc(uint64_t *words, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        put_word((unsigned char *)(words + i), words[i]);
+    }
+}
+
+static void words_from_disc(uint64_t *words, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        words[i] = get_word((const unsigned char *)(words + i));
+    }
+}
+
+/* ---- the check sum ---- */
+
+static const uint64_t crc_polynomial = UINT64_C(0xC96C5795D7870F42); /* reflected: the highest bit is x^0 */
+
+uint64_t spari_check_bytes(uint64_t sum, const void *data, size_t n) {
+    const unsigned char *byte = data;
+    uint64_t table[256], crc = ~sum;
     for (uint64_t i = 0; i < 256; i++) {
         uint64_t c = i;
         for (int k = 0; k < 8; k++) {
-            c = (c >> 1) ^ (c & 1 ? UINT64_C(0xC96C5795D7870F42) : 0);
+            c = (c >> 1) ^ (c & 1 ? crc_polynomial : 0);
         }
         table[i] = c;
     }
     for (size_t i = 0; i < n; i++) {
-        crc = (crc >> 8) ^ table[(crc ^ data[i]) & 0xff];
+        crc = (crc >> 8) ^ table[(crc ^ byte[i]) & 0xff];
     }
     return ~crc;
+}
+
+/* Of polynomials, modulo that of the check sum. */
+static uint64_t multiply_polynomials(uint64_t a, uint64_t b) {
+    uint64_t product = 0;
+    for (uint64_t bit = UINT64_C(1) << 63; bit; bit >>= 1) {
+        product ^= a & bit ? b : 0;
+        b = (b >> 1) ^ (b & 1 ? crc_polynomial : 0);
+    }
+    return product;
+}
+
+/* A sum is the remainder of its bytes as a polynomial, but for ones before and behind, which cancel: n bytes behind it
+   multiply it by x^(8 n). */
+uint64_t spari_check_join(uint64_t first, uint64_t second, uint64_t n) {
+    uint64_t power = UINT64_C(1) << 55; /* x^8, x^16, x^32, ... */
+    for (; n > 0; n >>= 1) {
+        first = n & 1 ? multiply_polynomials(power, first) : first;
+        power = multiply_polynomials(power, power);
+    }
+    return first ^ second;
 }
 
 /* ---- files ---- */
@@ -117,29 +160,89 @@ static int io_failure(char *why, size_t size, const char *what, const char *path
     return reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO;
 }
 
-int spari_image_write(const spari_image *image, const char *path, char *why, size_t size) {
-    size_t n = HEAD_BYTES + 8 * (size_t)image->count;
-    unsigned char *bytes = malloc(n + CHECK_BYTES);
-    spari_file file;
-    if (!bytes) {
-        (void)snprintf(why, size, "no memory for what goes into '%s'", path);
-        return SPAR_ERR_MEMORY;
+/* ---- to a file ---- */
+
+static void put_summed(spari_saving *saving, const void *bytes, size_t n) {
+    if (fwrite(bytes, 1, n, saving->file.stream) != n && saving->reason == 0) { /* told at the end */
+        saving->reason = errno ? errno : EIO;
     }
-    memcpy(bytes, magic, sizeof magic);
-    put_word(bytes + 8, VERSION);
-    put_word(bytes + 16, (uint64_t)image->count);
-    for (int64_t i = 0; i < image->count; i++) {
-        put_word(bytes + HEAD_BYTES + 8 * i, image->word[i]);
+    saving->sum = spari_check_bytes(saving->sum, bytes, n);
+}
+
+int spari_saving_begin(spari_saving *saving, const char *path, int64_t count, char *why, size_t size) {
+    unsigned char head[HEAD_BYTES];
+    *saving = (spari_saving){.sum = 0};
+    SPARI_TRY(spari_file_begin(&saving->file, path, ".new", why, size));
+    memcpy(head, magic, sizeof magic);
+    put_word(head + 8, VERSION);
+    put_word(head + 16, (uint64_t)count);
+    put_summed(saving, head, sizeof head);
+    return SPAR_OK;
+}
+
+void spari_saving_put(spari_saving *saving, const uint64_t *words, int64_t n) {
+    put_summed(saving, words, 8 * (size_t)n);
+}
+
+static int64_t offset_of_word(int64_t word) {
+    return HEAD_BYTES + 8 * word;
+}
+
+int spari_saving_mark(spari_saving *saving, int64_t count, uint64_t mark) {
+    unsigned char bytes[CHECK_BYTES];
+    FILE *f = saving->file.stream;
+    long here = ftell(f);
+    put_word(bytes, mark);
+    return here >= 0 && fseeko(f, (off_t)offset_of_word(count), SEEK_SET) == 0 &&
+           fwrite(bytes, 1, sizeof bytes, f) == sizeof bytes && fseek(f, here, SEEK_SET) == 0 && fsync(fileno(f)) == 0;
+}
+
+int spari_saving_is_marked(const char *temporary, int64_t count, uint64_t mark) {
+    unsigned char bytes[CHECK_BYTES];
+    char why[2];
+    return spari_file_get_part(temporary, offset_of_word(count), bytes, sizeof bytes, why, sizeof why) == SPAR_OK &&
+           get_word(bytes) == mark;
+}
+
+int spari_saving_put_part(const char *temporary, int64_t at, int64_t n, const uint64_t *words, char *why, size_t size) {
+    return spari_file_put_part(temporary, offset_of_word(at), words, 8 * (size_t)n, why, size);
+}
+
+int spari_saving_has_part(const char *temporary, int64_t at, int64_t n, uint64_t sum) {
+    enum { PIECE = 1 << 12 };
+    uint64_t words[PIECE], seen = 0;
+    char why[2];
+    for (int64_t i = 0; i < n; i += PIECE) {
+        size_t bytes = 8 * (size_t)(n - i < PIECE ? n - i : PIECE);
+        if (spari_file_get_part(temporary, offset_of_word(at + i), words, bytes, why, sizeof why) != SPAR_OK) {
+            return 0;
+        }
+        seen = spari_check_bytes(seen, words, bytes);
     }
-    put_word(bytes + n, crc64(bytes, n));
-    int status = spari_file_begin(&file, path, ".new", why, size);
-    if (status == SPAR_OK) {
-        (void)fwrite(bytes, 1, n + CHECK_BYTES, file.stream); /* how that went is asked at the end */
-        status = spari_file_end(&file, 1, why, size);
+    return seen == sum;
+}
+
+void spari_saving_skip(spari_saving *saving, int64_t n, uint64_t sum) {
+    saving->sum = spari_check_join(saving->sum, sum, 8 * (uint64_t)n);
+    saving->skipped = 1;
+}
+
+int spari_saving_end(spari_saving *saving, int64_t count, char *why, size_t size) {
+    unsigned char bytes[CHECK_BYTES];
+    FILE *f = saving->file.stream;
+    put_word(bytes, saving->sum);
+    if (!saving->skipped || fseeko(f, (off_t)offset_of_word(count), SEEK_SET) == 0) {
+        put_summed(saving, bytes, sizeof bytes);
+        errno = saving->reason;
+        return spari_file_end(&saving->file, 1, why, size);
     }
-    free(bytes);
+    errno = saving->reason ? saving->reason : errno;
+    int status = io_failure(why, size, "cannot write", saving->file.place);
+    spari_file_drop(&saving->file);
     return status;
 }
+
+/* ---- from a file ---- */
 
 /* got: of the head, so many bytes; n: of the file. */
 static int check_head(const char *path, const unsigned char *head, size_t got, uint64_t n, char *why, size_t size) {
@@ -178,59 +281,84 @@ static int measure_file(FILE *f, const char *path, uint64_t *n, char *why, size_
     return SPAR_OK;
 }
 
-/* All of a file in memory, whose heading must be right and fit its size; n: its size. */
-static int slurp(FILE *f, const char *path, unsigned char **bytes, size_t *n, char *why, size_t size) {
+static int no_memory_to_read(const char *path, char *why, size_t size) {
+    (void)snprintf(why, size, "no memory to read '%s'", path);
+    return SPAR_ERR_MEMORY;
+}
+
+/* Its heading must be right and fit its size. */
+static int read_heading(spari_loading *source, char *why, size_t size) {
     unsigned char head[HEAD_BYTES];
     uint64_t there = 0;
-    SPARI_TRY(measure_file(f, path, &there, why, size));
-    size_t got = fread(head, 1, sizeof head, f);
-    if (ferror(f)) {
-        return io_failure(why, size, "cannot read", path);
+    SPARI_TRY(measure_file(source->stream, source->path, &there, why, size));
+    size_t got = fread(head, 1, sizeof head, source->stream);
+    if (ferror(source->stream)) {
+        return io_failure(why, size, "cannot read", source->path);
     }
-    SPARI_TRY(check_head(path, head, got, there, why, size));
-    *n = (size_t)there;
-    *bytes = malloc(*n);
-    if (!*bytes) {
-        (void)snprintf(why, size, "no memory to read '%s'", path);
-        return SPAR_ERR_MEMORY;
+    SPARI_TRY(check_head(source->path, head, got, there, why, size));
+    source->count = (int64_t)get_word(head + 16);
+    return spari_loading_read(source, source->count, 1, &source->sum, why, size);
+}
+
+int spari_loading_open(spari_loading *source, const char *path, char *why, size_t size) {
+    *source = (spari_loading){.path = strdup(path)};
+    if (!source->path) {
+        return no_memory_to_read(path, why, size);
     }
-    memcpy(*bytes, head, sizeof head);
-    got = fread(*bytes + sizeof head, 1, *n - sizeof head, f);
-    if (got != *n - sizeof head) {
-        errno = ferror(f) ? errno : EIO; /* it has become shorter meanwhile */
-        return io_failure(why, size, "cannot read", path);
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would wait for somebody to write */
+    source->stream = fd >= 0 ? fdopen(fd, "rb") : NULL;
+    int status = SPAR_OK;
+    if (!source->stream) {
+        status = io_failure(why, size, "cannot read", path);
+        (void)(fd >= 0 && close(fd));
+    } else {
+        status = read_heading(source, why, size);
     }
-    if (get_word(*bytes + *n - CHECK_BYTES) != crc64(*bytes, *n - CHECK_BYTES)) {
-        (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
-        return SPAR_ERR_IO;
+    if (status != SPAR_OK) {
+        spari_loading_close(source);
+    }
+    return status;
+}
+
+void spari_loading_close(spari_loading *source) {
+    if (source->stream) {
+        (void)fclose(source->stream);
+    }
+    free(source->path);
+    *source = (spari_loading){.stream = NULL};
+}
+
+/* Bytes as they are. */
+static int read_raw(spari_loading *source, int64_t offset, size_t n, void *bytes, char *why, size_t size) {
+    errno = 0;
+    if (fseeko(source->stream, (off_t)offset, SEEK_SET) != 0 || fread(bytes, 1, n, source->stream) != n) {
+        errno = errno ? errno : EIO; /* it has become shorter meanwhile */
+        return io_failure(why, size, "cannot read", source->path);
     }
     return SPAR_OK;
 }
 
-int spari_image_read(spari_image *image, const char *path, char *why, size_t size) {
-    unsigned char *bytes = NULL;
-    size_t n = 0;
-    *image = (spari_image){0};
-    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would wait for somebody to write */
-    FILE *f = fd >= 0 ? fdopen(fd, "rb") : NULL;
-    if (!f) {
-        int status = io_failure(why, size, "cannot read", path);
-        (void)(fd >= 0 && close(fd));
-        return status;
+int spari_loading_read(spari_loading *source, int64_t at, int64_t n, uint64_t *words, char *why, size_t size) {
+    SPARI_TRY(read_raw(source, offset_of_word(at), 8 * (size_t)n, words, why, size));
+    words_from_disc(words, n);
+    return SPAR_OK;
+}
+
+int spari_loading_sum(spari_loading *source, int part, int parts, uint64_t *sum, uint64_t *n, char *why, size_t size) {
+    unsigned char bytes[1 << 14];
+    int64_t words = HEAD_WORDS + source->count, each = words / parts, more = words % parts;
+    int64_t at = 8 * (part * each + (part < more ? part : more)), end = at + 8 * (each + (part < more));
+    *sum = 0, *n = (uint64_t)(end - at);
+    while (at < end) {
+        size_t piece = end - at < (int64_t)sizeof bytes ? (size_t)(end - at) : sizeof bytes;
+        SPARI_TRY(read_raw(source, at, piece, bytes, why, size));
+        *sum = spari_check_bytes(*sum, bytes, piece);
+        at += (int64_t)piece;
     }
-    int status = slurp(f, path, &bytes, &n, why, size);
-    if (status == SPAR_OK) {
-        image->room = image->count = (int64_t)get_word(bytes + 16);
-        image->word = spari_zalloc(image->count, sizeof *image->word);
-        for (int64_t i = 0; image->word && i < image->count; i++) {
-            image->word[i] = get_word(bytes + HEAD_BYTES + 8 * i);
-        }
-        if (!image->word) {
-            (void)snprintf(why, size, "no memory to read '%s'", path);
-            status = SPAR_ERR_MEMORY;
-        }
-    }
-    (void)fclose(f);
-    free(bytes);
-    return status;
+    return SPAR_OK;
+}
+
+int spari_loading_refuse(const char *path, char *why, size_t size) {
+    (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
+    return SPAR_ERR_IO;
 }

@@ -100,5 +100,7 @@ int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, in
 
 /* Rank 0's data[bytes] goes to all the others. */
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
+/* data[bytes] goes from one rank to another; these two make the call, and for others it is none. */
+int spari_comm_move(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size);
 
 #endif

@@ -301,6 +301,20 @@ static int mpi_broadcast(spari_comm *comm, void *data, int64_t bytes, char *mess
     return SPAR_OK;
 }
 
+static int mpi_move(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size) {
+    mpi_comm *c = (mpi_comm *)comm;
+    SPARI_TRY(check_up(c, message, size));
+    for (int64_t at = 0; at < bytes && from != to; at += comm->most) {
+        int part = upto_most(comm, bytes - at);
+        if (comm->rank == from) {
+            TRY_MPI(MPI_Send((char *)data + at, part, MPI_BYTE, to, 0, c->handle));
+        } else if (comm->rank == to) {
+            TRY_MPI(MPI_Recv((char *)data + at, part, MPI_BYTE, from, 0, c->handle, MPI_STATUS_IGNORE));
+        }
+    }
+    return SPAR_OK;
+}
+
 /* ---- parts of the ranks ---- */
 
 /* Calls under way. Ranks make them in one order, so that waiting for the first ones before the last ones are made keeps
@@ -369,9 +383,8 @@ static int mpi_spread(spari_comm *comm, const spari_piece *pieces, int count, in
 
 static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
 
-static const spari_comm_ops mpi_ops = {mpi_destroy,      mpi_agree,    mpi_enter, mpi_sum,
-                                       mpi_prepare_bins, mpi_sum_bins, mpi_share, mpi_broadcast,
-                                       mpi_split,        mpi_collect,  mpi_spread};
+static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree,     mpi_enter, mpi_sum,   mpi_prepare_bins, mpi_sum_bins,
+                                       mpi_share,   mpi_broadcast, mpi_move,  mpi_split, mpi_collect,      mpi_spread};
 
 /* ---- create ---- */
 

@@ -14,6 +14,7 @@ typedef struct spari_comm_ops {
     int (*sum_bins)(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size);
     int (*share)(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
     int (*broadcast)(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
+    int (*move)(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size);
     int (*split)(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
     int (*collect)(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size);
     int (*spread)(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size);

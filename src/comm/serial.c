@@ -85,3 +85,7 @@ int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, in
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
     return comm->ops ? comm->ops->broadcast(comm, data, bytes, message, size) : SPAR_OK;
 }
+
+int spari_comm_move(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size) {
+    return comm->ops ? comm->ops->move(comm, from, to, data, bytes, message, size) : SPAR_OK;
+}

@@ -68,11 +68,24 @@ int spari_fluid_has_sections(const spar_fluid *fluid);
 /* State for save and load, as doubles: loads and kept node forces, with the places of these nodes. */
 int64_t spari_fluid_state_size(const spar_fluid *fluid);
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state);
-int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count);
-/* From the states of the fluids of this name and member on all ranks of the saved run (or this one alone, where the
-   ranks are the same). ready: whether that can be done, with the memory for it; load: does it. The nodal loads, which
-   are a sum, go to the fluid that `takes_loads`; node forces are found by the nodes' reference places. */
-int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const double *const *states);
-void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states, int takes_loads);
+/* Of its first SPARI_FLUID_HEAD words, as many as there are in all, on a member: how many go before what is node by
+   node, and how many nodes that has. 0: it is none. */
+enum { SPARI_FLUID_HEAD = 14 };
+int spari_fluid_is_state(const spar_member *member, const double *head, int64_t count, int64_t *loads, int64_t *nodes);
+
+/* Loads a fluid from the states of those of its name and member on all ranks of the saved run (or of one, where the
+   ranks are the same), piece by piece. take: by their heads, whether that can be done, with the memory for it. */
+int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const double *const *heads);
+/* The words of a state up to its nodes; the nodal loads, which are a sum, go to the fluid that `takes_loads`. 0:
+ * broken. */
+int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loads);
+/* Of the n nodes of a state so many, with places and forces, rows[5][count][3]: found by their reference places. */
+void spari_fluid_take_nodes(spar_fluid *fluid, int64_t n, int64_t first, int64_t count, const double *rows);
+/* The first node here that was not among them, -1: all were; and a refusal, if one was not. */
+int64_t spari_fluid_untaken(spar_fluid *fluid);
+int spari_fluid_taken(spar_fluid *fluid, const char *call);
+/* What was taken is in force, after that; or it was not to be. */
+void spari_fluid_load(spar_fluid *fluid);
+void spari_fluid_give_up(spar_fluid *fluid);
 
 #endif

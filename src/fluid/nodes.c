@@ -71,6 +71,20 @@ void spari_history_free(spari_history *h) {
     free(h);
 }
 
+void spari_taking_free(spari_taking *t) {
+    if (!t) {
+        return;
+    }
+    spari_history_free(t->history);
+    free(t->load);
+    free(t->bins);
+    free(t->end);
+    free(t->places);
+    free(t->sorted);
+    free(t->found);
+    free(t);
+}
+
 spari_history *spari_history_create(int64_t n, int order) {
     spari_history *h = spari_zalloc(1, sizeof *h);
     if (!h) {
@@ -92,7 +106,7 @@ void spari_fluid_free(spar_fluid *fluid) {
     spari_node_set_clear(&fluid->set[0]);
     spari_node_set_clear(&fluid->set[1]);
     spari_history_free(fluid->history);
-    spari_history_free(fluid->history_next);
+    spari_taking_free(fluid->taking);
     double *all[] = {fluid->modal, fluid->field[0], fluid->field[1], fluid->reference,
                      fluid->work,  fluid->load,     fluid->load_new, fluid->load_accepted};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {

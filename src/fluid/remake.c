@@ -105,7 +105,8 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
     f->bins[0] = f->bins[1] = f->bins[2] = NULL; /* the values serve */
-    f->history = f->history_next = NULL;
+    f->history = NULL;
+    f->taking = NULL;
     if (same_nodes) {
         int64_t n = 6 * f->member->nodes;
         f->load = spari_zalloc(n, sizeof(double));

@@ -1,4 +1,5 @@
-/* A fluid's part of save and load. */
+/* A fluid's part of save and load: its state as it is written, and one put together again from states, piece by piece,
+   that all ranks have before any takes it. */
 #include "state.h"
 
 #include "../base/status.h"
@@ -12,25 +13,25 @@
    them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6]; then, if node forces are
    kept, the nodes' places, their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not
    look so far back. */
-enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = S_AUDIT + 8 };
+enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = SPARI_FLUID_HEAD };
 
 enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of parts */
 
 enum { IS_MAPPED = 1, HAS_BINS = 2, /* of S_MAPPED */ BIN_WORDS = sizeof(spari_bins) / sizeof(double) };
 
 /* Words of load and load_accepted, with their sums. */
-static int64_t state_pair(const spar_fluid *fluid, const double *head) {
-    int64_t pair = head[S_MAPPED] != 0 ? 12 * fluid->member->nodes : 0;
+static int64_t state_pair(const spar_member *m, const double *head) {
+    int64_t pair = head[S_MAPPED] != 0 ? 12 * m->nodes : 0;
     return head[S_MAPPED] == HAS_BINS ? pair * (1 + BIN_WORDS) : pair;
 }
 
-/* Words of all nodal loads of a state. */
-static int64_t state_loads(const spar_fluid *fluid, const double *head) {
-    return state_pair(fluid, head) + (head[S_PARTS] != 0 ? 12 * fluid->member->nodes : 0);
+/* Words of the head and all nodal loads of a state. */
+static int64_t state_loads(const spar_member *m, const double *head) {
+    return S_HEAD + state_pair(m, head) + (head[S_PARTS] != 0 ? 12 * m->nodes : 0);
 }
 
-static int64_t state_size(const spar_fluid *fluid, const double *head) {
-    return S_HEAD + state_loads(fluid, head) + (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
+static int64_t state_size(const spar_member *m, const double *head) {
+    return state_loads(m, head) + (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
 }
 
 static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
@@ -49,7 +50,7 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
 int64_t spari_fluid_state_size(const spar_fluid *fluid) {
     double head[S_HEAD];
     state_head(fluid, head);
-    return state_size(fluid, head);
+    return state_size(fluid->member, head);
 }
 
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
@@ -92,17 +93,107 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     return SPAR_OK;
 }
 
+/* ---- what is being put together ---- */
+
+void spari_fluid_give_up(spar_fluid *fluid) {
+    spari_taking_free(fluid->taking);
+    fluid->taking = NULL;
+}
+
+int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count, int64_t *loads, int64_t *nodes) {
+    if (!spari_is_count(head[S_NODES]) || !spari_is_count(head[S_PUSHES]) || !spari_is_count(head[S_PARTS]) ||
+        head[S_PARTS] > PARTS_BEFORE + PARTS_NOW || count != state_size(m, head)) {
+        return 0;
+    }
+    *loads = state_loads(m, head);
+    *nodes = head[S_KEPT] != 0 ? (int64_t)head[S_NODES] : 0;
+    return 1;
+}
+
+/* What they come to, but for the loads. */
+static void sum_heads(spari_taking *t, int count, const double *const *heads) {
+    for (int k = 0; k < count; k++) {
+        const double *head = heads[k];
+        t->head[S_KEPT] = t->head[S_KEPT] != 0 || head[S_KEPT] != 0;
+        t->head[S_PUSHED] = t->head[S_PUSHED] != 0 || head[S_PUSHED] != 0;
+        t->head[S_PUSHES] += head[S_PUSHES];
+        t->head[S_MAPPED] = t->head[S_MAPPED] != 0 || head[S_MAPPED] != 0;
+        t->head[S_PARTS] = (int)t->head[S_PARTS] | (int)head[S_PARTS];
+        memcpy(t->head + S_AUDIT, head + S_AUDIT, sizeof(double[S_HEAD - S_AUDIT]));
+    }
+}
+
+/* Room for nodal loads. */
+static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) {
+    int64_t n = 12 * fluid->member->nodes;
+    if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
+    }
+    if (fluid->load && fluid->member->session->reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
+    }
+    t->load = spari_zalloc(n, sizeof *t->load);
+    t->bins = fluid->bins[0] ? spari_zalloc(n, sizeof *t->bins) : NULL;
+    t->end = fluid->parts ? spari_zalloc(n, sizeof *t->end) : NULL;
+    if (!t->load || (fluid->bins[0] && !t->bins) || (fluid->parts && !t->end)) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for its loads");
+    }
+    return SPAR_OK;
+}
+
+/* Nodes are sorted along a direction in which no two of a grid stand at one height. */
+static double height_of(const double *place) {
+    return place[0] + 0.7548776662466927 * place[1] + 0.5698402909980532 * place[2];
+}
+
+static int compare_heights(const void *a, const void *b) {
+    const double *const *x = a, *const *y = b;
+    double left = height_of(*x), right = height_of(*y);
+    return left < right ? -1 : left > right ? 1 : *x < *y ? -1 : *x > *y;
+}
+
+/* Room for node forces, and what finds them. */
+static int take_nodes_room(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
+    t->history = spari_history_create(s->n, fluid->member->session->predictor);
+    t->places = spari_fluid_places(fluid, s);
+    t->sorted = spari_zalloc(s->n, sizeof *t->sorted);
+    t->found = spari_zalloc(s->n, 1);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, t->history && t->places && t->sorted && t->found, SPAR_ERR_MEMORY,
+                           "no memory for the node forces");
+    for (int64_t i = 0; i < s->n; i++) {
+        t->sorted[i] = t->places + 3 * i;
+    }
+    qsort(t->sorted, (size_t)s->n, sizeof *t->sorted, compare_heights);
+    return SPAR_OK;
+}
+
+int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const double *const *heads) {
+    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
+    spari_fluid_give_up(fluid);
+    spari_taking *t = fluid->taking = spari_zalloc(1, sizeof *t);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, t, SPAR_ERR_MEMORY, "no memory to load it");
+    sum_heads(t, count, heads);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, t->head[S_MAPPED] == 0 || fluid->load, SPAR_ERR_STATE,
+                           "it is not mapped yet; give its nodes and call spar_fluid_map first");
+    SPARI_TRY(take_load_room(fluid, call, t));
+    SPARI_FLUID_REQUIRE_OF(
+        fluid, call, !fluid->history || !s || s->n == 0 || t->head[S_KEPT] != 0, SPAR_ERR_ARGUMENT,
+        "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
+    return t->head[S_KEPT] != 0 && s ? take_nodes_room(fluid, call, t, s) : SPAR_OK;
+}
+
+/* ---- loads ---- */
+
 /* The sums of a state for load (0) or load_accepted (1), copied: a state need not lie where a whole number may. */
-static void state_bins(const spar_fluid *fluid, const double *state, int which, int64_t i, spari_bins *sum) {
-    int64_t loads = 6 * fluid->member->nodes;
-    memcpy(sum, state + S_HEAD + 2 * loads + (which * loads + i) * BIN_WORDS, sizeof *sum);
+static void state_bins(const spar_member *m, const double *state, int64_t i, spari_bins *sum) {
+    memcpy(sum, state + S_HEAD + 12 * m->nodes + i * BIN_WORDS, sizeof *sum);
 }
 
 /* Whether the sums have bins that numbers can have. */
-static int are_bins(const spar_fluid *fluid, const double *state) {
+static int are_bins(const spar_member *m, const double *state) {
     spari_bins sum;
-    for (int64_t i = 0; state[S_MAPPED] == HAS_BINS && i < 12 * fluid->member->nodes; i++) {
-        state_bins(fluid, state, 0, i, &sum);
+    for (int64_t i = 0; state[S_MAPPED] == HAS_BINS && i < 12 * m->nodes; i++) {
+        state_bins(m, state, i, &sum);
         if (sum.top < 0 || sum.top > spari_bins_top(DBL_MAX)) {
             return 0;
         }
@@ -110,236 +201,189 @@ static int are_bins(const spar_fluid *fluid, const double *state) {
     return 1;
 }
 
-int spari_fluid_is_state(const spar_fluid *fluid, const double *state, int64_t count) {
-    return count >= S_HEAD && spari_is_count(state[S_NODES]) && spari_is_count(state[S_PUSHES]) &&
-           spari_is_count(state[S_PARTS]) && state[S_PARTS] <= PARTS_BEFORE + PARTS_NOW &&
-           count == state_size(fluid, state) && are_bins(fluid, state);
+/* x[n] of a state more; of the first one as it is: 0 + -0 is not -0. */
+static void add_of_state(double *sum, const double *x, int64_t n, int first) {
+    for (int64_t i = 0; i < n; i++) {
+        sum[i] = first ? x[i] : sum[i] + x[i];
+    }
 }
 
-/* Of a state; 0 where their forces are not in it. */
-static int64_t kept_nodes(const double *state) {
-    return state[S_KEPT] != 0 ? (int64_t)state[S_NODES] : 0;
-}
-
-/* Where the places of a state begin. */
-static const double *state_places(const spar_fluid *fluid, const double *state) {
-    return state + S_HEAD + state_loads(fluid, state);
-}
-
-static int compare_places(const void *a, const void *b) {
-    const double *const *x = a, *const *y = b;
-    return memcmp(*x, *y, 3 * sizeof **x);
-}
-
-/* Whether the places are those of the nodes here, in their order, but for what another processor rounds otherwise:
-   places are put together from feet and arms. */
-static int same_places(const spar_fluid *fluid, const double *a, const double *b, int64_t n) {
-    double room = 1e-9 * spari_member_length(fluid->member);
-    for (int64_t i = 0; i < 3 * n; i++) {
-        if (!(fabs(a[i] - b[i]) <= room + 1e-12 * fabs(b[i]))) {
-            return 0;
+/* As they were summed then. */
+static void add_bins_of_state(spari_taking *t, const spar_member *m, const double *state) {
+    spari_bins add;
+    for (int64_t i = 0; i < 12 * m->nodes; i++) {
+        if (state[S_MAPPED] == HAS_BINS) {
+            state_bins(m, state, i, &add);
+            spari_bins_merge(t->bins + i, &add);
+        } else {
+            spari_bins_add(t->bins + i, state[S_HEAD + i]);
         }
     }
+}
+
+int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loads) {
+    const spar_member *m = fluid->member;
+    spari_taking *t = fluid->taking;
+    int64_t n = 6 * m->nodes;
+    if (!are_bins(m, state)) {
+        return 0;
+    }
+    if (!takes_loads || state[S_MAPPED] == 0) {
+        return 1;
+    }
+    add_of_state(t->load, state + S_HEAD, 2 * n, t->added == 0);
+    if (t->bins) {
+        add_bins_of_state(t, m, state);
+    }
+    for (int which = 0; which < 2 && t->end; which++) { /* of a state without them, its loads */
+        const double *load = state + S_HEAD + (which == 0 ? n : 0), *ends = state + S_HEAD + state_pair(m, state);
+        int has = (int)state[S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW);
+        add_of_state(t->end + which * n, has ? ends + which * n : load, n, t->added == 0);
+    }
+    t->added++;
     return 1;
 }
 
-/* For each node the place of it in one of the states, or NULL where there is none: in the same order, or else bit by
-   bit the same. */
-static const double **find_nodes(const spar_fluid *fluid, int count, const double *const *states, const double *places,
-                                 int64_t n) {
-    int64_t total = 0, at = 0;
-    for (int k = 0; k < count; k++) {
-        total += kept_nodes(states[k]);
-    }
-    const double **sorted = spari_zalloc(total, sizeof *sorted), **found = spari_zalloc(n, sizeof *found);
-    if (!sorted || !found) {
-        free(sorted);
-        free(found);
-        return NULL;
-    }
-    for (int k = 0; k < count; k++) {
-        const double *x = state_places(fluid, states[k]);
-        for (int64_t i = 0; i < kept_nodes(states[k]); i++) {
-            sorted[at++] = x + 3 * i;
-        }
-    }
-    /* the same nodes in the same order, places that are there twice among them: no search */
-    if (count == 1 && total == n && (n == 0 || same_places(fluid, sorted[0], places, n))) {
-        memcpy(found, sorted, (size_t)n * sizeof *found);
-    } else {
-        qsort(sorted, (size_t)total, sizeof *sorted, compare_places);
-        for (int64_t i = 0; i < n; i++) {
-            const double *key = places + 3 * i;
-            const double **hit = bsearch(&key, sorted, (size_t)total, sizeof *sorted, compare_places);
-            found[i] = hit ? *hit : NULL;
-        }
-    }
-    free(sorted);
-    return found;
+/* ---- node forces ---- */
+
+/* How far apart the same place may be found: places are put together from feet and arms, which are rounded otherwise on
+   another processor, or in other company. */
+static double place_reach(const spar_fluid *fluid, const double *place) {
+    return 1e-9 * spari_member_length(fluid->member) +
+           1e-12 * fmax(fabs(place[0]), fmax(fabs(place[1]), fabs(place[2])));
 }
 
-/* Node forces from the states: to find (h NULL), or to copy. */
-static int take_forces(const spar_fluid *fluid, const char *call, int count, const double *const *states,
-                       spari_history *h) {
-    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
-    int copy = h != NULL;
-    double *places = spari_fluid_places(fluid, s);
-    const double **found = places ? find_nodes(fluid, count, states, places, s->n) : NULL;
-    int64_t missing = found ? -1 : s->n;
-    for (int64_t i = 0; found && i < s->n; i++) {
-        int64_t n = 0; /* of the state the node is in */
-        missing = !found[i] && missing < 0 ? i : missing;
-        for (int k = 0; k < count && found[i] && copy; k++) {
-            const double *x = state_places(fluid, states[k]);
-            n = found[i] >= x && found[i] < x + 3 * kept_nodes(states[k]) ? kept_nodes(states[k]) : n;
-        }
-        for (int k = 0; k < 4 && h; k++) {
-            double *to = k == 0 ? h->after : h->past[k - 1];
-            if (to) {
-                /* none is missing when they are copied. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker) */
-                memcpy(to + 3 * i, found[i] + 3 * n * (k + 1), 3 * sizeof *to);
-            }
+static double distance_between(const double *a, const double *b) {
+    return fmax(fabs(a[0] - b[0]), fmax(fabs(a[1] - b[1]), fabs(a[2] - b[2])));
+}
+
+/* The nearest node to this place, within reach of it, that has forces or has none yet; -1: there is none. */
+static int64_t find_node(const spar_fluid *fluid, const double *place, int found) {
+    const spari_taking *t = fluid->taking;
+    double nearest = place_reach(fluid, place), height = height_of(place), most = 3 * nearest;
+    int64_t low = 0, high = t->history->n, n = high, best = -1;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (height_of(t->sorted[middle]) < height - most) {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
     }
-    int ok = found != NULL;
-    free(places);
-    free(found);
-    if (!ok) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory to find the node forces");
+    for (; low < n && height_of(t->sorted[low]) <= height + most; low++) {
+        int64_t i = (t->sorted[low] - t->places) / 3;
+        double distance = distance_between(t->sorted[low], place);
+        if (t->found[i] == found && distance <= nearest && (best < 0 || distance < nearest)) {
+            best = i;
+            nearest = distance;
+        }
     }
-    if (missing >= 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, call,
-                                  "force node %lld is not in the saved run; load with the nodes it had",
-                                  (long long)missing);
+    return best;
+}
+
+static void put_forces(spari_taking *t, int64_t to, const double *const from[4]) {
+    for (int k = 0; k < 4; k++) {
+        double *row = k == 0 ? t->history->after : t->history->past[k - 1];
+        if (row) {
+            memcpy(row + 3 * to, from[k], 3 * sizeof *row);
+        }
     }
+    t->found[to] = 1;
+}
+
+void spari_fluid_take_nodes(spar_fluid *fluid, int64_t n, int64_t first, int64_t count, const double *rows) {
+    spari_taking *t = fluid->taking;
+    int64_t here = t->places ? t->history->n : 0;
+    for (int64_t i = 0; i < count && here > 0; i++) {
+        const double *place = rows + 3 * i, *own = n == here ? t->places + 3 * (first + i) : NULL;
+        /* the same nodes in the same order, places that are there twice among them: no search */
+        int alike = n == here && !t->found[first + i] && distance_between(place, own) <= place_reach(fluid, own);
+        int64_t to = alike ? first + i : find_node(fluid, place, 0);
+        if (to >= 0) {
+            put_forces(
+                t, to,
+                (const double *const[4]){place + 3 * count, place + 6 * count, place + 9 * count, place + 12 * count});
+        }
+    }
+}
+
+/* A node at a place that was there fewer times has the forces of another one there. */
+static int share_forces(spar_fluid *fluid, int64_t to) {
+    spari_taking *t = fluid->taking;
+    int64_t from = find_node(fluid, t->places + 3 * to, 1);
+    const double *all[4] = {NULL};
+    for (int k = 0; k < 4 && from >= 0; k++) {
+        const double *row = k == 0 ? t->history->after : t->history->past[k - 1];
+        all[k] = row ? row + 3 * from : NULL;
+    }
+    if (from >= 0) {
+        put_forces(t, to, all);
+    }
+    return from >= 0;
+}
+
+int64_t spari_fluid_untaken(spar_fluid *fluid) {
+    const spari_taking *t = fluid->taking;
+    for (int64_t i = 0; t->places && i < t->history->n; i++) {
+        if (!t->found[i] && !share_forces(fluid, i)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int spari_fluid_taken(spar_fluid *fluid, const char *call) {
+    int64_t i = spari_fluid_untaken(fluid);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, i < 0, SPAR_ERR_ARGUMENT,
+                           "force node %lld is not in the saved run; load with the nodes it had", (long long)i);
     return SPAR_OK;
 }
 
-int spari_fluid_ready(spar_fluid *fluid, const char *call, int count, const double *const *states) {
-    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
-    int kept = 0, mapped_then = 0, on = fluid->history != NULL;
-    spari_history_free(fluid->history_next); /* of a load that another rank could not do */
-    fluid->history_next = NULL;
-    for (int k = 0; k < count; k++) {
-        kept |= states[k][S_KEPT] != 0;
-        mapped_then |= states[k][S_MAPPED] != 0;
-    }
-    if (mapped_then && !fluid->load) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, call,
-                                  "it is not mapped yet; give its nodes and call spar_fluid_map first");
-    }
-    for (int k = 0; k < count; k++) {
-        if (states[k][S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
-            return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
-        }
-    }
-    if (fluid->load && fluid->member->session->reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
-    }
-    if (on && s && s->n > 0 && !kept) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_ARGUMENT, call,
-            "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
-    }
-    if (!kept || !s) {
-        return SPAR_OK;
-    }
-    SPARI_TRY(take_forces(fluid, call, count, states, NULL));
-    if (!on || fluid->history->n != s->n) { /* not in use before all ranks can load */
-        fluid->history_next = spari_history_create(s->n, fluid->member->session->predictor);
-        if (!fluid->history_next) {
-            return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for the node forces");
-        }
-    }
-    return SPAR_OK;
-}
+/* ---- in force ---- */
 
-/* Ends of parts, a sum over the states; of a state without them, its loads. */
-static void load_parts(spar_fluid *fluid, int count, const double *const *states, int takes_loads) {
+static void load_parts(spar_fluid *fluid) {
+    const spari_taking *t = fluid->taking;
     spari_parts *p = fluid->parts;
-    if (!p) {
-        return;
-    }
-    int64_t n = 6 * fluid->member->nodes;
-    int have = 0;
-    for (int k = 0; k < count; k++) {
-        have |= (int)states[k][S_PARTS];
-    }
+    int have = (int)t->head[S_PARTS];
     p->ended = (have & PARTS_BEFORE) != 0;
     p->theta = have & PARTS_NOW ? 1 : 0;
     p->plain = 0;
     for (int which = 0; which < 2; which++) {
-        memset(p->end[which], 0, (size_t)n * sizeof(double));
-        for (int k = 0; k < count && takes_loads; k++) {
-            const double *load = states[k] + S_HEAD + (which == 0 ? n : 0);
-            const double *end = (int)states[k][S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW)
-                                    ? states[k] + S_HEAD + state_pair(fluid, states[k]) + which * n
-                                    : load;
-            for (int64_t i = 0; i < n && states[k][S_MAPPED] != 0; i++) {
-                p->end[which][i] = k > 0 ? p->end[which][i] + end[i] : end[i];
-            }
-        }
+        int64_t n = 6 * fluid->member->nodes;
+        memcpy(p->end[which], t->end + which * n, (size_t)n * sizeof *t->end);
     }
 }
 
-/* The sum of the states' loads, as they were summed then. */
-static void load_bins(spar_fluid *fluid, int count, const double *const *states) {
+static void load_nodal(spar_fluid *fluid) {
+    const spari_taking *t = fluid->taking;
+    int64_t n = 6 * fluid->member->nodes;
     double *value[2] = {fluid->load, fluid->load_accepted};
     for (int which = 0; which < 2; which++) {
-        for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
-            spari_bins sum = {0}, add;
-            for (int k = 0; k < count; k++) {
-                if (states[k][S_MAPPED] == HAS_BINS) {
-                    state_bins(fluid, states[k], which, i, &add);
-                    spari_bins_merge(&sum, &add);
-                } else if (states[k][S_MAPPED] != 0) {
-                    spari_bins_add(&sum, states[k][S_HEAD + which * 6 * fluid->member->nodes + i]);
-                }
-            }
-            value[which][i] = spari_bins_value(&sum);
-            fluid->bins[2 * which][i] = sum;
+        memcpy(value[which], t->load + which * n, (size_t)n * sizeof *t->load);
+        for (int64_t i = 0; t->bins && i < n; i++) {
+            fluid->bins[2 * which][i] = t->bins[which * n + i];
+            value[which][i] = spari_bins_value(t->bins + which * n + i);
         }
     }
 }
 
-void spari_fluid_load(spar_fluid *fluid, int count, const double *const *states, int takes_loads) {
-    const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
-    size_t loads = fluid->load ? 6 * (size_t)fluid->member->nodes : 0;
-    int kept = 0, taken = 0;
-    fluid->pushes = 0;
+void spari_fluid_load(spar_fluid *fluid) {
+    spari_taking *t = fluid->taking;
+    fluid->pushes = (int64_t)t->head[S_PUSHES];
+    memcpy(fluid->audit, t->head + S_AUDIT, sizeof fluid->audit);
     spari_fluid_forget_refusal(fluid);
-    load_parts(fluid, count, states, takes_loads);
-    if (fluid->history_next) {
-        spari_history_free(fluid->history);
-        fluid->history = fluid->history_next, fluid->history_next = NULL;
-    }
-    spari_history *h = fluid->history;
-    if (h) {
-        h->pushed = 0;
+    if (fluid->parts) {
+        load_parts(fluid);
     }
     if (fluid->load) {
-        memset(fluid->load, 0, loads * sizeof *fluid->load);
-        memset(fluid->load_accepted, 0, loads * sizeof *fluid->load);
+        load_nodal(fluid);
     }
-    for (int k = 0; k < count; k++) {
-        const double *load = states[k] + S_HEAD;
-        fluid->pushes += (int64_t)states[k][S_PUSHES];
-        if (h) {
-            h->pushed |= states[k][S_PUSHED] != 0;
-        }
-        kept |= states[k][S_KEPT] != 0;
-        memcpy(fluid->audit, states[k] + S_AUDIT, sizeof fluid->audit);
-        int gives = takes_loads && fluid->load && !fluid->bins[0] && states[k][S_MAPPED] != 0;
-        for (size_t i = 0; gives && i < loads; i++) { /* the first as it is: 0 + -0 is not -0 */
-            fluid->load[i] = taken ? fluid->load[i] + load[i] : load[i];
-            fluid->load_accepted[i] = taken ? fluid->load_accepted[i] + load[loads + i] : load[loads + i];
-        }
-        taken |= gives;
+    if (t->places) {
+        spari_history_free(fluid->history);
+        fluid->history = t->history, t->history = NULL;
     }
-    if (fluid->bins[0]) {
-        load_bins(fluid, takes_loads ? count : 0, states);
+    if (fluid->history) {
+        fluid->history->pushed = t->head[S_PUSHED] != 0;
     }
-    if (kept && s) {
-        (void)take_forces(fluid, __func__, count, states, h); /* what can be missing was looked for before */
-    }
+    spari_fluid_give_up(fluid);
 }

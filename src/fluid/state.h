@@ -41,6 +41,19 @@ typedef struct spari_parts {
     int ended;               /* end[0] is of parts; else the loads at t^n are those in use */
 } spari_parts;
 
+/* What a fluid is to become, put together from the states of a file (restore.c), with their heads' layout. */
+typedef struct spari_taking {
+    double head[SPARI_FLUID_HEAD]; /* of all states: sums, or what any of them has */
+    double *load;                  /* [2][nodes][6]: load and load_accepted, as a sum over the states */
+    spari_bins *bins;              /* of the same, where they are kept */
+    double *end;                   /* [2][nodes][6]: ends of parts, where there are any */
+    int added;                     /* states with loads so far */
+    double *places;        /* [n][3] of the force nodes here; NULL: the states have no forces, or there are no nodes */
+    const double **sorted; /* [n] of them, by height */
+    char *found;           /* [n] */
+    spari_history *history;
+} spari_taking;
+
 struct spar_fluid {
     spar_member *member;
     spar_fluid *next;
@@ -66,20 +79,23 @@ struct spar_fluid {
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     spari_bins *bins[3];                     /* reproducible sums: what these three are the values of; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];
-    spari_parts *parts;                    /* of loads that come several times in a step; NULL: none ever did */
-    spari_history *history, *history_next; /* NULL: not kept; next: of a file being loaded */
+    spari_parts *parts;     /* of loads that come several times in a step; NULL: none ever did */
+    spari_history *history; /* NULL: not kept */
+    spari_taking *taking;   /* of a file being loaded (restore.c); else NULL, or what was given up */
 };
 
 /* Message with the caller, the fluid and its member in front; gives back status. */
 int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...)
     SPARI_PRINTF(4, 5);
 
-#define SPARI_FLUID_REQUIRE(fluid, condition, status, ...)                                                             \
+#define SPARI_FLUID_REQUIRE_OF(fluid, caller, condition, status, ...)                                                  \
     do {                                                                                                               \
         if (!(condition)) {                                                                                            \
-            return spari_fluid_refuse(fluid, status, __func__, __VA_ARGS__);                                           \
+            return spari_fluid_refuse(fluid, status, caller, __VA_ARGS__);                                             \
         }                                                                                                              \
     } while (0)
+#define SPARI_FLUID_REQUIRE(fluid, condition, status, ...)                                                             \
+    SPARI_FLUID_REQUIRE_OF(fluid, __func__, condition, status, __VA_ARGS__)
 #define SPARI_FLUID_HANDLE(fluid)                                                                                      \
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__)
 
@@ -126,6 +142,7 @@ void spari_fluid_revert_loads(spar_fluid *fluid);
 /* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
+void spari_taking_free(spari_taking *taking);
 /* Room for the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
 int spari_parts_prepare(spar_fluid *fluid);
 void spari_parts_free(spari_parts *parts);

@@ -1,0 +1,724 @@
+/* Load: a saved session (save.c says what is in its file) into one with the same members, in two passes: the first
+   checks and gets memory, and only when all ranks can load does the second change the session. Members and fluids may
+   live on other ranks than before. No rank has the file in memory: what is alike on all ranks goes to all; of what was
+   one rank's own rank 0 tells where it lies, and it then goes piece by piece to those who want it. */
+#include "../base/image.h"
+#include "../base/quiet.h"
+#include "../comm/enter.h"
+#include "../fluid/fluid.h"
+#include "../solve/assembly.h"
+#include "../solve/fidelity.h"
+#include "exchange.h"
+#include "saved.h"
+#include "spread.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A state of a member's solver, or of an assembly, in the file. */
+typedef struct solver_record {
+    int assembly, index;
+    int64_t at, count;
+} solver_record;
+
+/* A fluid of the saved run. */
+typedef struct fluid_record {
+    int rank, member;
+    int64_t name; /* where its name begins in the index */
+    int64_t at, count;
+    int64_t loads, nodes; /* words before what is node by node; nodes */
+    const double *head;   /* [SPARI_FLUID_HEAD] */
+    int key;              /* alike for those of one name and member */
+} fluid_record;
+
+typedef struct reading {
+    const char *call; /* that reads */
+    spari_loading source;
+    int shared; /* all ranks have the file open; else rank 0 alone */
+    int status; /* what became of reading here, */
+    char why[SPARI_MESSAGE_SIZE / 2];
+    spari_saved common;
+    spari_image index; /* of what comes behind it, rank by rank, without the states */
+    double **solution; /* [members] state of each that is solved for here; NULL: not here */
+    double **tied;     /* [joints] the same of the assemblies, as many as there are; NULL: nothing is kept */
+    solver_record *solvers;
+    int64_t solver_count;
+    fluid_record *fluids; /* of all ranks */
+    int64_t fluid_count, keys;
+    int *taker;       /* [keys]: the rank whose fluid takes their loads, which are a sum */
+    int exact;        /* each fluid here takes of that of its rank in the saved run alone */
+    uint64_t *buffer; /* what is under way between the ranks */
+} reading;
+
+enum { PIECE_NODES = 4096, NODE_WORDS = 15, PIECE = NODE_WORDS * PIECE_NODES };
+
+static void end_loading(const spar_session *s, reading *l) {
+    spari_loading_close(&l->source);
+    spari_saved_free(&l->common);
+    spari_image_free(&l->index);
+    for (int k = 0; l->solution && k < s->member_count; k++) {
+        free(l->solution[k]);
+    }
+    for (int k = 0; l->tied && k < s->joint_count; k++) {
+        free(l->tied[k]);
+    }
+    free(l->solution);
+    free(l->tied);
+    free(l->solvers);
+    free(l->fluids);
+    free(l->taker);
+    free(l->buffer);
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_give_up(f);
+    }
+}
+
+static int agree_to_load(spar_session *s, int status) {
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+}
+
+static int is_root(const spar_session *s) {
+    return spari_comm_rank(s->comm) == 0;
+}
+
+static int tell_why(spar_session *s, const reading *l, int status) {
+    return status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", l->why);
+}
+
+/* ---- the file ---- */
+
+/* The path of rank 0's file, as all ranks may see it: empty where it has none. */
+typedef struct told_file {
+    int64_t count;
+    uint64_t sum;
+    char path[4096];
+} told_file;
+
+/* Whether all ranks see the same file as rank 0. */
+static int share_file(spar_session *s, reading *l) {
+    told_file *told = spari_zalloc(1, sizeof *told);
+    SPARI_TRY(agree_to_load(s, told ? SPAR_OK : spari_saved_no_memory(s)));
+    char *where = is_root(s) ? realpath(l->source.path, NULL) : NULL;
+    if (where && strlen(where) < sizeof told->path) {
+        memcpy(told->path, where, strlen(where) + 1);
+        told->count = l->source.count;
+        told->sum = l->source.sum;
+    }
+    free(where);
+    int status = spari_comm_broadcast(s->comm, told, sizeof *told, s->message, sizeof s->message);
+    double blind[2] = {0, 0};
+    if (status == SPAR_OK && !is_root(s)) {
+        char why[sizeof l->why];
+        int seen = spari_loading_open(&l->source, told->path, why, sizeof why) == SPAR_OK;
+        blind[0] = !seen || l->source.count != told->count || l->source.sum != told->sum;
+    }
+    free(told);
+    SPARI_TRY(status);
+    SPARI_TRY(spari_comm_sum(s->comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
+    l->shared = blind[0] == 0;
+    return SPAR_OK;
+}
+
+/* The check sum of the file: a part of it on each rank, or all of it on rank 0. */
+static int check_file_sum(spar_session *s, reading *l) {
+    enum { SUM, COUNT, STATUS, WORDS };
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    double *part = spari_zalloc((int64_t)WORDS * ranks, sizeof *part);
+    int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
+    int status = agree_to_load(s, part && first ? SPAR_OK : spari_saved_no_memory(s));
+    if (status == SPAR_OK) {
+        uint64_t own[2] = {0, 0}, sum = 0;
+        for (int r = 0; r < ranks; r++) {
+            first[r + 1] = first[r] + WORDS;
+        }
+        if (l->shared || rank == 0) {
+            status = spari_loading_sum(&l->source, l->shared ? rank : 0, l->shared ? ranks : 1, own, own + 1, l->why,
+                                       sizeof l->why);
+            status = tell_why(s, l, status);
+        }
+        memcpy(part + (ptrdiff_t)WORDS * rank, own, sizeof own);
+        status = spari_comm_share(s->comm, part, first, status, s->message, sizeof s->message);
+        for (int r = 0; r < ranks && status == SPAR_OK; r++) {
+            memcpy(own, part + (ptrdiff_t)WORDS * r, sizeof own);
+            sum = spari_check_join(sum, own[0], own[1]);
+        }
+        if (status == SPAR_OK && rank == 0 && sum != l->source.sum) {
+            status = tell_why(s, l, spari_loading_refuse(l->source.path, l->why, sizeof l->why));
+        }
+        status = agree_to_load(s, status);
+    }
+    free(part);
+    free(first);
+    return status;
+}
+
+static int open_file(spar_session *s, reading *l, const char *path) {
+    int status = SPAR_OK;
+    if (is_root(s)) {
+        status = tell_why(s, l, spari_loading_open(&l->source, path, l->why, sizeof l->why));
+    }
+    SPARI_TRY(agree_to_load(s, status));
+    l->shared = spari_comm_size(s->comm) == 1;
+    if (!l->shared) {
+        SPARI_TRY(share_file(s, l));
+    }
+    return check_file_sum(s, l);
+}
+
+/* What cannot be read is zeros, and told when all ranks have what they wait for. */
+static void read_words(reading *l, int64_t at, int64_t n, uint64_t *words) {
+    int status = l->status;
+    if (status == SPAR_OK) {
+        status = l->status = spari_loading_read(&l->source, at, n, words, l->why, sizeof l->why);
+    }
+    if (status != SPAR_OK && n > 0) {
+        memset(words, 0, (size_t)n * sizeof *words);
+    }
+}
+
+/* Words of the file to the ranks that want them. to: the only one, EACH: few of them, EVERYBODY: many. Collective, but
+   for the only one. */
+enum { EACH = -1, EVERYBODY = -2 };
+static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t at, int64_t n, uint64_t *words) {
+    int root = is_root(s);
+    if (l->shared && to != EVERYBODY) {
+        if (wanted) {
+            read_words(l, at, n, words);
+        }
+        return SPAR_OK;
+    }
+    for (int64_t i = 0; i < n; i += PIECE) {
+        int64_t piece = n - i < PIECE ? n - i : PIECE;
+        uint64_t *by = wanted ? words + i : l->buffer;
+        if (root) {
+            read_words(l, at + i, piece, by);
+        }
+        SPARI_TRY(to < 0 ? spari_comm_broadcast(s->comm, by, 8 * piece, s->message, sizeof s->message)
+                         : spari_comm_move(s->comm, 0, to, by, 8 * piece, s->message, sizeof s->message));
+    }
+    return SPAR_OK;
+}
+
+/* ---- what is alike on all ranks ---- */
+
+/* Rank 0 reads until it has all of it: where it ends, what is in it tells. */
+static int read_common(spar_session *s, reading *l) {
+    spari_image *image = &l->common.image;
+    int64_t n = 1 << 14;
+    for (;; n *= 4) {
+        n = n < l->source.count ? n : l->source.count;
+        free(image->word);
+        image->word = spari_zalloc(n, sizeof *image->word);
+        if (!image->word) {
+            return spari_saved_no_memory(s);
+        }
+        SPARI_TRY(tell_why(s, l, spari_loading_read(&l->source, 0, n, image->word, l->why, sizeof l->why)));
+        image->count = image->room = n;
+        int status = spari_saved_check(s, &l->common);
+        if (status == SPAR_OK) {
+            image->count = image->at;
+        }
+        if (status == SPAR_OK || status == SPAR_ERR_MEMORY || n == l->source.count ||
+            (status != SPAR_ERR_IO && !image->failed)) {
+            return status == SPAR_ERR_MEMORY ? status : SPAR_OK; /* what else is wrong all ranks find */
+        }
+    }
+}
+
+/* Words of rank 0 to all ranks. */
+static int send_image(spar_session *s, spari_image *image) {
+    SPARI_TRY(spari_comm_broadcast(s->comm, &image->count, sizeof image->count, s->message, sizeof s->message));
+    if (!is_root(s)) {
+        image->word = spari_zalloc(image->count, sizeof *image->word);
+    }
+    SPARI_TRY(agree_to_load(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
+    return spari_comm_broadcast(s->comm, image->word, 8 * image->count, s->message, sizeof s->message);
+}
+
+static int load_common(spar_session *s, reading *l) {
+    SPARI_TRY(agree_to_load(s, is_root(s) ? read_common(s, l) : SPAR_OK));
+    SPARI_TRY(send_image(s, &l->common.image));
+    return agree_to_load(s, spari_saved_check(s, &l->common));
+}
+
+/* ---- where the rest is: rank 0 reads it without the states ---- */
+
+/* Words of the file within a rank's block; running out of it is a failure. */
+typedef struct block_reader {
+    reading *l;
+    int64_t at, end;
+    int failed;
+} block_reader;
+
+static void next_words(block_reader *b, int64_t n, uint64_t *words) {
+    b->failed |= n < 0 || n > b->end - b->at;
+    if (!b->failed) {
+        read_words(b->l, b->at, n, words);
+        b->at += n;
+        b->failed |= b->l->status != SPAR_OK;
+    }
+}
+
+static int64_t next_int(block_reader *b) {
+    uint64_t word = 0;
+    int64_t value = 0;
+    next_words(b, 1, &word);
+    memcpy(&value, &word, sizeof value);
+    return b->failed ? 0 : value;
+}
+
+/* n words into the index as they are. */
+static void copy_words(block_reader *b, int64_t n) {
+    b->failed |= n < 0 || n > b->end - b->at;
+    uint64_t *to = b->failed ? NULL : spari_image_add(&b->l->index, n);
+    if (to) {
+        next_words(b, n, to);
+    }
+}
+
+/* A count of words and these words, which are passed over: where they begin and how many there are goes to the index.
+   The first `head` of them too, zeros where there are fewer. */
+static void index_state(block_reader *b, int64_t head) {
+    int64_t n = next_int(b);
+    b->failed |= n < 0 || n > b->end - b->at;
+    spari_image_put_int(&b->l->index, b->at);
+    spari_image_put_int(&b->l->index, n);
+    int64_t at = b->at, there = b->failed ? 0 : n < head ? n : head;
+    copy_words(b, there);
+    for (int64_t i = there; i < head; i++) {
+        spari_image_put_int(&b->l->index, 0);
+    }
+    b->at = b->failed ? b->end : at + n;
+}
+
+/* Text as in an image. */
+static void index_text(block_reader *b) {
+    int64_t length = next_int(b);
+    b->failed |= length < 0 || length > INT64_MAX - 7;
+    spari_image_put_int(&b->l->index, length);
+    copy_words(b, b->failed ? 0 : (length + 7) / 8);
+}
+
+/* Solvers of members, of assemblies; fluids: each with their number before them. */
+static void index_block(block_reader *b) {
+    spari_image *index = &b->l->index;
+    for (int kind = 0; kind < 3 && !b->failed; kind++) {
+        int64_t count = next_int(b);
+        spari_image_put_int(index, count);
+        for (int64_t i = 0; i < count && !b->failed && !index->failed; i++) {
+            spari_image_put_int(index, next_int(b));
+            if (kind == 2) {
+                index_text(b);
+            }
+            index_state(b, kind == 2 ? SPARI_FLUID_HEAD : 0);
+        }
+    }
+    b->failed |= b->at != b->end;
+}
+
+/* The first word: whether the file can be read so. */
+static int read_index(spar_session *s, reading *l) {
+    block_reader all = {l, l->common.image.count, l->source.count, 0};
+    spari_image_put_int(&l->index, 1);
+    for (int r = 0; r < l->common.ranks && !all.failed; r++) {
+        int64_t n = next_int(&all);
+        all.failed |= n < 0 || n > all.end - all.at;
+        block_reader block = {l, all.at, all.failed ? all.at : all.at + n, all.failed};
+        index_block(&block);
+        all.failed |= block.failed;
+        all.at = block.end;
+    }
+    SPARI_TRY(tell_why(s, l, l->status));
+    if (l->index.failed) {
+        return spari_saved_no_memory(s);
+    }
+    l->index.word[0] = !all.failed && all.at == all.end;
+    return SPAR_OK;
+}
+
+static int grow_records(void **records, int64_t count, size_t size) {
+    if (count >= 8 && (count & (count - 1)) != 0) { /* room for as many as the next power of two */
+        return 1;
+    }
+    int64_t room = count < 8 ? 8 : 2 * count;
+    void *more = count > 0 && count < 8 ? *records : realloc(*records, (size_t)room * size);
+    *records = more ? more : *records;
+    return more != NULL;
+}
+
+static const spar_member *member_at(const spar_session *s, int64_t k) {
+    const spar_member *m = k < 0 ? NULL : s->members;
+    for (int64_t j = 0; j < k && m; j++) {
+        m = m->next;
+    }
+    return m;
+}
+
+static const spari_assembly *assembly_at(const spar_session *s, int64_t k) {
+    const spari_assembly *a = k < 0 ? NULL : s->assemblies;
+    for (int64_t j = 0; j < k && a; j++) {
+        a = spari_assembly_next(a);
+    }
+    return a;
+}
+
+static int note_solver(spar_session *s, reading *l, int assembly) {
+    int64_t k = spari_image_get_int(&l->index);
+    solver_record r = {assembly, 0, spari_image_get_int(&l->index), spari_image_get_int(&l->index)};
+    if (l->index.failed || !(assembly ? assembly_at(s, k) != NULL : member_at(s, k) != NULL)) {
+        return spari_saved_broken(s);
+    }
+    r.index = (int)k;
+    if (!grow_records((void **)&l->solvers, l->solver_count, sizeof r)) {
+        return spari_saved_no_memory(s);
+    }
+    l->solvers[l->solver_count++] = r;
+    return SPAR_OK;
+}
+
+static int note_fluid(spar_session *s, reading *l, int rank) {
+    int64_t k = spari_image_get_int(&l->index);
+    fluid_record r = {.rank = rank, .name = l->index.at};
+    (void)spari_image_is_text(&l->index, "");
+    r.at = spari_image_get_int(&l->index);
+    r.count = spari_image_get_int(&l->index);
+    r.head = (const double *)(const void *)spari_image_get(&l->index, SPARI_FLUID_HEAD);
+    const spar_member *m = member_at(s, k);
+    if (l->index.failed || !m || r.count < SPARI_FLUID_HEAD ||
+        !spari_fluid_is_state(m, r.head, r.count, &r.loads, &r.nodes)) {
+        return spari_saved_broken(s);
+    }
+    r.member = (int)k;
+    if (!grow_records((void **)&l->fluids, l->fluid_count, sizeof r)) {
+        return spari_saved_no_memory(s);
+    }
+    l->fluids[l->fluid_count++] = r;
+    return SPAR_OK;
+}
+
+static int note_block(spar_session *s, reading *l, int rank) {
+    for (int kind = 0; kind < 3; kind++) {
+        int64_t count = spari_image_get_int(&l->index);
+        for (int64_t i = 0; i < count; i++) {
+            SPARI_TRY(kind == 2 ? note_fluid(s, l, rank) : note_solver(s, l, kind));
+        }
+    }
+    return l->index.failed ? spari_saved_broken(s) : SPAR_OK;
+}
+
+static int load_index(spar_session *s, reading *l) {
+    SPARI_TRY(agree_to_load(s, is_root(s) ? read_index(s, l) : SPAR_OK));
+    SPARI_TRY(send_image(s, &l->index));
+    int status = spari_image_get_int(&l->index) == 1 ? SPAR_OK : spari_saved_broken(s);
+    for (int r = 0; r < l->common.ranks && status == SPAR_OK; r++) {
+        status = note_block(s, l, r);
+    }
+    return agree_to_load(s, status);
+}
+
+/* ---- who takes what ---- */
+
+static int index_of(const spar_session *s, const spar_member *member) {
+    int k = 0;
+    for (const spar_member *m = s->members; m != member; m = m->next) {
+        k++;
+    }
+    return k;
+}
+
+static int is_record_of(reading *l, const fluid_record *r, const spar_session *s, const spar_fluid *f) {
+    l->index.at = r->name;
+    return r->member == index_of(s, spari_fluid_member(f)) && spari_image_is_text(&l->index, spar_fluid_get_name(f));
+}
+
+static int same_key(const reading *l, const fluid_record *a, const fluid_record *b) {
+    const uint64_t *x = l->index.word + a->name, *y = l->index.word + b->name;
+    return a->member == b->member && x[0] == y[0] && memcmp(x + 1, y + 1, (size_t)((x[0] + 7) / 8) * sizeof *x) == 0;
+}
+
+/* Ranks have their fluids in much the same order: the search goes on from the last find. by[keys]: the first of each.
+ */
+static int find_keys(spar_session *s, reading *l) {
+    int64_t *by = spari_zalloc(l->fluid_count, sizeof *by), at = 0;
+    if (!by) {
+        return spari_saved_no_memory(s);
+    }
+    for (int64_t i = 0; i < l->fluid_count; i++) {
+        int64_t tried = 0;
+        for (at++; tried < l->keys; tried++, at++) {
+            at = at < l->keys ? at : 0;
+            if (same_key(l, l->fluids + i, l->fluids + by[at])) {
+                break;
+            }
+        }
+        if (tried == l->keys) {
+            at = l->keys++;
+            by[at] = i;
+        }
+        l->fluids[i].key = (int)at;
+    }
+    free(by);
+    return SPAR_OK;
+}
+
+/* Whether the fluids here are those of this rank in the file, one by one. */
+static int same_fluids(const spar_session *s, reading *l) {
+    int rank = spari_comm_rank(s->comm);
+    const spar_fluid *f = s->fluids;
+    for (int64_t i = 0; i < l->fluid_count; i++) {
+        if (l->fluids[i].rank == rank) {
+            if (!f || !is_record_of(l, l->fluids + i, s, f)) {
+                return 0;
+            }
+            f = spari_fluid_next(f);
+        }
+    }
+    return !f && l->common.ranks == spari_comm_size(s->comm);
+}
+
+/* Which rank's fluid takes the loads of those of a key: the first one's that has one like them. */
+static int find_takers(spar_session *s, reading *l) {
+    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    double *has = spari_zalloc(l->keys * ranks + 1, sizeof *has);
+    l->taker = spari_zalloc(l->keys, sizeof *l->taker);
+    int status = agree_to_load(s, has && l->taker ? SPAR_OK : spari_saved_no_memory(s));
+    for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
+        const fluid_record *r = l->fluids + i;
+        for (const spar_fluid *f = s->fluids; f && has[r->key * ranks + rank] == 0; f = spari_fluid_next(f)) {
+            has[r->key * ranks + rank] = is_record_of(l, r, s, f);
+        }
+    }
+    if (status == SPAR_OK) {
+        status = spari_comm_sum(s->comm, has, l->keys * ranks, SPAR_OK, s->message, sizeof s->message);
+    }
+    for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
+        int *taker = l->taker + l->fluids[i].key;
+        for (*taker = 0; *taker < ranks && has[l->fluids[i].key * ranks + *taker] == 0;) {
+            ++*taker;
+        }
+        if (*taker == ranks) {
+            status = spari_fail(s, SPAR_ERR_ARGUMENT,
+                                "fluid %lld of the file has none of its name and member here; create the fluids "
+                                "of the saved run first",
+                                (long long)i);
+        }
+    }
+    free(has);
+    return status;
+}
+
+/* Whether a fluid here takes of a record. own: of this rank's records so many came before. */
+static int takes(const spar_session *s, reading *l, const fluid_record *r, const spar_fluid *f, int64_t own) {
+    if (!l->exact) {
+        return is_record_of(l, r, s, f);
+    }
+    const spar_fluid *at = r->rank == spari_comm_rank(s->comm) ? s->fluids : NULL;
+    for (; at && own > 0; own--) {
+        at = spari_fluid_next(at);
+    }
+    return at == f;
+}
+
+static int take_fluid(spar_session *s, reading *l, spar_fluid *f, const double **heads) {
+    int count = 0;
+    int64_t own = 0;
+    for (int64_t i = 0; i < l->fluid_count; i++) {
+        const fluid_record *r = l->fluids + i;
+        if (takes(s, l, r, f, own)) {
+            heads[count++] = r->head;
+        }
+        own += r->rank == spari_comm_rank(s->comm);
+    }
+    SPARI_REQUIRE(s, count > 0, SPAR_ERR_ARGUMENT, "fluid '%s' of member '%s' is not in the file",
+                  spar_fluid_get_name(f), spari_fluid_member(f)->name);
+    return spari_fluid_take(f, l->call, count, heads);
+}
+
+/* Room for the solvers' states that are wanted here; each is in the file once. */
+static int make_solver_room(spar_session *s, reading *l) {
+    l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
+    l->tied = spari_zalloc(s->joint_count, sizeof *l->tied);
+    int ok = l->solution && l->tied, twice = 0;
+    for (int64_t i = 0; i < l->solver_count && ok && !twice; i++) {
+        const solver_record *r = l->solvers + i;
+        double **to = (r->assembly ? l->tied : l->solution) + r->index;
+        int wanted = r->assembly ? spari_assembly_state_size(assembly_at(s, r->index)) > 0
+                                 : spari_fidelity_state_size(member_at(s, r->index)) > 0;
+        twice = wanted && *to;
+        if (wanted && !twice) {
+            ok = (*to = spari_zalloc(r->count, sizeof **to)) != NULL;
+        }
+    }
+    return twice ? spari_saved_broken(s) : ok ? SPAR_OK : spari_saved_no_memory(s);
+}
+
+static int prepare(spar_session *s, reading *l) {
+    int64_t room = PIECE;
+    for (int64_t i = 0; i < l->fluid_count; i++) {
+        room = l->fluids[i].loads > room ? l->fluids[i].loads : room;
+    }
+    l->buffer = spari_zalloc(room, sizeof *l->buffer);
+    int status = l->buffer ? make_solver_room(s, l) : spari_saved_no_memory(s);
+    return agree_to_load(s, status == SPAR_OK ? find_keys(s, l) : status);
+}
+
+/* ---- the states ---- */
+
+/* Each to the ranks where there is room for it. */
+static int fetch_solvers(spar_session *s, reading *l) {
+    int broken = 0;
+    for (int64_t i = 0; i < l->solver_count; i++) {
+        const solver_record *r = l->solvers + i;
+        double *to = (r->assembly ? l->tied : l->solution)[r->index];
+        SPARI_TRY(fetch_words(s, l, EACH, to != NULL, r->at, r->count, (uint64_t *)(void *)to));
+        if (to && l->status == SPAR_OK) {
+            const spar_member *m = r->assembly ? NULL : member_at(s, r->index);
+            broken |= m ? !m->row->is_state(m, to, r->count)
+                        : !spari_assembly_is_state(assembly_at(s, r->index), to, r->count);
+        }
+    }
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        broken |= spari_fidelity_state_size(m) > 0 && !l->solution[k];
+    }
+    return broken ? spari_saved_broken(s) : SPAR_OK;
+}
+
+/* The next words of a record, in the buffer, to the fluids that take of it. */
+static int fetch_piece(spar_session *s, reading *l, const fluid_record *r, int wanted, int64_t at, int64_t n,
+                       int64_t put) {
+    return fetch_words(s, l, l->exact ? r->rank : EVERYBODY, wanted, r->at + at, n, l->buffer + put);
+}
+
+static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64_t own) {
+    int rank = spari_comm_rank(s->comm), wanted = 0, broken = 0;
+    const double *words = (const double *)(const void *)l->buffer;
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        wanted |= takes(s, l, r, f, own);
+    }
+    if (l->exact && !wanted && (l->shared || rank > 0)) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(fetch_piece(s, l, r, wanted, 0, r->loads, 0));
+    for (spar_fluid *f = s->fluids; f && l->status == SPAR_OK; f = spari_fluid_next(f)) {
+        if (takes(s, l, r, f, own)) {
+            broken |= !spari_fluid_take_loads(f, words, l->exact || l->taker[r->key] == rank);
+        }
+    }
+    for (int64_t i = 0; i < r->nodes; i += PIECE_NODES) {
+        int64_t n = r->nodes - i < PIECE_NODES ? r->nodes - i : PIECE_NODES;
+        for (int k = 0; k < 5; k++) {
+            SPARI_TRY(fetch_piece(s, l, r, wanted, r->loads + 3 * (k * r->nodes + i), 3 * n, 3 * k * n));
+        }
+        for (spar_fluid *f = s->fluids; f && l->status == SPAR_OK; f = spari_fluid_next(f)) {
+            if (takes(s, l, r, f, own)) {
+                spari_fluid_take_nodes(f, r->nodes, i, n, words);
+            }
+        }
+    }
+    return broken ? spari_saved_broken(s) : SPAR_OK;
+}
+
+static int load_solvers(spar_session *s, reading *l) {
+    int status = fetch_solvers(s, l);
+    return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : status);
+}
+
+static int take_fluids(spar_session *s, reading *l) {
+    const double **heads = spari_zalloc(l->fluid_count, sizeof *heads);
+    int status = heads ? SPAR_OK : spari_saved_no_memory(s);
+    for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+        status = take_fluid(s, l, f, heads);
+    }
+    free(heads);
+    return agree_to_load(s, status);
+}
+
+static int fetch_fluids(spar_session *s, reading *l) {
+    int64_t own = 0;
+    int found = SPAR_OK;
+    SPARI_TRY(take_fluids(s, l));
+    for (int64_t i = 0; i < l->fluid_count; i++) {
+        int status = fetch_fluid(s, l, l->fluids + i, own);
+        found = found == SPAR_OK ? status : found;
+        own += l->fluids[i].rank == spari_comm_rank(s->comm);
+    }
+    return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : found);
+}
+
+/* Whether on any rank fluids answer so. */
+static int is_any(spar_session *s, int here, int *any) {
+    double count[2] = {here, 0};
+    SPARI_TRY(spari_comm_sum(s->comm, count, 1, SPAR_OK, s->message, sizeof s->message));
+    *any = count[0] > 0;
+    return SPAR_OK;
+}
+
+/* As many ranks with fluids of the same names may have dealt out the nodes otherwise: which ones those were only their
+   places tell. */
+static int load_fluids(spar_session *s, reading *l) {
+    int other = 0, lost = 0, status = SPAR_OK;
+    SPARI_TRY(is_any(s, !same_fluids(s, l), &other));
+    l->exact = !other;
+    if (l->exact) {
+        SPARI_TRY(fetch_fluids(s, l));
+        for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+            lost |= spari_fluid_untaken(f) >= 0;
+        }
+        SPARI_TRY(is_any(s, lost, &other));
+        if (!other) {
+            return SPAR_OK;
+        }
+        l->exact = 0;
+    }
+    SPARI_TRY(find_takers(s, l));
+    SPARI_TRY(fetch_fluids(s, l));
+    for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
+        status = spari_fluid_taken(f, l->call);
+    }
+    return agree_to_load(s, status);
+}
+
+/* ---- in force ---- */
+
+static void put_in_force(spar_session *s, reading *l) {
+    int64_t k = 0;
+    spari_spread_end(s);
+    spari_saved_load(s, &l->common);
+    for (spar_member *m = s->members; m; m = m->next, k++) {
+        if (spari_fidelity_state_size(m) > 0) {
+            m->row->load(m, l->solution[k]);
+        }
+    }
+    k = 0;
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a), k++) {
+        spari_assembly_load(a, l->tied[k]);
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_load(f);
+    }
+}
+
+int spar_session_load(spar_session *session, const char *path) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    reading l = {.call = __func__};
+    int status = spari_saved_check_call(s, __func__, path);
+    if (status == SPAR_OK && s->phase != SPARI_IDLE) {
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
+    }
+    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
+    status = spari_solvers_place(s, __func__);
+    int (*const parts[])(spar_session *, reading *) = {load_common, load_index, prepare, load_solvers, load_fluids};
+    status = status == SPAR_OK ? open_file(s, &l, path) : status;
+    for (size_t k = 0; k < sizeof parts / sizeof *parts && status == SPAR_OK; k++) {
+        status = parts[k](s, &l);
+    }
+    status = status == SPAR_OK ? spari_session_seal(s, SPAR_OK) : status;
+    if (status == SPAR_OK) {
+        put_in_force(s, &l);
+    }
+    end_loading(s, &l);
+    return spari_named(s, __func__, status);
+}

@@ -1,0 +1,437 @@
+/* What of a session is alike on every rank, in a file: see saved.h. */
+#include "saved.h"
+
+#include "../comm/comm.h"
+#include "../fluid/fluid.h"
+#include "../member/added.h"
+#include "../member/applied.h"
+#include "../member/joint.h"
+#include "../member/means.h"
+#include "coupling.h"
+#include "own.h"
+#include "settings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int spari_saved_broken(const spar_session *s) {
+    return spari_fail(s, SPAR_ERR_IO, "the file does not hold what it should; take an older file");
+}
+
+int spari_saved_no_memory(const spar_session *s) {
+    return spari_fail(s, SPAR_ERR_MEMORY, "no memory for the state of the session");
+}
+
+int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
+    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE,
+                  "%s: a static solution or a start is under way; save or load "
+                  "after it",
+                  call);
+    SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
+                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
+    }
+    return SPAR_OK;
+}
+
+/* ---- the same code writes, checks and reads ---- */
+
+typedef struct passage {
+    spari_image *image;
+    enum { WRITE, CHECK, READ } mode;
+} passage;
+
+static void pass(passage *t, void *words, int64_t n) {
+    if (t->mode == WRITE) {
+        spari_image_put(t->image, words, n);
+    } else {
+        const uint64_t *from = spari_image_get(t->image, n);
+        if (t->mode == READ && words && from && n > 0) {
+            memcpy(words, from, (size_t)n * sizeof *from);
+        }
+    }
+}
+
+static void pass_int(passage *t, int *x) {
+    int64_t word = *x;
+    pass(t, &word, 1);
+    if (t->mode == READ) {
+        *x = (int)word;
+    }
+}
+
+/* Of steps, which go on being counted. */
+static void pass_count(passage *t, int *x) {
+    enum { MOST = 1 << 30 };
+    pass_int(t, x);
+    if (t->mode == READ) {
+        *x = *x < 0 ? 0 : *x > MOST ? MOST : *x;
+    }
+}
+
+static void pass_clock(passage *t, spar_session *s) {
+    int phase = (int)s->phase;
+    pass(t, &s->time, 1);
+    pass(t, &s->dt, 1);
+    pass(t, s->dt_last, 2);
+    pass(t, &s->step, 1);
+    pass_int(t, &s->iteration);
+    pass_int(t, &s->iterating);
+    pass_int(t, &s->failed);
+    pass_int(t, &s->order);
+    pass_int(t, &s->past);
+    pass_int(t, &s->started);
+    pass_int(t, &phase);
+    if (t->mode == READ) {
+        s->phase = (spari_phase)phase;
+        s->past = s->past < s->predictor ? s->past : s->predictor;
+    }
+}
+
+/* What may not be kept here, or was not there: zeros in the file. */
+static void pass_kept(passage *t, double *words, int64_t n) {
+    double zero = 0;
+    if (words) {
+        pass(t, words, n);
+    } else if (t->mode == WRITE) {
+        for (int64_t i = 0; i < n; i++) {
+            pass(t, &zero, 1);
+        }
+    } else {
+        (void)spari_image_get(t->image, n);
+    }
+}
+
+/* Of a motion that is only checked: numbers, and rotations where they are. */
+static void check_pose_words(passage *t, const double *words, int width, int64_t n) {
+    int ok = words && spari_first_nonfinite(words, width * n) < 0;
+    for (int64_t i = 0; i < n && ok && width == 7; i++) {
+        const double *q = words + 7 * i + 3;
+        double size = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        ok = size > 0.5 && size < 2;
+    }
+    t->image->failed |= !ok;
+}
+
+static void pass_motion(passage *t, double *words, int width, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, width * n);
+    if (t->mode == CHECK) {
+        check_pose_words(t, t->image->failed ? NULL : there, width, n);
+    }
+}
+
+/* Numbers, checked to be some. */
+static void pass_numbers(passage *t, double *words, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, n);
+    if (t->mode == CHECK && !t->image->failed) {
+        t->image->failed = spari_first_nonfinite(there, n) >= 0;
+    }
+}
+
+static void pass_added(passage *t, spar_member *m) {
+    for (int k = 0; k < 2; k++) {
+        pass_numbers(t, m->added->past[k], 6 * m->nodes);
+    }
+    if (t->mode == READ) {
+        spari_added_see(m);
+    }
+}
+
+/* Where there are substeps: in the file if there were any, and taken if there are here. */
+static void pass_means(passage *t, spar_member *m) {
+    spari_means none = {0}, *k = m->means ? m->means : &none;
+    double head[3] = {k->has[0], k->has[1], k->dt};
+    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, head, 3);
+    if (t->mode == CHECK && !t->image->failed) {
+        memcpy(head, in_file, sizeof head);
+        t->image->failed = (head[0] != 0 && head[0] != 1) || (head[1] != 0 && head[1] != 1) || !isfinite(head[2]);
+    }
+    if (head[0] != 0 || head[1] != 0) {
+        if (t->mode == CHECK) {
+            pass_numbers(t, NULL, 18 * m->nodes);
+        } else {
+            pass_kept(t, k->mean, 18 * m->nodes);
+        }
+    }
+    if (t->mode == READ) {
+        k->has[0] = head[0] != 0, k->has[1] = head[1] != 0;
+        k->dt = head[2];
+    }
+}
+
+static void pass_member(passage *t, spar_member *m) {
+    for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
+        const spari_nodal *row = spari_nodal_table + k;
+        if (row->kind == SPARI_NODAL_MOTION) {
+            pass_motion(t, *spari_nodal_array(m, k), row->width, m->nodes);
+        } else if (row->kind == SPARI_NODAL_LOAD) {
+            pass_kept(t, *spari_nodal_array(m, k), row->width * m->nodes);
+        }
+    }
+    pass(t, m->drive, 2 * (int64_t)(sizeof *m->drive / sizeof(double)));
+    pass(t, &m->dissipated, 1);
+    pass(t, &m->dissipated_step, 1);
+    pass_int(t, &m->motion_given);
+    pass_int(t, &m->drive_given);
+    if (m->added) {
+        pass_added(t, m);
+    }
+    pass_means(t, m);
+    if (t->mode == WRITE) {
+        spari_applied_save(m, t->image);
+    } else if (t->mode == CHECK) {
+        spari_applied_check(m, t->image);
+    } else {
+        spari_applied_load(m, t->image);
+    }
+}
+
+/* Springs are there where they may be given anew at any time; a line's are part of its description. */
+static void pass_joint(passage *t, spar_joint *j) {
+    enum { SPRING = 3 };
+    const struct {
+        void *words;
+        size_t size;
+    } all[] = {{j->stiffness, sizeof j->stiffness}, {j->damping, sizeof j->damping},
+               {j->preload, sizeof j->preload},     {&j->now, sizeof j->now},
+               {&j->after, sizeof j->after},        {&j->described, sizeof j->described},
+               {j->drive, sizeof j->drive},         {j->given, sizeof j->given}};
+    for (size_t k = j->tie.line ? SPRING : 0; k < sizeof all / sizeof *all; k++) {
+        pass_numbers(t, all[k].words, (int64_t)(all[k].size / sizeof(double)));
+    }
+    if (!j->tie.line) {
+        pass_int(t, &j->sprung);
+    }
+    pass_int(t, &j->drive_given);
+    pass_int(t, &j->balanced);
+}
+
+/* c: of the settings in the image; never only checked */
+static void pass_coupling(passage *t, spari_coupling *c) {
+    pass_int(t, &c->iterations);
+    c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
+    pass(t, c->residual, c->iterations);
+    pass(t, c->size, c->iterations);
+    pass(t, &c->moved, 1);
+    pass(t, &c->travelled, 1);
+    pass(t, c->report, SPAR_REPORT_COUNT);
+    pass(t, &c->defect, 1);
+    pass_count(t, &c->grown);
+    pass_int(t, &c->warned);
+    pass_count(t, &c->turns);
+    pass_count(t, &c->calm);
+    pass_int(t, &c->unconverged);
+    pass_count(t, &c->in_row);
+    pass(t, &c->log_growth, 1);
+    pass(t, &c->log_growth2, 1);
+    pass(t, &c->bound, 1);
+    pass_int(t, &c->bound_order);
+    pass(t, c->missed, c->missed ? c->n : 0);
+}
+
+static void put_accelerator(spari_image *image, const spari_coupling *c) {
+    int64_t n = spari_accelerator_state_size(c->accelerator);
+    double *state = spari_zalloc(n, sizeof *state);
+    if (!state) {
+        image->failed = 1;
+        return;
+    }
+    spari_accelerator_save(c->accelerator, state);
+    spari_image_put_int(image, n);
+    spari_image_put(image, state, n);
+    spari_image_put(image, c->predicted, c->n);
+    free(state);
+}
+
+static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
+    return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
+}
+
+/* The length of the coupling comes first: it may have to be passed over. */
+static void put_coupling(spari_image *image, spar_session *s) {
+    double settings[SPARI_MOST_OF_COUPLING];
+    int64_t at = image->count;
+    spari_image_put_int(image, 0);
+    if (spari_coupling_fits(s)) {
+        passage t = {image, WRITE};
+        spari_image_put(image, settings, spari_settings_of_coupling(s, settings));
+        pass_coupling(&t, s->own->coupling);
+        if (s->own->coupling->accelerator) {
+            put_accelerator(image, s->own->coupling);
+            spari_image_put(image, s->own->coupling->motion, motion_words(s, s->own->coupling));
+        }
+    }
+    if (!image->failed) {
+        image->word[at] = (uint64_t)(image->count - at - 1);
+    }
+}
+
+/* ---- to a file ---- */
+
+void spari_saved_put(spari_image *image, spar_session *s) {
+    passage t = {image, WRITE};
+    spari_image_put_int(image, spari_comm_size(s->comm));
+    spari_image_put_int(image, s->member_count);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        uint64_t hash = spari_member_hash(m);
+        spari_image_put_text(image, m->name);
+        spari_image_put(image, &hash, 1);
+    }
+    spari_image_put_int(image, s->joint_count);
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        uint64_t hash = spari_joint_hash(j);
+        spari_image_put_text(image, j->name);
+        spari_image_put(image, &hash, 1);
+    }
+    pass_clock(&t, s);
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(&t, m);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
+    }
+    put_coupling(image, s);
+}
+
+/* ---- from a file ---- */
+
+static int compare_scene(spar_session *s, spari_saved *l) {
+    l->ranks = (int)spari_image_get_int(&l->image);
+    int64_t members = spari_image_get_int(&l->image);
+    SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
+                  "the file is of another session: it has %lld members, this one %d", (long long)members,
+                  s->member_count);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, spari_image_is_text(&l->image, m->name), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: member '%s' is not where it should be; create the same "
+                      "members in the same order",
+                      m->name);
+        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: member '%s' is described otherwise there", m->name);
+    }
+    int64_t joints = spari_image_get_int(&l->image);
+    SPARI_REQUIRE(s, joints == s->joint_count || l->image.failed, SPAR_ERR_ARGUMENT,
+                  "the file is of another session: it has %lld joints, this one %d", (long long)joints, s->joint_count);
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        SPARI_REQUIRE(s, spari_image_is_text(&l->image, j->name), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: joint '%s' is not where it should be; create the same joints in "
+                      "the same order",
+                      j->name);
+        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_joint_hash(j), SPAR_ERR_ARGUMENT,
+                      "the file is of another session: joint '%s' is described otherwise there", j->name);
+    }
+    return l->image.failed || l->ranks < 1 ? spari_saved_broken(s) : SPAR_OK;
+}
+
+/* Where the next count words end, if there are as many. */
+static int find_end(const spari_image *image, int64_t count, int64_t *end) {
+    int there = !image->failed && count >= 0 && count <= image->count - image->at;
+    *end = there ? image->at + count : image->at;
+    return there;
+}
+
+static int is_within(int64_t x, int64_t least, int64_t most) {
+    return x >= least && x <= most;
+}
+
+/* A clock that can go on, read into a copy of the session. */
+static int check_clock(spar_session *s, spari_saved *l) {
+    passage t = {&l->image, READ};
+    spar_session then = *s;
+    pass_clock(&t, &then);
+    int phase = (int)then.phase, within = phase > SPARI_IDLE;
+    int ok = !l->image.failed && isfinite(then.time) && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
+             is_within(then.step, 0, INT64_C(1) << 53) && is_within(then.iteration, 0, 1 << 30) &&
+             is_within(phase, SPARI_IDLE, SPARI_CHECKED) && is_within(then.order, 0, 2) &&
+             is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
+             then.started == (within || then.step > 0);
+    for (int k = 0; k < 2; k++) { /* what a prediction divides by */
+        int used = then.past > k || (within && then.order > k);
+        ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
+    }
+    l->phase = phase;
+    return ok ? SPAR_OK : spari_saved_broken(s);
+}
+
+/* What of the coupling fits the settings in force, in memory of its own. */
+static int check_coupling(spar_session *s, spari_saved *l) {
+    int64_t count = spari_image_get_int(&l->image), end;
+    if (count == 0 && !l->image.failed) {
+        return SPAR_OK;
+    }
+    if (!find_end(&l->image, count, &end)) {
+        return spari_saved_broken(s);
+    }
+    double settings[SPARI_MOST_OF_COUPLING];
+    int own = spari_settings_of_coupling(s, settings);
+    const uint64_t *saved = spari_image_get(&l->image, own);
+    if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
+        SPARI_TRY(spari_coupling_create(s, s->scheme, 0, &l->coupling));
+        passage t = {&l->image, READ};
+        pass_coupling(&t, l->coupling);
+        if (l->coupling->accelerator) {
+            int64_t n = spari_image_get_int(&l->image);
+            const double *state = (const double *)(const void *)spari_image_get(&l->image, n);
+            if (!state || !spari_accelerator_load(l->coupling->accelerator, state, n)) {
+                return spari_saved_broken(s);
+            }
+            pass(&t, l->coupling->predicted, l->coupling->n);
+            pass(&t, l->coupling->motion, motion_words(s, l->coupling));
+        }
+        return l->image.failed || l->image.at != end ? spari_saved_broken(s) : SPAR_OK;
+    }
+    SPARI_REQUIRE(s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "the file is from the middle of a step and the coupling is set otherwise here; make "
+                  "the same settings first (they may be changed when the step is accepted)");
+    l->image.at = end;
+    return SPAR_OK;
+}
+
+int spari_saved_check(spar_session *s, spari_saved *l) {
+    passage t = {&l->image, CHECK};
+    l->image.at = 0;
+    l->image.failed = l->image.no_memory = 0;
+    spari_coupling_free(&l->coupling);
+    SPARI_TRY(compare_scene(s, l));
+    l->clock = l->image.at;
+    SPARI_TRY(check_clock(s, l));
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(&t, m);
+        if (l->image.no_memory) {
+            return spari_saved_no_memory(s);
+        }
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
+    }
+    return l->image.failed ? spari_saved_broken(s) : check_coupling(s, l);
+}
+
+void spari_saved_load(spar_session *s, spari_saved *l) {
+    passage t = {&l->image, READ};
+    l->image.at = l->clock;
+    pass_clock(&t, s);
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(&t, m);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(&t, j);
+    }
+    s->coupling_stale = !l->coupling;
+    if (l->coupling) {
+        spari_coupling_free(&s->own->coupling);
+        s->own->coupling = l->coupling;
+        l->coupling = NULL;
+    }
+}
+
+void spari_saved_free(spari_saved *l) {
+    spari_image_free(&l->image);
+    spari_coupling_free(&l->coupling);
+}
