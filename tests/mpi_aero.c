@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <cmocka.h>
-#include <mpi.h>
+#include "ranks.h"
 #include <nrel5mw.h>
 #include <spar/spar_mpi.h>
 
@@ -26,14 +25,12 @@ typedef struct scene {
 
 /* Blade b is at home on rank b modulo size; alone: all of them here. */
 static void begin(scene *s, int alone) {
-    int rank = 0, size = 1;
+    int me = alone ? 0 : rank, ranks = alone ? 1 : size;
     double twist[N] = {0}, still[3] = {0, 0, 0}, omega[3], gravity[3] = {0, 0, -9.81};
     *s = (scene){.speed = 12.1 * PI / 30.0};
     if (alone) {
         OK(spar_session_create(&s->session));
     } else {
-        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-        MPI_Comm_size(MPI_COMM_WORLD, &size);
         OK(spar_session_create_mpi(MPI_COMM_WORLD, &s->session));
     }
     OK(nrel5mw_load(&s->data, SPAR_DATA_DIR "/nrel5mw"));
@@ -47,7 +44,7 @@ static void begin(scene *s, int alone) {
         OK(nrel5mw_create_blade(&s->data, &s->rotor, s->session, b, 1, NODES, &s->blade[b]));
         OK(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, still, omega));
         OK(spar_member_commit(s->blade[b]));
-        if (b % size == rank) {
+        if (b % ranks == me) {
             OK(nrel5mw_create_sections(&s->data, &s->rotor, b, s->blade[b], &s->fluid[s->here], twist));
             for (int i = 0; i < N; i++) { /* sheared, by the blade and not by where it is */
                 s->wind[s->here * N + i][0] = 11.4 + 0.5 * b + 0.02 * i;
@@ -115,11 +112,8 @@ static void test_spread_rotor(void **state) {
 /* The wind of blade 1 broken on the rank that has it: the step fails on all, nobody waits; then it can be done. */
 static void test_broken_wind(void **state) {
     (void)state;
-    int rank, size;
     scene s;
     begin(&s, 0);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
     int mine = 1 % size == rank, slot = size == 1 ? 1 : 0;
     for (int broken = 1; broken >= 0; broken--) {
         int done;
@@ -146,10 +140,5 @@ static void test_broken_wind(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_spread_rotor), cmocka_unit_test(test_broken_wind)};
-    int failed, worst;
-    MPI_Init(&argc, &argv);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }

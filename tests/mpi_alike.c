@@ -4,12 +4,12 @@
  */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_aero.h>
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
-static int rank, size, last; /* last: this is the rank that differs */
+static int last; /* last: this is the rank that differs */
 static const double dt = 0.02;
 
 typedef struct scene {
@@ -280,15 +280,10 @@ int main(int argc, char **argv) {
         cmocka_unit_test(calls_from_callbacks),
     };
     spar_session *s = NULL;
-    int failed, worst = 0;
     int early = spar_session_create_mpi(MPI_COMM_WORLD, &s);
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    ranks_begin(argc, argv);
     last = rank == size - 1 && size > 1;
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
+    int worst = ranks_end(cmocka_run_group_tests(tests, NULL, NULL));
     int late = spar_session_create_mpi(MPI_COMM_WORLD, &s);
     if (early != SPAR_ERR_COMM || late != SPAR_ERR_COMM || s ||
         !strstr(spar_session_message(NULL), "MPI is not running")) {

@@ -5,13 +5,11 @@
    solve too. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
 enum { MEMBERS = 9, TIED = 2, STEPS = 3, MOST = 64, POINTS = 12 };
-
-static int rank, size;
 
 /* Nodes of the members: rigid bodies are 1. Unequal, and not in order. */
 static const int nodes_of[MEMBERS] = {3, 12, 1, 6, 4, 9, 1, 5, 7};
@@ -208,12 +206,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(with_joints_and_statics),
         cmocka_unit_test(not_committed),
     };
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }

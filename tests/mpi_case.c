@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "case.h"
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -22,13 +22,11 @@ static void write_case(const char *path, const char *more) {
 /* Each rank its own copy, alike: they agree, and the wing bends alike everywhere. */
 static void test_alike(void **state) {
     (void)state;
-    int rank;
     char path[64];
     double q[7], least[7], most[7];
     spar_session *s = NULL;
     spar_case *c = NULL;
     spar_member *wing = NULL;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     (void)snprintf(path, sizeof path, "mpi_case_%ld_%d.case", (long)getpid(), rank);
     write_case(path, "");
     OK(NULL, spar_session_create_mpi(MPI_COMM_WORLD, &s));
@@ -54,15 +52,12 @@ static void test_odd_one(void **state) {
     static const char *const more[] = {NULL, "[beam]\n", "[joint top]\na weight 1\nb ground\n",
                                        "[rigid b]\nmass 1 1 1 1 1 1\n"};
     static const int own[] = {SPAR_ERR_IO, SPAR_ERR_ARGUMENT, SPAR_ERR_ARGUMENT, SPAR_ERR_COMM};
-    int rank, ranks;
     char path[64];
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     (void)snprintf(path, sizeof path, "mpi_case_%ld_%d.case", (long)getpid(), rank);
-    for (int k = 0; k < 4 && ranks > 1; k++) {
+    for (int k = 0; k < 4 && size > 1; k++) {
         spar_session *s = NULL;
         spar_case *c = NULL;
-        int odd = rank == ranks - 1;
+        int odd = rank == size - 1;
         (void)remove(path);
         if (!odd || more[k]) {
             write_case(path, odd ? more[k] : "");
@@ -78,8 +73,5 @@ static void test_odd_one(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_alike), cmocka_unit_test(test_odd_one)};
-    MPI_Init(&argc, &argv);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Finalize();
-    return failed;
+    return RANKS_RUN(argc, argv, tests);
 }

@@ -5,7 +5,7 @@
    witness), and the run goes on. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
@@ -22,7 +22,6 @@ typedef struct scene {
     int user_call;          /* this call answers 77 */
 } scene;
 
-static int rank, size;
 static double guess; /* of the piston's added mass, kg, and of as much spread along the beam; 0: none */
 
 /* Rank `me` of `ranks` gets its share of the nodes. */
@@ -504,13 +503,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(saved_on_some_ranks),
         cmocka_unit_test(refused_files),
     };
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    ranks_begin(argc, argv);
     snprintf(file, sizeof file, "mpi_coupling_%d.spar", size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return ranks_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

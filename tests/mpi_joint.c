@@ -5,14 +5,13 @@
    witness), and all is as it was. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
 enum { NODES = 12, MEMBERS = 6, JOINTS = 7 };
 
 static const double rest[4] = {1, 0, 0, 0}, step = 0.02;
-static int rank, size;
 static int kind = SPAR_FIDELITY_EXACT; /* of the wing; one below exact is welded to the ground by its free root */
 
 typedef struct scene {
@@ -439,12 +438,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(from_file),        cmocka_unit_test(trials),          cmocka_unit_test(advised),
         cmocka_unit_test(all_at_rest),      cmocka_unit_test(given_owners),    cmocka_unit_test(otherwise),
         cmocka_unit_test(lower_fidelities), cmocka_unit_test(fails_on_owner),  cmocka_unit_test(estimated)};
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }

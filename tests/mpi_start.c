@@ -4,7 +4,7 @@
    can do wrong: all are told, none waits (ctest's time limit is the witness), and all is as it was. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 
 enum { POINTS = 5, NODES = 24, MEMBERS = 3, MOTION = 6 * (2 * POINTS + 1) };
@@ -17,8 +17,6 @@ typedef struct scene {
     int64_t n; /* this rank's nodes of each */
     int calls, bad_call, user_call;
 } scene;
-
-static int rank, size;
 
 static void create_beam(scene *c, int k, int me, int ranks, int carriers) {
     static const double eta[2] = {0, 1};
@@ -167,10 +165,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(as_one_process_has_it),
         cmocka_unit_test(a_failure_is_everybodys),
     };
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Finalize();
-    return failed;
+    return RANKS_RUN(argc, argv, tests);
 }

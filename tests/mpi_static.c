@@ -4,7 +4,7 @@
    told, none waits (ctest's time limit is the witness), and all is as it was. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 
 enum { POINTS = 8, NODES = 24 };
@@ -18,8 +18,6 @@ typedef struct scene {
     double softness, breeze; /* how the medium's force grows with the shape; part of the wind that blows */
     int calls, bad_call, user_call;
 } scene;
-
-static int rank, size;
 
 /* Rank `me` of `ranks` gets its share of the nodes. */
 static void create(scene *c, int me, int ranks, int scheme) {
@@ -165,10 +163,5 @@ static void one_rank_fails(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(as_one_process_has_it), cmocka_unit_test(one_rank_fails)};
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Finalize();
-    return failed;
+    return RANKS_RUN(argc, argv, tests);
 }

@@ -5,7 +5,7 @@
    forces that nearly cancel, of sizes from 1e-6 to 1e3 N. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
@@ -26,8 +26,6 @@ typedef struct scene {
     int piston_here;
     double pushed_until; /* [s] the second fluid on the beam falls silent: its last loads stay */
 } scene;
-
-static int rank, size;
 
 static void place_of(int i, double x[3]) {
     double angle = 0.7 * i;
@@ -255,12 +253,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(parts_of_a_step),
         cmocka_unit_test(switched_between_steps),
     };
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }

@@ -6,7 +6,7 @@
    if they had not been. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
@@ -68,8 +68,6 @@ typedef struct scene {
     int resumed;                /* a rank may know a member for the loads that it has from the file */
     int nan_at, user_at, calls; /* this rank fails in that call of its fluid solver */
 } scene;
-
-static int rank, size;
 
 static int owner_of(int i, int deal, int ranks) {
     return deal == ON_ALL ? i % ranks : deal == ON_LAST ? ranks - 1 : i % ((ranks + 1) / 2);
@@ -421,12 +419,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(saved_and_resumed), cmocka_unit_test(failures),
         cmocka_unit_test(refused),           cmocka_unit_test(no_convergence_and_no_solution),
     };
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }

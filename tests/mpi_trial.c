@@ -3,7 +3,7 @@
    (ctest's time limit is the witness). The last rank has no fluid nodes, when there are several. */
 #include "scene.h"
 
-#include <mpi.h>
+#include "ranks.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 
@@ -21,8 +21,6 @@ typedef struct scene {
     int good_call;             /* 0: never again */
     int begins, bad_beginning; /* the same of the call before a step */
 } scene;
-
-static int rank, size;
 
 static void create(scene *c, int me, int ranks) {
     static const double q[4] = {1, 0, 0, 0}, where[3] = {0, 5, 0}, centre[3] = {0.1, 0, 0}, J[3] = {1, 2, 3};
@@ -296,12 +294,5 @@ int main(int argc, char **argv) {
         cmocka_unit_test(same_table),         cmocka_unit_test(same_advice),       cmocka_unit_test(failing_callbacks),
         cmocka_unit_test(failing_in_a_table), cmocka_unit_test(failing_in_advice), cmocka_unit_test(bad_arguments),
     };
-    int failed, worst = 0;
-    MPI_Init(&argc, &argv);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
-    MPI_Allreduce(&failed, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Finalize();
-    return worst;
+    return RANKS_RUN(argc, argv, tests);
 }
