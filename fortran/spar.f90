@@ -283,6 +283,14 @@ module spar
     procedure :: set_fidelity => member_set_fidelity
     procedure, private :: member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
     generic :: get_added_mass => member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
+    procedure, private :: member_learn_added_mass, member_learn_added_mass_single_1
+    generic :: learn_added_mass => member_learn_added_mass, member_learn_added_mass_single_1
+    procedure, private :: member_get_learned_added_mass, member_get_learned_added_mass_single_1, &
+        member_get_learned_added_mass_single_2, member_get_learned_added_mass_single_3, &
+        member_get_learned_added_mass_single_4, member_get_learned_added_mass_single_5
+    generic :: get_learned_added_mass => member_get_learned_added_mass, member_get_learned_added_mass_single_1, &
+        member_get_learned_added_mass_single_2, member_get_learned_added_mass_single_3, &
+        member_get_learned_added_mass_single_4, member_get_learned_added_mass_single_5
     procedure, private :: member_get_count_64, member_get_count_32
     generic :: get_count => member_get_count_64, member_get_count_32
     procedure :: get_name => member_get_name
@@ -1172,6 +1180,44 @@ contains
         status = spar_member_get_added_mass(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_added_mass
+
+  subroutine member_learn_added_mass(self, eta, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_learn_added_mass(self%handle, size(eta, kind=c_int64_t), eta), self%session, stat, errmsg)
+  end subroutine member_learn_added_mass
+
+  ! n: stations; eta and mass are filled as far as they reach
+  subroutine member_get_learned_added_mass(self, used, spread, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_double), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status, flag
+
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(mass, 3, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_learned_added_mass', fault, stat, errmsg, self%name)
+      return
+    end if
+    flag = 0
+    status = spar_member_get_learned_added_mass(self%handle, flag, spread, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_member_get_learned_added_mass(self%handle, capacity=size(eta, kind=c_int64_t), eta=eta)
+    if (status == SPAR_OK .and. present(mass)) &
+        status = spar_member_get_learned_added_mass(self%handle, capacity=size(mass, 3, kind=c_int64_t), mass=mass)
+    if (status == SPAR_OK) used = flag /= 0
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_learned_added_mass
 
   subroutine member_get_count_64(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -4037,6 +4083,116 @@ contains
     call member_get_added_mass(self, n=n, mass=c_mass, stat=stat, errmsg=errmsg)
     call take(c_mass, mass)
   end subroutine member_get_added_mass_single_2
+
+  subroutine member_learn_added_mass_single_1(self, eta, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_learn_added_mass(self, eta=real(eta, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_learn_added_mass_single_1
+
+  subroutine member_get_learned_added_mass_single_1(self, used, spread, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_float), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_spread
+
+    allocate (c_spread, source=untouched)
+    call member_get_learned_added_mass(self, used=used, spread=c_spread, n=n, eta=eta, mass=mass, stat=stat, &
+        errmsg=errmsg)
+    call take(c_spread, spread)
+  end subroutine member_get_learned_added_mass_single_1
+
+  subroutine member_get_learned_added_mass_single_2(self, used, spread, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_double), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(mass)) allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, &
+        c_int64_t)), source=untouched)
+    call member_get_learned_added_mass(self, used=used, spread=spread, n=n, eta=c_eta, mass=c_mass, stat=stat, &
+        errmsg=errmsg)
+    call take(c_eta, eta)
+    call take(c_mass, mass)
+  end subroutine member_get_learned_added_mass_single_2
+
+  subroutine member_get_learned_added_mass_single_3(self, used, spread, n, no_eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_double), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, c_int64_t)), &
+        source=untouched)
+    if (present(no_eta)) return
+    call member_get_learned_added_mass(self, used=used, spread=spread, n=n, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_mass, mass)
+  end subroutine member_get_learned_added_mass_single_3
+
+  subroutine member_get_learned_added_mass_single_4(self, used, spread, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_float), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_spread
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_spread, source=untouched)
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(mass)) allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, &
+        c_int64_t)), source=untouched)
+    call member_get_learned_added_mass(self, used=used, spread=c_spread, n=n, eta=c_eta, mass=c_mass, stat=stat, &
+        errmsg=errmsg)
+    call take(c_spread, spread)
+    call take(c_eta, eta)
+    call take(c_mass, mass)
+  end subroutine member_get_learned_added_mass_single_4
+
+  subroutine member_get_learned_added_mass_single_5(self, used, spread, n, no_eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: used
+    real(c_float), intent(inout) :: spread
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_spread
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_spread, source=untouched)
+    allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, c_int64_t)), &
+        source=untouched)
+    if (present(no_eta)) return
+    call member_get_learned_added_mass(self, used=used, spread=c_spread, n=n, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_spread, spread)
+    call take(c_mass, mass)
+  end subroutine member_get_learned_added_mass_single_5
 
   subroutine member_set_load_64_single_1(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self

@@ -440,6 +440,25 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_added_mass
 
+    function spar_member_learn_added_mass(member, n, eta) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*)
+      integer(c_int) :: status
+    end function spar_member_learn_added_mass
+
+    function spar_member_get_learned_added_mass(member, used, spread, n, capacity, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: used
+      real(c_double), intent(inout), optional :: spread
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), mass(*)
+      integer(c_int) :: status
+    end function spar_member_get_learned_added_mass
+
     function spar_member_set_initial_velocity(member, x0, v0, omega) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member

@@ -22,6 +22,7 @@ typedef struct scene {
     int user_call;          /* this call answers 77 */
 } scene;
 
+static int learns;   /* the added mass is learned, at one station */
 static double guess; /* of the piston's added mass, kg, and of as much spread along the beam; 0: none */
 
 /* Rank `me` of `ranks` gets its share of the nodes. */
@@ -46,10 +47,12 @@ static void create(scene *c, int me, int ranks, int scheme) {
     scene_diagonal(added, guess, guess, guess, 0, 0, 0);
     scene_diagonal(along, guess / 10, guess / 10, guess / 10, 0, 0, 0);
     OK(s, spar_member_set_added_mass(c->beam, guess > 0, eta, along));
+    OK(s, spar_member_learn_added_mass(c->beam, learns, eta));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));
     OK(s, spar_member_set_added_mass(c->piston, guess > 0, NULL, added));
+    OK(s, spar_member_learn_added_mass(c->piston, learns, NULL));
     OK(s, spar_member_commit(c->piston));
     for (int i = 0; i < NODES; i++) {
         if (i % carriers == me) {
@@ -179,6 +182,43 @@ static void guess_over_ranks(void **state) {
         OK(all.session, spar_member_commit(body));
     }
     spar_session_destroy(&all.session);
+}
+
+/* The same learned: every rank has the same mass of each member, and it is that of the serial run, to 1e-9 (the loads
+   agree to 1e-11, and are divided by differences of a few per cent). */
+static void learning_over_ranks(void **state) {
+    (void)state;
+    scene all, alone;
+    learns = 1;
+    create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
+    create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
+    learns = 0;
+    for (int step = 0; step < STEPS; step++) {
+        OK(all.session, spar_step(all.session, 0.02, solve, &all, NULL));
+        OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
+        compare(&all, &alone);
+    }
+    for (int k = 0; k < 2; k++) {
+        double M[2][36], spread, first[36], most = 0;
+        int used[2];
+        OK(all.session,
+           spar_member_get_learned_added_mass(k ? all.piston : all.beam, &used[0], &spread, NULL, 1, NULL, M[0]));
+        OK(alone.session,
+           spar_member_get_learned_added_mass(k ? alone.piston : alone.beam, &used[1], NULL, NULL, 1, NULL, M[1]));
+        memcpy(first, M[0], sizeof first);
+        MPI_Bcast(first, 36, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+        assert_memory_equal(first, M[0], sizeof first);
+        assert_int_equal(used[0], used[1]);
+        for (int i = 0; i < 36; i++) {
+            most = fmax(most, fabs(M[1][i]));
+        }
+        for (int i = 0; i < 36; i++) {
+            NEAR(M[0][i], M[1][i], 1e-9 * most);
+        }
+        assert_true(k == 0 || (used[0] && most > 1));
+    }
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
 }
 
 /* ---- what one rank can do wrong ---- */
@@ -491,6 +531,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_serial),
         cmocka_unit_test(guess_over_ranks),
+        cmocka_unit_test(learning_over_ranks),
         cmocka_unit_test(totals_over_ranks),
         cmocka_unit_test(explicit_error_over_ranks),
         cmocka_unit_test(totals_over_ranks),

@@ -245,6 +245,7 @@ static void test_read_back(void **state) {
     static const char *const option[][3] = {{"coupling.unconverged", "error", "accept"},
                                             {"coupling.patience", "3", "1000000"},
                                             {"coupling.norm", "motion", "loads"},
+                                            {"fluid.added_mass", "acceleration", "velocity"},
                                             {"coupling.estimate", "off", "on"},
                                             {"coupling.columns", "30", "7"},
                                             {"coupling.reuse", "5", "0"},

@@ -100,6 +100,8 @@ call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int
 call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
 call spar_member_set_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
 call spar_member_get_added_mass int member|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
+call spar_member_learn_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n]
+call spar_member_get_learned_added_mass int member|member|value| used|int|out| spread|double|out| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
 call spar_member_set_initial_velocity int member|member|value| x0|double|in|[3] v0|double|in|[3] omega|double|in|[3]
 call spar_member_set_owner int member|member|value| rank|int|value|
 call spar_member_get_owner int member|member|value| rank|int|out|

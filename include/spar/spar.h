@@ -264,6 +264,10 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
      coupling.target        1e-15 to 1, default 0.01: the error that the advised dt keeps
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
                             (T12), or the node motion interpolated on the group (does not cut corners)
+     fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for the loads that
+                            are predicted of members with one that is given or learned: accelerations as they are pulled
+                            at t^{n+1}, or the change of the velocity over the step, as flow solvers with moving walls
+                            have it; explicit coupling with heavy fluids of that kind needs it. With one substep
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
      ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks.
@@ -516,6 +520,29 @@ SPAR_API int spar_member_set_added_mass(spar_member *member, int64_t n, const do
    mass[capacity][36]: out, 0 behind the last, NULL: not wanted. Local. */
 SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t capacity, double *eta,
                                         double *mass);
+/* The fluid's added mass learned while steps are iterated, from the differences of their iterations: loads that came
+   back against accelerations, with any scheme that iterates. From the step on in which it is known well enough, and as
+   long as it is, it stands in the equations in place of the guess that was given (none, or the last run's); then few
+   iterations, fixed points or explicit steps do, in which nothing more is learned. It is what comes back within a step:
+   of a fluid that takes accelerations from the velocities at both ends of the step half the added mass, which is what
+   belongs there. The converged answer does not change. On all ranks; none of it happens in a trial. Default: off, which
+   costs nothing. Before commit; replaces an earlier call. Local.
+     n: in, stations of a beam at which it is found, linear in eta between them, at most 20: 1 if it is the same all
+        along; 1 of a rigid body; 0: learn nothing
+     eta[n]: in, of a beam, strictly increasing in [0,1]; else not looked at
+   SPAR_ERR_UNSUPPORTED: as spar_member_set_added_mass. */
+SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta);
+/* What has been learned, of steps accepted; a host may give it as the guess at the start of the next run. Local, and
+   the same on every rank.
+     used: out, whether it stands in the equations (from the next step on)
+     spread: out, the part of a change of the loads that it has left, of differences before it knew them, root of the
+             mean of the squares: iterations will contract by about as much. Used below 1/4, and not any more beyond
+             1/2. 1: there have been less than two and a half
+     n: out, stations, 0: nothing is to be learned; capacity: in, of the arrays; eta[capacity], mass[capacity][36]: out,
+        as spar_member_set_added_mass takes them, 0 behind the last, and as long as nothing is known
+   Each out may be NULL: not wanted. */
+SPAR_API int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
+                                                int64_t capacity, double *eta, double *mass);
 /* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Before the first step, before or after commit.
    Local.
      x0[3]: in, m; v0[3]: in, m/s; omega[3]: in, rad/s; each NULL: 0 */

@@ -63,6 +63,7 @@ struct spar_session {
     double coupling_target;          /* error the advised dt aims at */
     int coupling_patience;           /* option coupling.patience */
     int norm_of_loads;               /* option coupling.norm = motion (default) | loads */
+    int added_by_velocity;           /* option fluid.added_mass = acceleration (default) | velocity */
     int coupling_estimate;           /* option coupling.estimate = off (default) | on */
     double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
     int theta_on_group;              /* option fluid.theta = average (default) | group */

@@ -94,29 +94,55 @@ int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t ca
 
 /* ---- points ---- */
 
-/* The guess per length along the line, at one Gauss point an element more than it has nodes. */
-static int fill_beam(const spar_member *m, spari_added *d) {
-    int P = m->per_element, points = d->points;
-    int64_t count = (int64_t)m->elements * points;
-    double xi[SPARI_MAX_NODES + 1], w[SPARI_MAX_NODES + 1], own[36], section[36];
-    spari_station *s = spari_zalloc(count, sizeof *s);
+static void free_strips(spari_strips *p) {
+    free(p->eta), free(p->R), free(p->phi), free(p->arm);
+    *p = (spari_strips){0};
+}
+
+static int allocate_strips(spari_strips *p, int elements, int per_element, int in_element) {
+    *p = (spari_strips){.count = (int64_t)elements * in_element, .per_element = per_element, .in_element = in_element};
+    p->eta = spari_zalloc(2 * p->count, sizeof *p->eta);
+    p->R = spari_zalloc(9 * p->count, sizeof *p->R);
+    p->phi = spari_zalloc(per_element * p->count, sizeof *p->phi);
+    p->arm = spari_zalloc(3 * p->count, sizeof *p->arm);
+    p->weight = p->eta + (p->eta ? p->count : 0);
+    return p->eta && p->R && p->phi && p->arm ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* One Gauss point an element more than it has nodes. */
+static int make_strips_of_beam(const spar_member *m, spari_strips *p) {
+    int P = m->per_element, points = P + 1;
+    double xi[SPARI_MAX_NODES + 1], w[SPARI_MAX_NODES + 1];
+    SPARI_TRY(allocate_strips(p, m->elements, P, points));
+    spari_station *s = spari_zalloc(p->count, sizeof *s);
     int ok = s && spari_gauss(points, xi, w) == 0;
-    for (int64_t k = 0; k < count && ok; k++) {
+    for (int64_t k = 0; k < p->count && ok; k++) {
         s[k].element = (int)(k / points);
         s[k].xi = xi[k % points];
     }
-    ok = ok && spari_beam_stations(m, count, s) == SPAR_OK;
-    for (int64_t k = 0; k < count && ok; k++) {
-        double eta = 0.5 * (1 + spari_member_xi(m, s[k].element, s[k].xi)), *mass = d->mass + 36 * k;
-        spari_beam_table_at(m->guess_count, m->guess_eta, m->guess, eta, own);
-        spari_beam_turn_section(s[k].R, own, section);
-        for (int i = 0; i < 36; i++) {
-            mass[i] = w[k % points] * s[k].jacobian * section[i];
+    ok = ok && spari_beam_stations(m, p->count, s) == SPAR_OK;
+    for (int64_t k = 0; k < p->count && ok; k++) {
+        const double *place = m->xr + 3 * (int64_t)P * (k / points);
+        p->eta[k] = 0.5 * (1 + spari_member_xi(m, s[k].element, s[k].xi));
+        p->weight[k] = w[k % points] * s[k].jacobian;
+        memcpy(p->R + 9 * k, s[k].R, sizeof s[k].R);
+        memcpy(p->phi + P * k, s[k].phi, (size_t)P * sizeof *s[k].phi);
+        for (int i = 0; i < 3 * P; i++) {
+            p->arm[3 * k + i % 3] += p->phi[P * k + i / 3] * (place[i] - m->xr[i % 3]);
         }
-        memcpy(d->phi + P * k, s[k].phi, (size_t)P * sizeof *s[k].phi);
     }
     free(s);
     return ok ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+static int make_strips(const spar_member *m, spari_strips *p) {
+    if (m->kind == SPARI_BEAM) {
+        return make_strips_of_beam(m, p);
+    }
+    SPARI_TRY(allocate_strips(p, 1, 1, 1));
+    p->weight[0] = p->phi[0] = 1;
+    spari_quat_matrix(m->qr, p->R);
+    return SPAR_OK;
 }
 
 /* whole [36] += T^T mass T of a point, T taking the root's acceleration to it: a + alpha x arm */
@@ -141,63 +167,66 @@ static void gather_point(const double mass[36], const double arm[3], double whol
     }
 }
 
-/* Of a beam that one body carries: the mass of the whole at its root. */
-static int fill_whole(const spar_member *m, spari_added *d) {
-    int P = m->per_element, points = P + 1;
-    spari_added all = {.elements = m->elements, .per_element = P, .points = points};
-    int64_t count = (int64_t)m->elements * points;
-    all.mass = spari_zalloc((36 + P) * count, sizeof *all.mass);
-    if (!all.mass) {
-        return SPAR_ERR_MEMORY;
-    }
-    all.phi = all.mass + 36 * count;
-    int status = fill_beam(m, &all);
-    for (int64_t k = 0; k < count && status == SPAR_OK; k++) {
-        const double *place = m->xr + 3 * (int64_t)P * (k / points);
-        double arm[3] = {0};
-        for (int i = 0; i < 3 * P; i++) {
-            arm[i % 3] += all.phi[P * k + i / 3] * (place[i] - m->xr[i % 3]);
+void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double *mass) {
+    spari_added *d = m->added;
+    const spari_strips *p = &d->strips;
+    int64_t points = (int64_t)d->elements * d->points;
+    double own[36], section[36];
+    memset(d->mass, 0, (size_t)(36 * points) * sizeof *d->mass);
+    for (int64_t k = 0; k < p->count && n > 0; k++) {
+        spari_beam_table_at(n, eta, mass, p->eta[k], own);
+        spari_beam_turn_section(p->R + 9 * k, own, section);
+        for (int i = 0; i < 36; i++) {
+            section[i] *= p->weight[k];
         }
-        gather_point(all.mass + 36 * k, arm, d->mass);
+        if (d->whole) {
+            gather_point(section, p->arm + 3 * k, d->mass);
+        } else {
+            memcpy(d->mass + 36 * k, section, sizeof section);
+        }
     }
-    free(all.mass);
-    return status;
 }
 
-static int fill_added(spar_member *m, int whole) {
-    spari_added *d = m->added;
-    double R[9];
-    if (m->kind == SPARI_BEAM && !whole) {
-        return fill_beam(m, d);
+/* The points of the mass are the strips, or one that all of these are gathered in. */
+static int allocate_points(const spar_member *m, spari_added *d) {
+    const spari_strips *p = &d->strips;
+    d->elements = d->whole ? 1 : m->elements;
+    d->per_element = d->whole ? 1 : p->per_element;
+    d->points = d->whole ? 1 : p->in_element;
+    int64_t count = (int64_t)d->elements * d->points;
+    d->mass = spari_zalloc(36 * count, sizeof *d->mass);
+    d->phi = spari_zalloc(d->per_element * count, sizeof *d->phi);
+    int ok = d->mass && d->phi;
+    double **nodal[] = {&d->shift, &d->past[0], &d->past[1], &d->mean[0], &d->mean[1], &d->mean[2], &d->scheme};
+    for (size_t i = 0; i < sizeof nodal / sizeof *nodal; i++) {
+        ok = ok && (*nodal[i] = spari_zalloc(6 * m->nodes, sizeof(double)));
+    }
+    if (!ok) {
+        return SPAR_ERR_MEMORY;
     }
     d->phi[0] = 1;
-    if (m->kind == SPARI_BEAM) {
-        return fill_whole(m, d);
+    if (!d->whole) {
+        memcpy(d->phi, p->phi, (size_t)(d->per_element * count) * sizeof *d->phi);
     }
-    spari_quat_matrix(m->qr, R);
-    spari_beam_turn_section(R, m->guess, d->mass);
     return SPAR_OK;
 }
 
 int spari_added_create(spar_member *m, int whole) {
-    if (m->guess_count == 0 || !m->body || !(m->effects & SPAR_EFFECT_INERTIA)) {
+    if ((m->guess_count == 0 && !m->learned) || !m->body || !(m->effects & SPAR_EFFECT_INERTIA)) {
         return SPAR_OK;
     }
     spari_added *d = m->added = spari_zalloc(1, sizeof *d);
-    int ok = d != NULL, line = m->kind == SPARI_BEAM && !whole;
-    if (ok) {
-        d->elements = line ? m->elements : 1;
-        d->per_element = line ? m->per_element : 1;
-        d->points = line ? d->per_element + 1 : 1;
-        int64_t count = (int64_t)d->elements * d->points;
-        d->mass = spari_zalloc(36 * count, sizeof *d->mass);
-        d->phi = spari_zalloc(d->per_element * count, sizeof *d->phi);
-        d->shift = spari_zalloc(6 * m->nodes, sizeof *d->shift);
-        d->past[0] = spari_zalloc(6 * m->nodes, sizeof *d->past[0]);
-        d->past[1] = spari_zalloc(6 * m->nodes, sizeof *d->past[1]);
-        ok = d->mass && d->phi && d->shift && d->past[0] && d->past[1] && fill_added(m, whole) == SPAR_OK;
+    int status = d ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (d) {
+        d->whole = whole && m->kind == SPARI_BEAM;
+        status = make_strips(m, &d->strips);
+        status = status == SPAR_OK ? allocate_points(m, d) : status;
     }
-    SPARI_REQUIRE(m->session, ok, SPAR_ERR_MEMORY, "no memory for the added mass of '%s'", m->name);
+    SPARI_REQUIRE(m->session, status == SPAR_OK, SPAR_ERR_MEMORY, "no memory for the added mass of '%s'", m->name);
+    spari_added_fill(m, m->guess_count, m->guess_eta, m->guess);
+    if (!m->learned) {
+        free_strips(&d->strips);
+    }
     return SPAR_OK;
 }
 
@@ -208,15 +237,19 @@ void spari_added_free(spari_added *d) {
         free(d->shift);
         free(d->past[0]);
         free(d->past[1]);
+        free(d->mean[0]);
+        free(d->mean[1]);
+        free(d->mean[2]);
+        free(d->scheme);
+        free(d->last);
+        free_strips(&d->strips);
         free(d);
     }
 }
 
 /* ---- in the equations ---- */
 
-/* How the section at a point of element e is turned at t^n, as fluids see it: the nodes' quaternions summed. Small
-   rotations are left out; a member that is linear seen from its root turns with that. */
-static void turn_at(const spar_member *m, int64_t e, const double *phi, double turn[4]) {
+void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double turn[4]) {
     const spari_added *d = m->added;
     const double *q = m->now.q + 3;
     double sign = 1;
@@ -269,7 +302,7 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
         int64_t e = k / d->points;
         const double *phi = d->phi + P * k, *in = a + 6 * first_node(d, from, e);
         double *back = out + 6 * first_node(d, to, e), turn[4], at[6] = {0}, force[6];
-        turn_at(m, e, phi, turn);
+        spari_added_turn(m, e, phi, turn);
         for (int l = 0; l < P; l++) {
             for (int i = 0; i < 6; i++) {
                 at[i] += phi[l] * in[6 * l + i];
@@ -314,7 +347,7 @@ void spari_added_tangent(const spar_member *m, int e, double cm, const double *t
         const double *phi = d->phi + P * k;
         double turn[4] = {1, 0, 0, 0}, R[9], X[36], XT[36];
         if (tinv) {
-            turn_at(m, e, phi, turn);
+            spari_added_turn(m, e, phi, turn);
         }
         spari_quat_matrix(turn, R);
         spari_beam_turn_section(R, d->mass + 36 * k, X);
@@ -335,10 +368,44 @@ void spari_added_see(spar_member *m) {
     (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, m->after.a, 1, m->added->shift);
 }
 
-void spari_added_predict(spar_member *m, const double w[3]) {
+/* Generalised-alpha's numbers; answer: what a change of the acceleration at t^{n+1} makes of (v^{n+1} - v^n) / dt. */
+typedef struct integration {
+    double am, af, gamma, answer;
+} integration;
+
+static integration integration_of(const spar_session *s) {
+    double rho = s->rho_inf, am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 + af - am;
+    return (integration){am, af, gamma, gamma * (1 - af) / (1 - am)};
+}
+
+/* Of a step of another length the scheme goes on from another acceleration of its own (spari_scheme_stretch). */
+static double stretch_of(const spar_session *s, double dt) {
+    double before = s->dt_last[0];
+    return s->step > 0 && before > 0 ? fmin(dt / before, 4) : 1;
+}
+
+/* The fluid's acceleration is the change of the velocity over dt. Of that one part follows the acceleration at t^{n+1},
+   which A stands for; all of it is extrapolated, and what of it is known at t^n is taken out again. */
+static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
+    const spari_added *d = m->added;
+    const integration g = integration_of(m->session);
+    double ratio = stretch_of(m->session, dt);
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        double a = m->now.a[i], b = a + ratio * (d->scheme[i] - a);
+        double known = (1 - g.gamma) * b + g.gamma * (g.af * a - g.am * b) / (1 - g.am);
+        d->shift[i] = w[0] * d->mean[0][i] + w[1] * d->mean[1][i] + w[2] * d->mean[2][i] - known;
+    }
+    (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, d->shift, 1 / g.answer, m->load_used);
+}
+
+void spari_added_predict(spar_member *m, const double w[3], double dt) {
     const spari_added *d = m->added;
     const double *a[3] = {m->now.a, d->past[0], d->past[1]};
-    for (int k = 0; k < 3; k++) {
+    int by_velocity = m->session->added_by_velocity && m->session->substeps == 1;
+    if (by_velocity) {
+        predict_by_velocity(m, w, dt);
+    }
+    for (int k = 0; k < 3 && !by_velocity; k++) {
         if (w[k] != 0) {
             (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, a[k], w[k], m->load_used);
         }
@@ -356,8 +423,28 @@ const double *spari_added_shift(const spar_member *m) {
     return m->added && !m->session->standing ? m->added->shift : NULL;
 }
 
+void spari_added_restart(spar_member *m) {
+    double *all[] = {m->added->mean[0], m->added->mean[1], m->added->mean[2], m->added->scheme};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        memcpy(all[k], m->now.a, (size_t)(6 * m->nodes) * sizeof(double));
+    }
+}
+
+static void accept_means(spar_member *m) {
+    spari_added *d = m->added;
+    const integration g = integration_of(m->session);
+    double *last = d->mean[2], dt = m->session->dt, ratio = stretch_of(m->session, dt);
+    d->mean[2] = d->mean[1], d->mean[1] = d->mean[0], d->mean[0] = last;
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        double a = m->now.a[i], b = a + ratio * (d->scheme[i] - a);
+        last[i] = (m->after.v[i] - m->now.v[i]) / dt;
+        d->scheme[i] = ((1 - g.af) * m->after.a[i] + g.af * a - g.am * b) / (1 - g.am);
+    }
+}
+
 void spari_added_accept(spar_member *m) {
     spari_added *d = m->added;
+    accept_means(m);
     double *oldest = d->past[1];
     d->past[1] = d->past[0];
     d->past[0] = oldest;
@@ -365,8 +452,13 @@ void spari_added_accept(spar_member *m) {
 }
 
 void spari_added_carry(const spar_member *from, spar_member *m) {
-    for (int k = 0; k < 2 && from->added && m->added; k++) {
-        spari_resample_values(m->elements, from->per_element, m->per_element, 6, -1, from->added->past[k],
-                              m->added->past[k]);
+    if (!from->added || !m->added) {
+        return;
+    }
+    const spari_added *old = from->added, *d = m->added;
+    const double *was[] = {old->past[0], old->past[1], old->mean[0], old->mean[1], old->mean[2], old->scheme};
+    double *is[] = {d->past[0], d->past[1], d->mean[0], d->mean[1], d->mean[2], d->scheme};
+    for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
+        spari_resample_values(m->elements, from->per_element, m->per_element, 6, -1, was[k], is[k]);
     }
 }

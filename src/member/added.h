@@ -11,17 +11,40 @@
 
 #include "structure.h"
 
+/* Points along the line of a beam; or the node of a body. */
+typedef struct spari_strips {
+    int64_t count;
+    int per_element, in_element; /* nodes and points of an element */
+    double *eta, *weight;        /* [count] place, and length (a body: 1) */
+    double *R;                   /* [count][9] section axes in the reference */
+    double *phi;                 /* [count][per_element] */
+    double *arm;                 /* [count][3] from the root in the reference */
+} spari_strips;
+
 struct spari_added {
+    int whole;                         /* one body carries all of a beam's nodes */
     int elements, per_element, points; /* of the mass: the member's, or one node and point where one body carries all */
-    double *mass;    /* [elements][points][36] of a point, weight in it, global axes of the reference */
-    double *phi;     /* [elements][points][P] */
-    double *shift;   /* [nodes][6] A a of the motion after */
-    double *past[2]; /* [nodes][6] accelerations at t^{n-1}, t^{n-2} */
+    double *mass;        /* [elements][points][36] of a point, weight in it, global axes of the reference */
+    double *phi;         /* [elements][points][P] */
+    double *shift;       /* [nodes][6] A a of the motion after */
+    double *past[2];     /* [nodes][6] accelerations at t^{n-1}, t^{n-2} */
+    double *mean[3];     /* [nodes][6] changes of the velocity over dt, in the last three steps */
+    double *scheme;      /* [nodes][6] the scheme's own acceleration at t^n */
+    spari_strips strips; /* where the mass is learned, else empty */
+    double *last;        /* likewise (learned.h), or NULL */
 };
 
-/* m->added of a member that moves by equations with inertia and has been given a guess; else nothing. whole: one body
-   carries all of its nodes, from the root. A status and a message; what there is then is to be freed. */
+/* m->added of a member that moves by equations with inertia and has been given a guess, or is to learn it; else
+   nothing. whole: one body carries all of its nodes, from the root. A status and a message; what there is then is to be
+   freed. */
 int spari_added_create(spar_member *m, int whole);
+/* Puts a table of n stations in place of what the mass was, n = 0: none. Only while it is made, and where it is
+ * learned.
+ */
+void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double *mass);
+/* How the section at a point of element e is turned at t^n, as fluids see it: the nodes' quaternions summed. Small
+   rotations are left out; a member that is linear seen from its root turns with that. */
+void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double turn[4]);
 void spari_added_free(spari_added *added);
 
 /* out [n][6] += factor A a, a [n][6]; each over the nodes as they are numbered for hosts, or as the unknowns are,
@@ -33,8 +56,12 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
    member that stands as in the reference. */
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S);
 
-/* Predicted loads become y: load_used += A (w[0] a^n + w[1] a^{n-1} + w[2] a^{n-2}), and the shift that of t^n. */
-void spari_added_predict(spar_member *m, const double w[3]);
+/* Predicted loads become y, w being the predictor's weights in a step of dt: load_used += A (w[0] a^n + w[1] a^{n-1} +
+   w[2] a^{n-2}), and the shift that of t^n; of a fluid that takes accelerations from velocities (T19) of
+   docs/theory.md. */
+void spari_added_predict(spar_member *m, const double w[3], double dt);
+/* The motion now has been set anew: as if it had always been accelerated so. */
+void spari_added_restart(spar_member *m);
 /* The motion after has changed: the shift follows. */
 void spari_added_see(spar_member *m);
 /* load += factor times the shift */

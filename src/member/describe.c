@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "edge.h"
+#include "learned.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -428,6 +429,7 @@ uint64_t spari_member_make(const spar_member *m) {
         size_t n = (size_t)m->guess_count * sizeof(double);
         h = spari_hash_bytes(spari_hash_bytes(h, m->guess_eta, n), m->guess, 36 * n);
     }
+    h = spari_learned_hash(m, h);
     const spari_beam *b = m->beam;
     if (b) {
         size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);

@@ -27,6 +27,7 @@ typedef struct spari_applied spari_applied;   /* src/member/applied.h: follower 
 typedef struct spari_remake spari_remake;     /* src/trial/remake.h: a member made anew for a trial */
 typedef struct spari_means spari_means;       /* src/member/means.h: accelerations over a step of several substeps */
 typedef struct spari_added spari_added;       /* src/member/added.h: a guess of the fluid's added mass */
+typedef struct spari_learned spari_learned;   /* src/member/learned.h: the same learned from iterations */
 typedef struct spari_body spari_body;         /* src/member/body.h: what of it is solved, on every rank */
 
 /* How the deformation of a member is seen. */
@@ -61,7 +62,8 @@ struct spar_member {
     double mass[36];     /* rigid */
     int64_t guess_count; /* of the fluid's added mass, as the host guesses it: stations (a rigid body: 1); 0: none */
     double *guess_eta, *guess;
-    double velocity[3][3]; /* x0, v0, omega of the initial rigid-body field */
+    spari_learned *learned; /* NULL: not asked for; shared with what it is made anew as in a trial */
+    double velocity[3][3];  /* x0, v0, omega of the initial rigid-body field */
     int velocity_given;
     spari_beam *beam;
     spari_body *body; /* of members that are solved for */

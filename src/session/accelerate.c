@@ -754,6 +754,16 @@ void spari_accelerator_reject(spari_accelerator *a) {
     a->iteration = 0;
 }
 
+void spari_accelerator_forget(spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        a->column[s].state = FREE;
+    }
+    a->omega_accepted = 0;
+    a->ratios = a->ratios_before = (tally){0};
+    a->most_weight = 0;
+    a->used = 0;
+}
+
 int spari_accelerator_columns(const spari_accelerator *a) {
     return a->used;
 }

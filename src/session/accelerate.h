@@ -77,6 +77,9 @@ void spari_accelerator_accept(spari_accelerator *a);
    solution, wild iterates) is in them. */
 void spari_accelerator_reject(spari_accelerator *a);
 
+/* Between steps: the map is another one from here on. */
+void spari_accelerator_forget(spari_accelerator *a);
+
 /* What the step under way has shown. */
 int spari_accelerator_columns(const spari_accelerator *a); /* in the last least-squares problem */
 int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered out in this step */

@@ -555,6 +555,12 @@ void spari_coupling_reject(spar_session *s) {
     }
 }
 
+void spari_coupling_forget(spar_session *s) {
+    if (s->own->coupling->accelerator) {
+        spari_accelerator_forget(s->own->coupling->accelerator);
+    }
+}
+
 int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity, double *residual,
                                 double *size) {
     SPARI_QUIET;

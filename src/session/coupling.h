@@ -70,6 +70,8 @@ void spari_coupling_last(const spar_session *session, double *residual, double *
 void spari_coupling_record(spar_session *session, double residual, double size);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
+/* What the equations of motion are has changed: differences of earlier steps say nothing of the next ones. */
+void spari_coupling_forget(spar_session *session);
 void spari_coupling_reject(spar_session *session);
 
 /* Whether the motion is looked at too, for which it is kept. */

@@ -6,7 +6,9 @@
 #include "../member/added.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
+#include "../member/learned.h"
 #include "../member/means.h"
+#include "../solve/life.h"
 #include "coupling.h"
 #include "own.h"
 #include "settings.h"
@@ -133,9 +135,24 @@ static void pass_numbers(passage *t, double *words, int64_t n) {
     }
 }
 
+static void pass_learned(passage *t, spar_member *m) {
+    int64_t n, last;
+    double *state = spari_learned_state(m, &n), *nodal = spari_learned_last(m, &last);
+    pass_numbers(t, state, n);
+    pass_numbers(t, nodal, last);
+    if (t->mode == READ) {
+        spari_member_put_learned(m);
+    }
+}
+
 static void pass_added(passage *t, spar_member *m) {
-    for (int k = 0; k < 2; k++) {
-        pass_numbers(t, m->added->past[k], 6 * m->nodes);
+    const spari_added *d = m->added;
+    double *const nodal[] = {d->past[0], d->past[1], d->mean[0], d->mean[1], d->mean[2], d->scheme};
+    for (size_t k = 0; k < sizeof nodal / sizeof *nodal; k++) {
+        pass_numbers(t, nodal[k], 6 * m->nodes);
+    }
+    if (m->learned) {
+        pass_learned(t, m);
     }
     if (t->mode == READ) {
         spari_added_see(m);

@@ -80,6 +80,7 @@ static const spari_setting settings[] = {
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_ALIKE),
     OPTION_WORD("coupling.norm", norm_of_loads, "motion", "loads", SPARI_ALIKE | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.added_mass", added_by_velocity, "acceleration", "velocity", SPARI_ALIKE),
     OPTION_WORD("coupling.estimate", coupling_estimate, "off", "on", SPARI_ALIKE | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.columns", coupling_columns, 1, 10000, "a whole number from 1 to 10000", 30,
                  SPARI_ALIKE | SPARI_OF_COUPLING),

@@ -2,6 +2,7 @@
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
 #include "../member/added.h"
+#include "../member/learned.h"
 #include "../member/means.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
@@ -67,7 +68,7 @@ static void predict_loads(spar_member *m, int order, double dt, const double las
         m->load_used[i] = f;
     }
     if (m->added) {
-        spari_added_predict(m, w);
+        spari_added_predict(m, w, dt);
     }
 }
 
@@ -127,6 +128,7 @@ int spar_step_begin(spar_session *session, double dt) {
         if (!s->aside) {
             predict_loads(m, order, dt, s->dt_last);
         }
+        spari_learned_begin(m);
     }
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_hold(j);
@@ -251,6 +253,9 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m && !s->aside; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
+        if (!s->standing) {
+            spari_learned_note(m, s->iteration + 1);
+        }
         if (m->added && !s->standing) {
             spari_added_correct(m, 1, m->load_pushed);
         }
@@ -308,6 +313,21 @@ static void accept_loads(spar_session *s) {
     }
 }
 
+/* Where the iterations have shown enough of the fluid's added mass it stands in the equations of the next step. */
+static void learn_added(spar_session *s) {
+    int fresh = 0;
+    for (spar_member *m = s->members; m; m = m->next) {
+        int other = spari_member_learn(m);
+        if (other && m->assembly) {
+            spari_assembly_forget(m->assembly);
+        }
+        fresh |= other;
+    }
+    if (fresh) {
+        spari_coupling_forget(s);
+    }
+}
+
 int spar_step_accept(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
@@ -342,6 +362,7 @@ int spar_step_accept(spar_session *session) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
     }
+    learn_added(s);
     s->past = s->past < s->predictor ? s->past + 1 : s->predictor;
     s->time += s->dt;
     s->step++;
@@ -362,6 +383,7 @@ static void reject(spar_session *s) {
     }
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
+        spari_learned_begin(m);
         memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
                (size_t)(6 * m->nodes) * sizeof(double));
     }

@@ -333,6 +333,10 @@ static int start_all(spari_assembly *a) {
     return SPAR_OK;
 }
 
+void spari_assembly_forget(spari_assembly *a) {
+    a->factored = 0;
+}
+
 /* ---- the step ---- */
 
 /* Places and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of its

@@ -58,6 +58,8 @@ double spari_assembly_answer_of_mass(const spari_assembly *assembly);
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */
 int spari_assembly_static(spari_assembly *assembly, const double *(*fluid)(const spar_member *), int load_steps,
                           int onward);
+/* One of its members has another added mass in its equations. */
+void spari_assembly_forget(spari_assembly *assembly);
 /* The motions after become those the clock stands at. */
 void spari_assembly_settle(spari_assembly *assembly);
 /* Those found are given up: the joints are at t^n again. */

@@ -35,6 +35,13 @@ static void exact_renew(spar_member *m) {
     s->factored = 0;
 }
 
+static void exact_remass(spar_member *m) {
+    spari_solver *s = m->solution;
+    if (s) {
+        s->factored = 0;
+    }
+}
+
 static void exact_restart(spar_member *m) {
     spari_solver *s = m->solution;
     spari_member_to_unique(m, 7, m->now.q, s->begin.q);
@@ -177,6 +184,7 @@ const spari_fidelity spari_fidelity_exact = {
     .create = exact_create,
     .free = exact_free,
     .renew = exact_renew,
+    .remass = exact_remass,
     .restart = exact_restart,
     .advance = exact_advance,
     .balance = exact_balance,

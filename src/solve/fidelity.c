@@ -26,9 +26,9 @@ int spari_fidelity_check(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external),
                   SPAR_ERR_STATE, "member '%s': a fidelity below exact is for beams that spar solves for", m->name);
     SPARI_REQUIRE(
-        m->session, m->guess_count == 0 || spari_fidelity_of(m)->solved, SPAR_ERR_UNSUPPORTED,
+        m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved, SPAR_ERR_UNSUPPORTED,
         "member '%s' moves as it is told (external, or prescribed): it has no equations that an added mass could "
-        "stand in; leave spar_member_set_added_mass out",
+        "stand in; leave spar_member_set_added_mass and spar_member_learn_added_mass out",
         m->name);
     return row->check ? row->check(m) : SPAR_OK;
 }

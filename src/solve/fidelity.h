@@ -28,6 +28,8 @@ typedef struct spari_fidelity {
     void (*free)(void *solution);
     /* the body has been put in the place of one that had no damping, or another; NULL: that cannot be */
     void (*renew)(spar_member *m);
+    /* every rank: m->added has another mass than before; NULL: nothing is kept that knows it */
+    void (*remass)(spar_member *m);
 
     /* the motion now has been set anew */
     void (*restart)(spar_member *m);

@@ -45,6 +45,7 @@ typedef struct spari_frame {
     double *basis;                                  /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
     double *A;                                      /* the guess of the fluid's added mass, likewise */
+    double *room_A;                                 /* where that is learned: [block][block + n] of the nodes' blocks */
     double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
     double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
     double *S[SPARI_TURNS];                         /* the stretch's stiffness, where it is not in N */
@@ -101,6 +102,9 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
 /* Factors ck K + cv C + cm (M + A) with the held unknowns out; S: room for an element. C, A may be NULL. */
 void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
                         double cm, double *S, int *singular);
+
+/* A anew, of what m->added holds now. */
+void spari_frame_remass(spari_frame *f, const spar_member *m);
 
 /* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
 void spari_frame_combine(spari_frame *f, const double omega[3]);

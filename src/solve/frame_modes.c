@@ -4,6 +4,7 @@
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
+#include "../member/added.h"
 #include "../member/pose.h"
 #include "carriage.h"
 #include "eigen.h"
@@ -250,6 +251,25 @@ int spari_frame_project(spari_frame *f, int cols) {
     spari_linear_free(f->linear);
     f->linear = spari_linear_create(1, cols, 6);
     return bad || !f->linear;
+}
+
+void spari_frame_remass(spari_frame *f, const spar_member *m) {
+    int block = 6 * m->per_element, cols = f->n;
+    double *X = f->room_A, *half = X + (int64_t)block * block;
+    memset(f->A, 0, (size_t)f->size * sizeof *f->A);
+    for (int e = 0; e < m->elements; e++) {
+        const double *b = f->basis ? f->basis + (int64_t)e * (block - 6) * cols : NULL;
+        double *to = b ? X : f->A + (int64_t)block * block * e;
+        memset(to, 0, (size_t)(block * block) * sizeof *to);
+        spari_added_tangent(m, e, 1, NULL, to);
+        if (b) {
+            SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, block, cols, block, 1, X, block, b, cols,
+                                   0, half, cols));
+            SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, block, 1, b, cols, half, cols,
+                                   1, f->A, cols));
+        }
+    }
+    f->factored = 0;
 }
 
 /* ---- about a state ---- */

@@ -52,7 +52,7 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
     return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
 }
 
-static int allocate_work(spari_frame *f) {
+static int allocate_work(spari_frame *f, const spar_member *m) {
     int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
     double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r, &f->dx, &f->increment};
     int ok = carve_states(f) == 0;
@@ -68,6 +68,8 @@ static int allocate_work(spari_frame *f) {
     if (f->N[0]) {
         ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
     }
+    int64_t block = 6 * (int64_t)m->per_element;
+    ok = ok && (!f->A || !m->learned || (f->room_A = spari_zalloc(block * (block + f->n), sizeof(double))));
     return !ok;
 }
 
@@ -78,7 +80,7 @@ static void frame_free(void *solution) {
     }
     double *all[] = {f->basis, f->A,       f->K,         f->M,     f->D,          f->sumK,        f->sumC,
                      f->sumf,  f->begin.y, f->from.y,    f->to.y,  f->steps.load, f->steps.load0, f->steps.load1,
-                     f->r,     f->dx,      f->increment, f->nodal, f->turned,     f->element};
+                     f->r,     f->dx,      f->increment, f->nodal, f->turned,     f->element,     f->room_A};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
@@ -136,7 +138,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
         status = status == SPAR_OK && spari_frame_project(f, cols) ? SPAR_ERR_MEMORY : status;
     }
     free(arm);
-    status = status == SPAR_OK && allocate_work(f) ? SPAR_ERR_MEMORY : status;
+    status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
     return status == SPAR_OK && f->carriage ? spari_carriage_finish(f, m) : status;
 }
 
@@ -187,6 +189,10 @@ static int frame_effects(const spar_member *m, int effects) {
 }
 
 /* ---- the rest of the rows ---- */
+
+static void frame_remass(spar_member *m) {
+    spari_frame_remass(m->solution, m);
+}
 
 static void frame_restart(spar_member *m) {
     spari_frame_restart(m->solution, m);
@@ -295,12 +301,12 @@ static void frame_publish(spar_member *m) {
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
-    .free = frame_free, .restart = frame_restart, .advance = frame_advance, .balance = frame_balance,                  \
-    .answer = frame_answer, .accept = frame_accept, .effort = frame_effort, .rest = frame_rest,                        \
-    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
-    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .state_size = frame_state_size,        \
-    .save = frame_save, .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame,                     \
-    .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
+    .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
+    .balance = frame_balance, .answer = frame_answer, .accept = frame_accept, .effort = frame_effort,                  \
+    .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole,            \
+    .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape,                \
+    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
+    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

@@ -10,6 +10,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/edge.h"
+#include "../member/learned.h"
 #include "../member/means.h"
 #include "fidelity.h"
 #include "work.h"
@@ -75,6 +76,9 @@ void spari_member_restart(spar_member *m) {
         m->drive[k] = spari_pose_of(m->now.q, m->now.v, m->now.a);
     }
     restart_solution(m);
+    if (m->added) {
+        spari_added_restart(m);
+    }
     if (m->work) {
         spari_work_restart(m);
     }
@@ -116,6 +120,21 @@ void spari_member_accept(spar_member *m) {
     }
 }
 
+int spari_member_learn(spar_member *m) {
+    if (!spari_learned_accept(m)) {
+        return 0;
+    }
+    spari_member_put_learned(m);
+    return 1;
+}
+
+void spari_member_put_learned(spar_member *m) {
+    spari_learned_put(m);
+    if (m->row->remass) {
+        m->row->remass(m);
+    }
+}
+
 void spari_member_reject(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     copy_solved(m, 0, 1);
@@ -152,6 +171,9 @@ void spari_member_end_start(spar_member *m, int found) {
         copy_solved(m, 1, 0);
     }
     spari_member_reject(m);
+    if (found && m->added) {
+        spari_added_restart(m);
+    }
     if (found && m->work) {
         spari_work_restart(m);
     }
@@ -323,6 +345,8 @@ int spari_member_build(spar_member *m) {
     if (m->row->solved) {
         SPARI_TRY(build_body(m));
         SPARI_TRY(spari_added_create(m, m->row->whole));
+        SPARI_REQUIRE(m->session, spari_learned_create(m) == SPAR_OK, SPAR_ERR_MEMORY,
+                      "no memory for the added mass of '%s'", m->name);
         SPARI_TRY(spari_means_keep(m));
     }
     if (m->row->create) {
@@ -399,6 +423,7 @@ void spari_member_free(spar_member *member) {
     free(member->advice);
     free(member->guess_eta);
     free(member->guess);
+    spari_learned_free(member->learned);
     free(member->name);
     free(member);
 }

@@ -108,6 +108,13 @@ static void sum_on_root(const spar_member *m, const double *load, double sum[6],
     }
 }
 
+static void rigid_remass(spar_member *m) {
+    const spari_rigid_beam *b = m->solution;
+    if (b->solver) {
+        b->solver->factored = 0;
+    }
+}
+
 static void rigid_restart(spar_member *m) {
     const spari_rigid_beam *b = m->solution;
     spari_solver *s = b->solver;
@@ -313,6 +320,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .effects = rigid_effects,
     .create = rigid_create,
     .free = rigid_free,
+    .remass = rigid_remass,
     .restart = rigid_restart,
     .advance = rigid_advance,
     .balance = rigid_balance,

@@ -69,8 +69,8 @@ static void carry_state(spar_member *old, spar_member *m) {
     if (old->begun) {
         spari_resample_values(E, P, n, 6, -1, old->begun, m->now.a);
     }
-    spari_added_carry(old, m);
     spari_member_restart(m);
+    spari_added_carry(old, m);
     spari_means_carry(old, m);
     memcpy(m->drive, old->drive, sizeof m->drive);
 }

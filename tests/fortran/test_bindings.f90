@@ -78,6 +78,8 @@ program test_bindings
   call refused(spar_member_set_fidelity(none, 0_c_int, 0_c_int64_t), 'spar_member_set_fidelity')
   call refused(spar_member_set_added_mass(none, 0_c_int64_t), 'spar_member_set_added_mass')
   call refused(spar_member_get_added_mass(none, capacity=0_c_int64_t), 'spar_member_get_added_mass')
+  call refused(spar_member_learn_added_mass(none, 0_c_int64_t), 'spar_member_learn_added_mass')
+  call refused(spar_member_get_learned_added_mass(none, capacity=0_c_int64_t), 'spar_member_get_learned_added_mass')
   call refused(spar_member_set_initial_velocity(none), 'spar_member_set_initial_velocity')
   call refused(spar_member_set_owner(none, 0_c_int), 'spar_member_set_owner')
   call refused(spar_member_commit(none), 'spar_member_commit')

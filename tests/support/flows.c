@@ -47,6 +47,14 @@ static double draw(flow *f) {
     return sqrt(3.0) * ((double)(f->random >> 11) * 0x1p-52 - 1);
 }
 
+static int learn(const flow *f) {
+    double eta[20] = {0};
+    for (int k = 1; k < f->c->learn; k++) {
+        eta[k] = (double)k / (f->c->learn - 1);
+    }
+    return spar_member_learn_added_mass(f->member, f->c->learn, eta);
+}
+
 /* ---- the cylinder ---- */
 
 /* p'' = p over s = log(r/R) with p' = -a at the wall, p = 0 far away: one correction, a sweep out and one back. a:
@@ -120,6 +128,7 @@ static int make_rod(flow *f, double mass, double k) {
     TRY(spar_beam_set_sections(f->member, 1, eta, K, M));
     TRY(spar_beam_set_quadrature(f->member, SPAR_QUADRATURE_LOBATTO, 2));
     TRY(spar_member_set_root(f->member, SPAR_ROOT_FIXED));
+    TRY(learn(f));
     return spar_member_commit(f->member);
 }
 
@@ -133,6 +142,7 @@ static int make_slider(flow *f, double mass, double k) {
     }
     K[7] = k;
     TRY(spar_rigid_create(f->session, "cylinder", f->axes[1], q, M, &f->member));
+    TRY(learn(f));
     TRY(spar_member_commit(f->member));
     TRY(spar_joint_create(f->session, "guide", f->member, 0, NULL, 0, SPAR_FREE_Y, &joint));
     TRY(spar_joint_set_frame(joint, f->axes[1], q));
@@ -243,6 +253,7 @@ static int make_wall(flow *f, double mass, double EI) {
     TRY(spar_beam_set_axis(f->member, 2, ends, xyz, NULL));
     TRY(spar_beam_set_sections(f->member, longer ? 4 : 1, eta, K[0], M[0]));
     TRY(spar_member_set_root(f->member, f->c->tied ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED));
+    TRY(learn(f));
     return spar_member_commit(f->member);
 }
 
@@ -355,6 +366,8 @@ static int record(flow *f, int iterations) {
     TRY(spar_session_get_report(f->session, SPAR_REPORT_COUNT, report));
     r->y[n] = q[last] * f->axes[1][0] + q[last + 1] * f->axes[1][1];
     r->force[n][0] = f->force[0], r->force[n][1] = f->force[1];
+    TRY(spar_member_get_learned_added_mass(f->member, &r->used, &r->spread, NULL, 0, NULL, NULL));
+    r->used_at = r->used_at == 0 && r->used ? n + 1 : r->used_at;
     r->added[n] = report[SPAR_REPORT_ADDED_MASS];
     r->count[n] = iterations;
     r->iterations += iterations;
@@ -371,6 +384,10 @@ static int march(flow *f) {
         TRY(answer(f->session, -dt, dt, 0, f));
     }
     for (int i = 0; i < steps; i++) {
+        if (f->c->change_at > 0 && i == f->c->change_at) {
+            TRY(spar_session_set_predictor(f->session, f->c->then_predictor));
+            TRY(spar_session_set_coupling(f->session, f->c->then, 1e-12, f->c->rtol, f->c->most > 0 ? f->c->most : 50));
+        }
         int status = one_step(f, dt, &iterations);
         if (status != SPAR_OK) {
             f->result->status = status;

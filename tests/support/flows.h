@@ -40,6 +40,8 @@ typedef struct flow_case {
     double rtol;
     double omega;                        /* 0: the library's */
     const char *option[FLOW_OPTIONS][2]; /* keys and values, ends at NULL */
+    int learn;                           /* stations at which the added mass is learned; 0: it is not */
+    int change_at, then, then_predictor; /* after so many steps, if not 0, another scheme and predictor */
     int fixed;                           /* so many iterations in each step, whatever the check says; 0: no */
     unsigned seed;
 } flow_case;
@@ -56,6 +58,8 @@ typedef struct flow_result {
     double force[FLOW_STEPS][2]; /* N: in flow and across, converged */
     double added[FLOW_STEPS];    /* reported added mass */
     int count[FLOW_STEPS];       /* iterations */
+    int used, used_at;           /* learned added mass: in the equations at the end, and the first step after which */
+    double spread;               /* of it, at the end */
     double predicted[2];         /* N: what the second step began with in the stream, and what it came to */
 } flow_result;
 

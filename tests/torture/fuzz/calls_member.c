@@ -192,6 +192,22 @@ void do_spar_member_get_added_mass(call *c) {
     RUN(c, spar_member_get_added_mass(m->m, n, capacity, eta, M));
 }
 
+void do_spar_member_learn_added_mass(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t n = chance(c, 10) ? 0 : m->kind == KIND_BEAM ? arg_count(c, 1, 3) : arg_count(c, 1, 1), room = length(n);
+    double *eta = arg_rising(c, room, 0, 1);
+    RUN(c, spar_member_learn_added_mass(m->m, n, eta));
+}
+
+void do_spar_member_get_learned_added_mass(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *used = arg_out(c, (int64_t)sizeof *used, 1);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);
+    double *spread = OUT_OR_NULL(c, 1), *eta = OUT_OR_NULL(c, length(capacity)),
+           *M = OUT_OR_NULL(c, 36 * length(capacity));
+    RUN(c, spar_member_get_learned_added_mass(m->m, used, spread, n, capacity, eta, M));
+}
+
 void do_spar_member_set_fidelity(call *c) {
     live_member *m = arg_member(c, KIND_BEAM);
     int kind = arg_int(c, SPAR_FIDELITY_PRESCRIBED, SPAR_FIDELITY_EXACT);

@@ -192,7 +192,7 @@ void do_spar_session_set_option(call *c) {
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
                                        "coupling.motion_rtol", "coupling.target", "advise.horizon",
                                        "advise.fluid_cost",    "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate",    "ranks.state"};
+                                       "coupling.estimate",    "ranks.state",         "fluid.added_mass"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -212,7 +212,9 @@ void do_spar_session_set_option(call *c) {
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
-                                            {"all", "touched", "touched"}};
+                                            {"all", "touched", "touched"},
+
+                                            {"acceleration", "velocity", "velocity"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);

@@ -99,6 +99,8 @@ enum {
     CALL(spar_member_set_fidelity, 40, FUZZ_CHANGES)                                                                   \
     CALL(spar_member_set_added_mass, 40, FUZZ_CHANGES)                                                                 \
     CALL(spar_member_get_added_mass, 20, FUZZ_PURE)                                                                    \
+    CALL(spar_member_learn_added_mass, 40, FUZZ_CHANGES)                                                               \
+    CALL(spar_member_get_learned_added_mass, 20, FUZZ_PURE)                                                            \
     CALL(spar_member_set_initial_velocity, 60, FUZZ_CHANGES)                                                           \
     CALL(spar_member_set_owner, 20, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_commit, 60, FUZZ_CHANGES)                                                                         \

@@ -263,6 +263,7 @@ static void settings(spar_session *s) {
     static const char *const option[][2] = {{"coupling.unconverged", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},
+                                            {"fluid.added_mass", "velocity"},
                                             {"coupling.estimate", "on"},
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
@@ -462,6 +463,8 @@ static void act_fidelities(void) {
         if (k != 3) {
             CALL(spar_member_set_added_mass, m, 2, eta, guess);
             CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
+            CALL(spar_member_learn_added_mass, m, 2, eta);
+            CALL(spar_member_get_learned_added_mass, m, NULL, NULL, &stations, 2, NULL, guess);
         }
         CALL(spar_member_commit, m);
         h.fluid[k] = begin_fluid(m, name[k], 10, &h.n[k], h.x[k]);

@@ -17,6 +17,7 @@
     "spar_member_get_reference "
     " spar_member_get_work spar_member_set_effects spar_member_set_external spar_member_set_fidelity "
     "spar_member_set_added_mass spar_member_get_added_mass "
+    "spar_member_learn_added_mass spar_member_get_learned_added_mass "
     "spar_member_set_motion "
     " spar_member_set_load spar_member_set_owner spar_member_set_placement spar_member_set_root "
     "spar_member_set_initial_velocity "

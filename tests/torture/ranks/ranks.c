@@ -716,6 +716,7 @@ static const struct setting {
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
     {"coupling.norm", "coupling.norm", "loads", "motion"},
+    {"fluid.added_mass", "fluid.added_mass", "velocity", "acceleration"},
     {"coupling.estimate", "coupling.estimate", "on", "off"},
     {"coupling.columns", "coupling.columns", "7", "30"},
     {"coupling.reuse", "coupling.reuse", "2", "5"},

@@ -1,0 +1,594 @@
+/* The added mass learned from iterations: least squares over their differences. See learned.h. */
+#include "learned.h"
+
+#include "../base/quiet.h"
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "beam.h"
+#include "edge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Differences by their part of the largest one of their step, fading; of those that were tested before they were used:
+   what the mass learned until then left of them, and all, squared; whether there is a mass; whether it stands in the
+   equations. The same of the step under way, with its squares and the largest of them. */
+enum { COUNT, LEFT, WHOLE, KNOWN, USED, STEP_LEFT, STEP_WHOLE, STEP_SQUARES, STEP_LARGEST, HEADS };
+
+struct spari_learned {
+    int64_t n, count; /* stations; doubles of the state */
+    double *eta;
+    double *head;         /* the state: [HEADS], and behind it: */
+    double *force, *mass; /* [n][36] in the equations where USED; and as it is known by now */
+    double *G, *B;        /* [n][n][36], [n][36] of the steps accepted, fading */
+    double *step_G, *step_B;
+    double *one_G, *one_B;  /* of one difference: no part of the state */
+    double *metric, *root;  /* [n][36] the member's own mass at the stations, and its Cholesky factor */
+    double *axes, *squares; /* [n][36], [n][6] of a fit */
+};
+
+/* A load is not tested on fewer differences than that; what it leaves of a change has to be less than USE to stand in
+   the equations, and it does not stay there beyond DROP. */
+static const double ENOUGH = 2.5, USE = 0.25, DROP = 0.5, FADE = 0.9;
+
+/* ---- description ---- */
+
+static int check_stations(const spar_member *m, const char *call, int64_t n, const double *eta) {
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, m->kind != SPARI_POINT, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s' is a point, whose motion the host gives: it has no equations that a mass could stand in",
+                  call, m->name);
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LEARNED_STATIONS && (n <= 1 || m->kind == SPARI_BEAM), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld stations; give 1 to %d of a beam, 1 of a rigid body, 0: learn nothing", call, m->name,
+                  (long long)n, SPARI_LEARNED_STATIONS);
+    return n > 0 && m->kind == SPARI_BEAM ? spari_need_increasing(s, call, m->name, n, eta) : SPAR_OK;
+}
+
+static spari_learned *create_learned(int64_t n, const double *eta) {
+    spari_learned *l = spari_zalloc(1, sizeof *l);
+    if (!l) {
+        return NULL;
+    }
+    int64_t whole = 36 * n * n, each = 36 * n;
+    l->n = n, l->count = HEADS + 2 * each + 2 * (whole + each);
+    l->eta = eta ? spari_copy(eta, n) : spari_zalloc(n, sizeof *l->eta);
+    l->head = spari_zalloc(l->count + whole + each + 3 * each + 6 * n, sizeof *l->head);
+    if (!l->eta || !l->head) {
+        spari_learned_free(l);
+        return NULL;
+    }
+    l->force = l->head + HEADS, l->mass = l->force + each;
+    l->G = l->mass + each, l->B = l->G + whole;
+    l->step_G = l->B + each, l->step_B = l->step_G + whole;
+    l->one_G = l->step_B + each, l->one_B = l->one_G + whole;
+    l->metric = l->one_B + each, l->root = l->metric + each, l->axes = l->root + each;
+    l->squares = l->axes + each;
+    return l;
+}
+
+void spari_learned_free(spari_learned *l) {
+    if (l) {
+        free(l->eta);
+        free(l->head);
+        free(l);
+    }
+}
+
+int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_open(member, __func__));
+    SPARI_TRY(check_stations(member, __func__, n, eta));
+    spari_learned *l = n > 0 ? create_learned(n, member->kind == SPARI_BEAM ? eta : NULL) : NULL;
+    SPARI_REQUIRE(member->session, l || n == 0, SPAR_ERR_MEMORY, "%s: '%s': no memory for what is learned", __func__,
+                  member->name);
+    spari_learned_free(member->learned);
+    member->learned = l;
+    return SPAR_OK;
+}
+
+static double spread_of(const spari_learned *l) {
+    return l->head[COUNT] >= ENOUGH && l->head[WHOLE] > 0 ? fmin(sqrt(l->head[LEFT] / l->head[WHOLE]), 1) : 1;
+}
+
+int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
+                                       int64_t capacity, double *eta, double *mass) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_member(member, __func__));
+    SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
+    const spari_learned *l = member->learned;
+    if (used) {
+        *used = l && l->head[USED] > 0;
+    }
+    if (spread) {
+        *spread = l ? spread_of(l) : 1;
+    }
+    if (n) {
+        *n = l ? l->n : 0;
+    }
+    spari_fill(capacity, eta, l ? l->n : 0, l ? l->eta : NULL);
+    spari_fill(36 * capacity, mass, l ? 36 * l->n : 0, l ? l->mass : NULL);
+    return SPAR_OK;
+}
+
+uint64_t spari_learned_hash(const spar_member *m, uint64_t hash) {
+    const spari_learned *l = m->learned;
+    return l ? spari_hash_bytes(hash, l->eta, (size_t)l->n * sizeof *l->eta) : hash;
+}
+
+/* ---- what the differences are measured by ---- */
+
+/* The lower factor of a symmetric matrix; pivots no less than a part of the diagonal. */
+static void factor_metric(const double W[36], double S[36]) {
+    memset(S, 0, 36 * sizeof *S);
+    for (int j = 0; j < 6; j++) {
+        for (int i = j; i < 6; i++) {
+            double x = W[6 * i + j];
+            for (int k = 0; k < j; k++) {
+                x -= S[6 * i + k] * S[6 * j + k];
+            }
+            S[6 * i + j] = i > j ? x / S[7 * j] : sqrt(fmax(x, fmax(1e-9 * W[7 * j], 1e-300)));
+        }
+    }
+}
+
+/* The member's own mass, of which rotary inertia is no less than that of a body of a thousandth of its length. */
+static void measure_stations(const spar_member *m, spari_learned *l) {
+    static const double PART = 1e-6;
+    double length = spari_member_length(m);
+    for (int64_t s = 0; s < l->n; s++) {
+        double *W = l->metric + 36 * s;
+        if (m->kind == SPARI_BEAM && m->beam->mass) {
+            spari_beam_section_at(m->beam, m->beam->mass, l->eta[s], W);
+        } else {
+            memcpy(W, m->mass, sizeof m->mass);
+        }
+        for (int i = 3; i < 6; i++) {
+            W[7 * i] += PART * W[0] * length * length;
+        }
+        factor_metric(W, l->root + 36 * s);
+    }
+}
+
+/* X := S^-1 X */
+static void reduce_rows(const double S[36], double X[36]) {
+    for (int j = 0; j < 6; j++) {
+        for (int i = 0; i < 6; i++) {
+            for (int k = 0; k < i; k++) {
+                X[6 * i + j] -= S[6 * i + k] * X[6 * k + j];
+            }
+            X[6 * i + j] /= S[7 * i];
+        }
+    }
+}
+
+/* out := A B, with `turned` A^T B or A B^T */
+typedef enum turned_factor { NEITHER, FIRST, SECOND } turned_factor;
+static void multiply_six(const double A[36], const double B[36], turned_factor turned, double out[36]) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) {
+                sum +=
+                    (turned == FIRST ? A[6 * k + i] : A[6 * i + k]) * (turned == SECOND ? B[6 * j + k] : B[6 * k + j]);
+            }
+            out[6 * i + j] = sum;
+        }
+    }
+}
+
+/* S^-1 M S^-T of a symmetric M */
+static void to_metric(const double S[36], const double M[36], double out[36]) {
+    double half[36];
+    memcpy(half, M, sizeof half);
+    reduce_rows(S, half);
+    for (int i = 0; i < 36; i++) {
+        out[i] = half[6 * (i % 6) + i / 6];
+    }
+    reduce_rows(S, out);
+}
+
+/* A symmetric A becomes diagonal by Jacobi's rotations, E its eigenvectors, by columns. */
+static void diagonalise_six(double A[36], double E[36]) {
+    enum { SWEEPS = 30 };
+    for (int i = 0; i < 36; i++) {
+        E[i] = i % 7 == 0;
+    }
+    for (int turn = 0; turn < SWEEPS * 36; turn++) {
+        int p = turn / 6 % 6, q = turn % 6;
+        double off = A[6 * p + q];
+        if (q <= p || fabs(off) <= 1e-16 * sqrt(fabs(A[7 * p] * A[7 * q])) || off == 0) {
+            continue;
+        }
+        double half = (A[7 * q] - A[7 * p]) / (2 * off);
+        double t = (half >= 0 ? 1 : -1) / (fabs(half) + hypot(half, 1)), c = 1 / hypot(t, 1), s = t * c;
+        for (int k = 0; k < 6; k++) {
+            double x = A[6 * k + p], y = A[6 * k + q], g = E[6 * k + p], h = E[6 * k + q];
+            A[6 * k + p] = c * x - s * y, A[6 * k + q] = s * x + c * y;
+            E[6 * k + p] = c * g - s * h, E[6 * k + q] = s * g + c * h;
+        }
+        for (int k = 0; k < 6; k++) {
+            double x = A[6 * p + k], y = A[6 * q + k];
+            A[6 * p + k] = c * x - s * y, A[6 * q + k] = s * x + c * y;
+        }
+    }
+}
+
+static double product_six(const double A[36], const double B[36]) {
+    double sum = 0;
+    for (int i = 0; i < 36; i++) {
+        sum += A[i] * B[i];
+    }
+    return sum;
+}
+
+/* ---- one difference ---- */
+
+/* Of the nodes: loads and accelerations of the iteration before; the differences of both in the sections' axes; where
+   the nodes are, and their axes. */
+typedef struct sight {
+    double *load, *rate, *f, *a, *eta, *R;
+} sight;
+
+static sight sight_of(const spar_member *m) {
+    double *x = m->added->last;
+    int64_t n = m->nodes;
+    return (sight){x, x + 6 * n, x + 12 * n, x + 18 * n, x + 24 * n, x + 25 * n};
+}
+
+int spari_learned_create(spar_member *m) {
+    if (!m->learned || !m->added) {
+        return SPAR_OK;
+    }
+    int P = m->per_element;
+    double xi[SPARI_MAX_NODES] = {0};
+    if (!(m->added->last = spari_zalloc(34 * m->nodes, sizeof(double)))) {
+        return SPAR_ERR_MEMORY;
+    }
+    sight at = sight_of(m);
+    if (m->kind == SPARI_BEAM) {
+        spari_gll(P, xi, NULL, NULL);
+    }
+    for (int64_t i = 0; i < m->nodes; i++) {
+        at.eta[i] = 0.5 * (1 + spari_member_xi(m, (int)(i / P), xi[i % P]));
+        spari_quat_matrix(m->qr + 4 * i, at.R + 9 * i);
+    }
+    measure_stations(m, m->learned);
+    if (m->learned->head[USED] > 0) {
+        spari_learned_put(m);
+    }
+    return SPAR_OK;
+}
+
+/* own [6] := R^T x as the section is turned at t^n */
+static void to_section(const spar_member *m, int64_t e, const double *phi, const double R[9], const double x[6],
+                       double own[6]) {
+    double turn[4], back[6];
+    spari_added_turn(m, e, phi, turn);
+    spari_rotate_back(turn, x, back);
+    spari_rotate_back(turn, x + 3, back + 3);
+    for (int i = 0; i < 6; i++) {
+        const double *b = back + i / 3 * 3;
+        own[i] = R[i % 3] * b[0] + R[3 + i % 3] * b[1] + R[6 + i % 3] * b[2];
+    }
+}
+
+/* Differences of the nodes from the iteration before, in the sections' axes. */
+static void differ_at_nodes(const spar_member *m, const sight *at) {
+    int P = m->per_element;
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double phi[SPARI_MAX_NODES] = {0}, df[6], da[6];
+        phi[i % P] = 1;
+        for (int k = 0; k < 6; k++) {
+            df[k] = m->load_pushed[6 * i + k] - at->load[6 * i + k];
+            da[k] = m->after.a[6 * i + k] - at->rate[6 * i + k];
+        }
+        to_section(m, i / P, phi, at->R + 9 * i, df, at->f + 6 * i);
+        to_section(m, i / P, phi, at->R + 9 * i, da, at->a + 6 * i);
+    }
+}
+
+/* The two stations that a place on the line is between, and their shares. */
+typedef struct shares {
+    int64_t at[2];
+    double part[2];
+} shares;
+
+static shares shares_of(const spari_learned *l, double eta) {
+    shares h = {{0, 0}, {1, 0}};
+    if (l->n > 1) {
+        while (h.at[0] < l->n - 2 && eta > l->eta[h.at[0] + 1]) {
+            h.at[0]++;
+        }
+        h.at[1] = h.at[0] + 1;
+        h.part[1] = fmin(fmax((eta - l->eta[h.at[0]]) / (l->eta[h.at[1]] - l->eta[h.at[0]]), 0), 1);
+        h.part[0] = 1 - h.part[1];
+    }
+    return h;
+}
+
+/* to [6][6] += f x y^T */
+static void add_outer(double f, const double x[6], const double y[6], double *to) {
+    for (int i = 0; i < 6 && f != 0; i++) {
+        for (int j = 0; j < 6; j++) {
+            to[6 * i + j] += f * x[i] * y[j];
+        }
+    }
+}
+
+/* With N_s the share of station s along the line and I what the nodes' interpolation makes of values there,
+     G_st = integral of N_t a (I N_s a)^T,    B_s = - sum over nodes of N_s f a^T,
+   so that loads f of a mass with stations M_t have B_s = sum over t of M_t G_st to the last digit. */
+static void gather_difference(const spar_member *m, const sight *at, spari_learned *l) {
+    const spari_strips *p = &m->added->strips;
+    int P = p->per_element;
+    memset(l->one_G, 0, (size_t)(36 * l->n * (l->n + 1)) * sizeof *l->one_G);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        shares h = shares_of(l, at->eta[i]);
+        for (int k = 0; k < 2; k++) {
+            add_outer(-h.part[k], at->f + 6 * i, at->a + 6 * i, l->one_B + 36 * h.at[k]);
+        }
+    }
+    for (int64_t k = 0; k < p->count; k++) {
+        int64_t e = k / p->in_element;
+        const double *phi = p->phi + P * k;
+        double da[6] = {0}, own[6];
+        for (int i = 0; i < 6 * P; i++) {
+            int64_t node = 6 * e * P + i;
+            da[i % 6] += phi[i / 6] * (m->after.a[node] - at->rate[node]);
+        }
+        to_section(m, e, phi, p->R + 9 * k, da, own);
+        shares here = shares_of(l, p->eta[k]);
+        for (int64_t i = e * P; i < (e + 1) * P; i++) {
+            shares h = shares_of(l, at->eta[i]);
+            for (int j = 0; j < 4; j++) {
+                double f = p->weight[k] * phi[i - e * P] * h.part[j / 2] * here.part[j % 2];
+                add_outer(f, own, at->a + 6 * i, l->one_G + 36 * (l->n * h.at[j / 2] + here.at[j % 2]));
+            }
+        }
+    }
+}
+
+/* Of the difference: the square of its size, in the member's own mass; of what the mass learned so far makes of it, the
+   part that is left in its own direction, which is what the coupling contracts by with that mass. */
+static double weigh_difference(const spari_learned *l, double *square) {
+    double added = 0, back = 0;
+    *square = 0;
+    for (int64_t s = 0; s < l->n; s++) {
+        for (int64_t t = 0; t < l->n; t++) {
+            const double *G = l->one_G + 36 * (l->n * s + t);
+            *square += product_six(l->metric + 36 * t, G);
+            added += product_six(l->mass + 36 * t, G);
+        }
+        for (int i = 0; i < 6; i++) {
+            back += l->one_B[36 * s + 7 * i];
+        }
+    }
+    return (added - back) / (*square + added);
+}
+
+/* The square of the accelerations themselves: a difference of their rounding says nothing. */
+static double size_of_rates(const spar_member *m, const spari_learned *l, const double *rates) {
+    double sum = 0, W = 0, whole = 0;
+    for (int64_t k = 0; k < m->added->strips.count; k++) {
+        whole += m->added->strips.weight[k];
+    }
+    for (int i = 0; i < 6; i++) {
+        W = fmax(W, l->metric[7 * i]);
+    }
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        sum += rates[i] * rates[i];
+    }
+    return W * whole * sum / (double)m->nodes;
+}
+
+static void take_difference(spar_member *m, const sight *at) {
+    static const double ROUNDING = 1e-8;
+    spari_learned *l = m->learned;
+    double square, left;
+    differ_at_nodes(m, at);
+    gather_difference(m, at, l);
+    left = weigh_difference(l, &square);
+    if (!isfinite(square) || !isfinite(left) || !(square > ROUNDING * ROUNDING * size_of_rates(m, l, m->after.a))) {
+        return;
+    }
+    for (int64_t i = 0; i < 36 * l->n * (l->n + 1); i++) {
+        l->step_G[i] += l->one_G[i];
+    }
+    l->head[STEP_SQUARES] += square;
+    l->head[STEP_LARGEST] = fmax(l->head[STEP_LARGEST], square);
+    l->head[STEP_LEFT] += square * left * left;
+    l->head[STEP_WHOLE] += square;
+}
+
+void spari_learned_note(spar_member *m, int iteration) {
+    if (!m->learned || !m->added || m->session->trial) {
+        return;
+    }
+    sight at = sight_of(m);
+    if (iteration > 1) {
+        take_difference(m, &at);
+    }
+    memcpy(at.load, m->load_pushed, (size_t)(6 * m->nodes) * sizeof *at.load);
+    memcpy(at.rate, m->after.a, (size_t)(6 * m->nodes) * sizeof *at.rate);
+}
+
+/* ---- the fit ---- */
+
+/* Eigenvectors of what the accelerations at each station were, in the metric of the mass, and eigenvalues; 0 of those
+   that were not seen. */
+static void look_around(spari_learned *l) {
+    static const double UNSEEN = 1e-10;
+    for (int64_t s = 0; s < l->n; s++) {
+        double D[36] = {0}, half[36], all[36], *lambda = l->squares + 6 * s, most = 0;
+        for (int64_t t = 0; t < l->n; t++) {
+            const double *G = l->G + 36 * (l->n * s + t);
+            for (int i = 0; i < 36; i++) {
+                D[i] += 0.5 * (G[i] + G[6 * (i % 6) + i / 6]);
+            }
+        }
+        multiply_six(l->root + 36 * s, D, FIRST, half);
+        multiply_six(half, l->root + 36 * s, NEITHER, all);
+        diagonalise_six(all, l->axes + 36 * s);
+        for (int i = 0; i < 6; i++) {
+            most = fmax(most, all[7 * i]);
+        }
+        for (int i = 0; i < 6; i++) {
+            lambda[i] = all[7 * i] > UNSEEN * most ? all[7 * i] : 0;
+        }
+    }
+}
+
+/* What is missing at station s: B_s less what the masses make of G, in the metric and on the axes there. */
+static void missing_at(const spari_learned *l, int64_t s, double doubt, double out[36]) {
+    const double *S = l->root + 36 * s, *E = l->axes + 36 * s;
+    double r[36], part[36], half[36];
+    memcpy(r, l->B + 36 * s, sizeof r);
+    for (int64_t t = 0; t < l->n; t++) {
+        multiply_six(l->mass + 36 * t, l->G + 36 * (l->n * s + t), NEITHER, part);
+        for (int i = 0; i < 36; i++) {
+            r[i] -= part[i];
+        }
+    }
+    reduce_rows(S, r);
+    multiply_six(r, S, NEITHER, half);
+    to_metric(S, l->mass + 36 * s, part);
+    for (int i = 0; i < 36; i++) {
+        half[i] -= doubt * part[i];
+    }
+    multiply_six(E, half, FIRST, part);
+    multiply_six(part, E, NEITHER, out);
+}
+
+/* One correction of station s: the symmetric mass whose answer is nearest (Higham, BIT 28, 1988), in the directions
+   that were seen, doubted by the scatter. */
+static void correct_station(spari_learned *l, int64_t s, double doubt) {
+    const double *lambda = l->squares + 6 * s;
+    double r[36], X[36], half[36], T[36];
+    missing_at(l, s, doubt, r);
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            int seen = lambda[i] > 0 && lambda[j] > 0;
+            X[6 * i + j] = seen ? (r[6 * i + j] + r[6 * j + i]) / (lambda[i] + lambda[j] + 2 * doubt) : 0;
+        }
+    }
+    multiply_six(l->root + 36 * s, l->axes + 36 * s, NEITHER, T);
+    multiply_six(T, X, NEITHER, half);
+    multiply_six(half, T, SECOND, X);
+    for (int i = 0; i < 36; i++) {
+        l->mass[36 * s + i] += X[i];
+    }
+}
+
+/* The nearest mass that is none in any direction where it would be negative. */
+static void keep_positive(spari_learned *l, int64_t s) {
+    double A[36], E[36], U[36], *M = l->mass + 36 * s;
+    to_metric(l->root + 36 * s, M, A);
+    diagonalise_six(A, E);
+    multiply_six(l->root + 36 * s, E, NEITHER, U);
+    for (int i = 0; i < 36; i++) {
+        U[i] *= sqrt(fmax(A[7 * (i % 6)], 0));
+    }
+    multiply_six(U, U, SECOND, M);
+}
+
+static void fit_mass(spari_learned *l) {
+    enum { SWEEPS = 60 };
+    double part = l->head[COUNT] > 0 && l->head[WHOLE] > 0
+                      ? fmin(l->head[LEFT] / l->head[WHOLE], 1) / fmax(l->head[COUNT], 1)
+                      : 0;
+    look_around(l);
+    memset(l->mass, 0, (size_t)(36 * l->n) * sizeof *l->mass);
+    for (int sweep = 0; sweep < (l->n > 1 ? SWEEPS : 1); sweep++) {
+        for (int64_t s = 0; s < l->n; s++) {
+            double all = 0;
+            for (int i = 0; i < 6; i++) {
+                all += l->squares[6 * s + i];
+            }
+            correct_station(l, s, part * all);
+        }
+    }
+    for (int64_t s = 0; s < l->n; s++) {
+        keep_positive(l, s);
+    }
+}
+
+/* ---- the step ---- */
+
+void spari_learned_begin(spar_member *m) {
+    spari_learned *l = m->learned;
+    if (l && m->added && !m->session->trial) {
+        memset(l->head + STEP_LEFT, 0, (HEADS - STEP_LEFT) * sizeof *l->head);
+        memset(l->step_G, 0, (size_t)(36 * l->n * (l->n + 1)) * sizeof *l->step_G);
+    }
+}
+
+/* How far the mass is from the one in the equations, over the structure's and that. */
+static double distance_from_force(const spari_learned *l) {
+    double most = 0;
+    for (int64_t s = 0; s < l->n; s++) {
+        double M[36], F[36], off = 0;
+        to_metric(l->root + 36 * s, l->mass + 36 * s, M);
+        to_metric(l->root + 36 * s, l->force + 36 * s, F);
+        for (int i = 0; i < 36; i++) {
+            off += (M[i] - F[i]) * (M[i] - F[i]);
+        }
+        most = fmax(most, sqrt(off) / (1 + sqrt(product_six(F, F))));
+    }
+    return most;
+}
+
+/* Whether another mass is to stand in the equations, which `force` then is. */
+static int choose(spari_learned *l) {
+    static const double NEAR = 0.02;
+    double spread = spread_of(l);
+    int used = l->head[USED] > 0, use = spread <= (used ? DROP : USE);
+    if (use && (!used || distance_from_force(l) > fmax(NEAR, 0.5 * spread))) {
+        memcpy(l->force, l->mass, (size_t)(36 * l->n) * sizeof *l->force);
+        l->head[USED] = 1;
+        return 1;
+    }
+    l->head[USED] = use;
+    return used && !use;
+}
+
+int spari_learned_accept(spar_member *m) {
+    spari_learned *l = m->learned;
+    if (!l || !m->added || m->session->trial || !(l->head[STEP_LARGEST] > 0)) {
+        return 0;
+    }
+    double *h = l->head, scale = 1 / sqrt(h[STEP_LARGEST]);
+    for (int64_t i = 0; i < 36 * l->n * (l->n + 1); i++) {
+        l->G[i] = FADE * l->G[i] + scale * l->step_G[i];
+    }
+    if (h[KNOWN] > 0) { /* else nothing was there to be tested */
+        h[LEFT] = FADE * h[LEFT] + scale * h[STEP_LEFT];
+        h[WHOLE] = FADE * h[WHOLE] + scale * h[STEP_WHOLE];
+        h[COUNT] = FADE * h[COUNT] + h[STEP_SQUARES] / h[STEP_LARGEST];
+    }
+    h[KNOWN] = 1;
+    fit_mass(l);
+    spari_learned_begin(m);
+    return choose(l);
+}
+
+void spari_learned_put(spar_member *m) {
+    const spari_learned *l = m->learned;
+    if (l->head[USED] > 0) {
+        spari_added_fill(m, l->n, l->eta, l->force);
+    } else {
+        spari_added_fill(m, m->guess_count, m->guess_eta, m->guess);
+    }
+}
+
+/* ---- save and load ---- */
+
+double *spari_learned_state(const spar_member *m, int64_t *count) {
+    *count = m->learned->count;
+    return m->learned->head;
+}
+
+double *spari_learned_last(const spar_member *m, int64_t *count) {
+    *count = 12 * m->nodes;
+    return m->added->last;
+}
