@@ -117,7 +117,7 @@ static void whole_of_a_body(void **state) {
         OK(b.session, spar_member_get_learned_added_mass(b.body, &used, &spread, NULL, 1, NULL, M));
         print_message("added mass %g: used %d, spread %.1e, off by %.1e\n", ratios[k], used, spread,
                       largest_difference(M, b.added, 36));
-        assert_true(used == 1 && spread < 1e-3);
+        assert_true(used == 1 && spread < 1e-2);
         NEAR(largest_difference(M, b.added, 36), 0, 1e-5 * ratios[k]);
         OK(b.session, spar_session_set_coupling(b.session, SPAR_COUPLING_FIXED_POINT, 1e-9, 1e-7, 300));
         for (int i = 0; i < 20; i++) {
@@ -535,7 +535,7 @@ static void explicit_is_iterated(void **state) {
 /* ---- life ---- */
 
 /* Steps given up at every stage, trials, and files written and read between steps and in the middle of one change no
-   bit of what is learned, nor of the motion. */
+   bit of what is learned, nor of the motion (without columns of earlier steps: these go with steps given up). */
 static void bits(void **state) {
     (void)state;
     static const char path[] = "learned_mass.spar";
@@ -545,6 +545,7 @@ static void bits(void **state) {
         int used, done;
         double report[SPAR_TRY_COUNT];
         buoy_create(&b, 10, 1);
+        OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
         for (int step = 0; step < 30; step++) {
             unsigned long long seed = b.seed;
             for (int stage = 0; stage < 3 && way == 1; stage++) {
@@ -569,6 +570,7 @@ static void bits(void **state) {
                     OK(b.session, spar_session_save(b.session, path));
                     spar_session_destroy(&b.session);
                     buoy_create(&b, 10, 1);
+                    OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
                     OK(b.session, spar_session_load(b.session, path));
                     memcpy(b.drive, kept.drive, sizeof b.drive);
                     b.seed = kept.seed;
@@ -582,6 +584,7 @@ static void bits(void **state) {
                 OK(b.session, spar_session_save(b.session, path));
                 spar_session_destroy(&b.session);
                 buoy_create(&b, 10, 1);
+                OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
                 OK(b.session, spar_session_load(b.session, path));
                 b.seed = kept.seed;
             }

@@ -226,14 +226,14 @@ static double product_six(const double A[36], const double B[36]) {
 
 /* Of the nodes: loads and accelerations of the iteration before; the differences of both in the sections' axes; where
    the nodes are, and their axes. */
-typedef struct sight {
+typedef struct nodal_view {
     double *load, *rate, *f, *a, *eta, *R;
-} sight;
+} nodal_view;
 
-static sight sight_of(const spar_member *m) {
+static nodal_view view_of_nodes(const spar_member *m) {
     double *x = m->added->last;
     int64_t n = m->nodes;
-    return (sight){x, x + 6 * n, x + 12 * n, x + 18 * n, x + 24 * n, x + 25 * n};
+    return (nodal_view){x, x + 6 * n, x + 12 * n, x + 18 * n, x + 24 * n, x + 25 * n};
 }
 
 int spari_learned_create(spar_member *m) {
@@ -245,7 +245,7 @@ int spari_learned_create(spar_member *m) {
     if (!(m->added->last = spari_zalloc(34 * m->nodes, sizeof(double)))) {
         return SPAR_ERR_MEMORY;
     }
-    sight at = sight_of(m);
+    nodal_view at = view_of_nodes(m);
     if (m->kind == SPARI_BEAM) {
         spari_gll(P, xi, NULL, NULL);
     }
@@ -274,7 +274,7 @@ static void to_section(const spar_member *m, int64_t e, const double *phi, const
 }
 
 /* Differences of the nodes from the iteration before, in the sections' axes. */
-static void differ_at_nodes(const spar_member *m, const sight *at) {
+static void differ_at_nodes(const spar_member *m, const nodal_view *at) {
     int P = m->per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
         double phi[SPARI_MAX_NODES] = {0}, df[6], da[6];
@@ -319,7 +319,7 @@ static void add_outer(double f, const double x[6], const double y[6], double *to
 /* With N_s the share of station s along the line and I what the nodes' interpolation makes of values there,
      G_st = integral of N_t a (I N_s a)^T,    B_s = - sum over nodes of N_s f a^T,
    so that loads f of a mass with stations M_t have B_s = sum over t of M_t G_st to the last digit. */
-static void gather_difference(const spar_member *m, const sight *at, spari_learned *l) {
+static void gather_difference(const spar_member *m, const nodal_view *at, spari_learned *l) {
     const spari_strips *p = &m->added->strips;
     int P = p->per_element;
     memset(l->one_G, 0, (size_t)(36 * l->n * (l->n + 1)) * sizeof *l->one_G);
@@ -382,7 +382,7 @@ static double size_of_rates(const spar_member *m, const spari_learned *l, const 
     return W * whole * sum / (double)m->nodes;
 }
 
-static void take_difference(spar_member *m, const sight *at) {
+static void take_difference(spar_member *m, const nodal_view *at) {
     static const double ROUNDING = 1e-8;
     spari_learned *l = m->learned;
     double square, left;
@@ -405,7 +405,7 @@ void spari_learned_note(spar_member *m, int iteration) {
     if (!m->learned || !m->added || m->session->trial) {
         return;
     }
-    sight at = sight_of(m);
+    nodal_view at = view_of_nodes(m);
     if (iteration > 1) {
         take_difference(m, &at);
     }
@@ -418,7 +418,7 @@ void spari_learned_note(spar_member *m, int iteration) {
 /* Eigenvectors of what the accelerations at each station were, in the metric of the mass, and eigenvalues; 0 of those
    that were not seen. */
 static void look_around(spari_learned *l) {
-    static const double UNSEEN = 1e-10;
+    static const double UNSEEN = 1e-8;
     for (int64_t s = 0; s < l->n; s++) {
         double D[36] = {0}, half[36], all[36], *lambda = l->squares + 6 * s, most = 0;
         for (int64_t t = 0; t < l->n; t++) {
