@@ -115,27 +115,33 @@ static void couplings(const scene *s) {
     }
 }
 
-/* An added mass that is known beforehand, right and wrong: explicit, and iterated. */
+/* An added mass that is known beforehand, right and wrong, or learned in ten steps: explicit, and iterated. */
 static void guesses(const scene *s) {
     static const struct {
         double guess;
         int scheme, predictor;
         const char *name;
-    } all[] = {{0.5, SPAR_COUPLING_EXPLICIT, 0, "half explicit predictor 0"},
-               {0.8, SPAR_COUPLING_EXPLICIT, 1, "0.8 explicit"},
-               {1, SPAR_COUPLING_EXPLICIT, 0, "right explicit predictor 0"},
-               {1, SPAR_COUPLING_EXPLICIT, 1, "right explicit"},
-               {1, SPAR_COUPLING_EXPLICIT, 2, "right explicit predictor 2"},
-               {2, SPAR_COUPLING_EXPLICIT, 1, "twice explicit"},
-               {0.5, SPAR_COUPLING_FIXED_POINT, 1, "half fixed point"},
-               {1, SPAR_COUPLING_FIXED_POINT, 1, "right fixed point"},
-               {2, SPAR_COUPLING_FIXED_POINT, 1, "twice fixed point"},
-               {0.5, SPAR_COUPLING_IQN_ILS, 1, "half iqn"},
-               {1, SPAR_COUPLING_IQN_ILS, 1, "right iqn"},
-               {2, SPAR_COUPLING_IQN_ILS, 1, "twice iqn"}};
+        int learn;
+    } all[] = {{0.5, SPAR_COUPLING_EXPLICIT, 0, "half explicit predictor 0", 0},
+               {0.8, SPAR_COUPLING_EXPLICIT, 1, "0.8 explicit", 0},
+               {1, SPAR_COUPLING_EXPLICIT, 0, "right explicit predictor 0", 0},
+               {1, SPAR_COUPLING_EXPLICIT, 1, "right explicit", 0},
+               {1, SPAR_COUPLING_EXPLICIT, 2, "right explicit predictor 2", 0},
+               {2, SPAR_COUPLING_EXPLICIT, 1, "twice explicit", 0},
+               {0.5, SPAR_COUPLING_FIXED_POINT, 1, "half fixed point", 0},
+               {1, SPAR_COUPLING_FIXED_POINT, 1, "right fixed point", 0},
+               {2, SPAR_COUPLING_FIXED_POINT, 1, "twice fixed point", 0},
+               {0.5, SPAR_COUPLING_IQN_ILS, 1, "half iqn", 0},
+               {1, SPAR_COUPLING_IQN_ILS, 1, "right iqn", 0},
+               {2, SPAR_COUPLING_IQN_ILS, 1, "twice iqn", 0},
+               {0, SPAR_COUPLING_EXPLICIT, 0, "learned explicit predictor 0", 10},
+               {0, SPAR_COUPLING_EXPLICIT, 1, "learned explicit", 10},
+               {0, SPAR_COUPLING_EXPLICIT, 2, "learned explicit predictor 2", 10},
+               {0, SPAR_COUPLING_FIXED_POINT, 1, "learned fixed point", 10},
+               {0, SPAR_COUPLING_IQN_ILS, 1, "learned iqn", 10}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         knobs k = s->standard;
-        k.guess = all[i].guess, k.scheme = all[i].scheme, k.predictor = all[i].predictor;
+        k.guess = all[i].guess, k.scheme = all[i].scheme, k.predictor = all[i].predictor, k.learn = all[i].learn;
         add(s, "added mass", all[i].name, k);
     }
 }

@@ -21,7 +21,7 @@ static const double pi = 3.14159265358979323846;
 static int settings(spar_session *s, const knobs *k) {
     TRY(spar_session_set_integrator(s, k->rho, k->substeps));
     TRY(spar_session_set_predictor(s, k->predictor));
-    TRY(spar_session_set_coupling(s, k->scheme, 0, k->tolerance, 60));
+    TRY(spar_session_set_coupling(s, k->learn > 0 ? SPAR_COUPLING_IQN_ILS : k->scheme, 0, k->tolerance, 60));
     TRY(spar_session_set_option(s, "fluid.theta", k->group ? "group" : "average"));
     TRY(spar_session_set_option(s, "fluid.audit", "off"));
     return k->newton > 0 ? spar_session_set_newton(s, 1e-15, k->newton, 50) : SPAR_OK;
@@ -57,6 +57,7 @@ static int straight_beam(scene_run *r, double length, const double *C, const dou
         diagonal(A, 0, 0, added * r->knobs.guess, 0, 0, 0);
         TRY(spar_member_set_added_mass(r->member, 1, eta, A));
     }
+    TRY(spar_member_learn_added_mass(r->member, r->knobs.learn > 0, eta));
     return commit(r->member, &r->knobs);
 }
 
@@ -370,6 +371,10 @@ int scene_march(scene_run *run, scene_result *result) {
     }
     int status = SPAR_OK;
     for (int64_t i = llround(t / dt) + 1; i <= steps && status == SPAR_OK; i++) {
+        const knobs *k = &run->knobs;
+        if (k->learn > 0 && i == k->learn + 1) {
+            TRY(spar_session_set_coupling(run->session, k->scheme, 0, k->tolerance, 60));
+        }
         status = scene_step(run, &result->seconds, &result->iterations);
         result->steps += status == SPAR_OK;
         if (i * SCENE_SAMPLES % steps == 0 && status == SPAR_OK) {

@@ -43,6 +43,7 @@ typedef struct knobs {
     int single;       /* f32 at the edge: loads, and where the scene pulls the motion itself (nodes), that too */
     int acceleration; /* plate: the added mass takes the nodes' acceleration; else a difference of velocities */
     double guess;     /* plate: of its fluid's added mass that is known beforehand; 0: none */
+    int learn;        /* plate: it is learned in so many steps of IQN-ILS, before the scheme; 0: not */
     int start;        /* loads at t = 0 are given before the first step, by scene_build; else they count as zero */
     int effects;      /* SPAR_EFFECT_* or-ed; -1: default */
     int aero;         /* SPAR_AERO_* or-ed; -1: default */
