@@ -184,8 +184,8 @@ static void guess_over_ranks(void **state) {
     spar_session_destroy(&all.session);
 }
 
-/* The same learned: every rank has the same mass of each member, and it is that of the serial run, to 1e-9 (the loads
-   agree to 1e-11, and are divided by differences of a few per cent). */
+/* The same learned: every rank has the same mass of each member, and it is that of the serial run, to 1e-7 (the loads
+   agree to 1e-11, and differences of small parts of them are compared). */
 static void learning_over_ranks(void **state) {
     (void)state;
     scene all, alone;
@@ -213,9 +213,9 @@ static void learning_over_ranks(void **state) {
             most = fmax(most, fabs(M[1][i]));
         }
         for (int i = 0; i < 36; i++) {
-            NEAR(M[0][i], M[1][i], 1e-9 * most);
+            NEAR(M[0][i], M[1][i], 1e-7 * most);
         }
-        assert_true(k == 0 || (used[0] && most > 1));
+        assert_true(k == 0 ? used[0] : fabs(most - 6) < 0.1); /* twice the mass of the piston */
     }
     spar_session_destroy(&all.session);
     spar_session_destroy(&alone.session);
