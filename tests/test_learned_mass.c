@@ -1,5 +1,5 @@
 /* The fluid's added mass learned from iterations (spar_member_learn_added_mass), and loads of fluids that take
-   accelerations from velocities (option fluid.added_mass): docs/theory.md, (T19) to (T21). What is learned of an exact
+   accelerations from velocities (option fluid.added_mass): docs/theory.md, (T21) to (T24). What is learned of an exact
    fluid is its mass to rounding, with what its springs add over the step. */
 #include "pistons.h"
 

@@ -57,7 +57,7 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S);
 
 /* Predicted loads become y, w being the predictor's weights in a step of dt: load_used += A (w[0] a^n + w[1] a^{n-1} +
-   w[2] a^{n-2}), and the shift that of t^n; of a fluid that takes accelerations from velocities (T19) of
+   w[2] a^{n-2}), and the shift that of t^n; of a fluid that takes accelerations from velocities (T21) of
    docs/theory.md. */
 void spari_added_predict(spar_member *m, const double w[3], double dt);
 /* The motion now has been set anew: as if it had always been accelerated so. */
