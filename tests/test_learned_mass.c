@@ -1,102 +1,13 @@
 /* The fluid's added mass learned from iterations (spar_member_learn_added_mass), and loads of fluids that take
-   accelerations from velocities (option fluid.added_mass): docs/theory.md, (T21) to (T24). What is learned of an exact
+   accelerations from velocities (option fluid.added_mass): docs/theory.md, (T19) to (T22). What is learned of an exact
    fluid is its mass to rounding, with what its springs add over the step. */
+#include "buoy.h"
 #include "pistons.h"
 
 #include <stdio.h>
 
 static const double ratios[] = {1, 10, 100};
 enum { RATIOS = 3 };
-
-/* Numbers in [-1, 1] that repeat. */
-static double draw(unsigned long long *seed) {
-    *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
-    return (double)(*seed >> 11) * 0x1p-52 - 1;
-}
-
-/* ---- a body that moves in all directions ---- */
-
-/* Mass 1 in a fluid of a full 6x6 added mass, in the axes that the body has at t^n, and a spring to its place in x;
-   loads that change at random from step to step, but not within one, keep it going, and noise of a given size. */
-typedef struct buoy {
-    spar_session *session;
-    spar_member *body;
-    spar_fluid *fluid;
-    double added[36], axes[4], spring, noise;
-    unsigned long long seed, noises;
-    double drive[6], work;
-} buoy;
-
-/* Symmetric, positive definite: a diagonal of `size` and less, with couplings of all kinds. */
-static void full_matrix(double size, double A[36]) {
-    scene_diagonal(A, size, 0.6 * size, 0.8 * size, 0.5 * size, 0.7 * size, 0.4 * size);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < i; j++) {
-            A[6 * i + j] = A[6 * j + i] = 0.05 * size * ((i * 7 + j * 3) % 5 - 2);
-        }
-    }
-}
-
-static int buoy_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
-    buoy *b = context;
-    double q[7], a[6], own[6], f[6] = {0};
-    (void)t, (void)dt;
-    OK(s, spar_member_get_motion(b->body, q, NULL, a));
-    for (int k = 0; k < 6 && iteration == 0; k++) {
-        b->drive[k] = draw(&b->seed);
-    }
-    spari_rotate_back(b->axes, a, own);
-    spari_rotate_back(b->axes, a + 3, own + 3);
-    for (int i = 0; i < 36; i++) {
-        f[i / 6] -= b->added[i] * own[i % 6];
-    }
-    spari_rotate(b->axes, f, f);
-    spari_rotate(b->axes, f + 3, f + 3);
-    for (int k = 0; k < 6; k++) {
-        f[k] += b->drive[k] - (k == 0 ? b->spring * q[0] : 0);
-        f[k] *= 1 + b->noise * draw(&b->noises);
-    }
-    return spar_fluid_push_forces(b->fluid, f, f + 3);
-}
-
-static void buoy_create(buoy *b, double size, int learn) {
-    static const double x[3] = {0, 0, 0}, c[3] = {0.1, 0, 0.05}, J[3] = {1, 0.5, 0.7};
-    static const double q[4] = {0.8, 0, 0.6, 0};
-    double mass[36];
-    memset(b, 0, sizeof *b);
-    b->session = scene_session();
-    full_matrix(size, b->added);
-    memcpy(b->axes, q, sizeof q);
-    scene_mass(mass, 1, c, J);
-    OK(b->session, spar_rigid_create(b->session, "buoy", x, q, mass, &b->body));
-    OK(b->session, spar_member_learn_added_mass(b->body, learn, NULL));
-    OK(b->session, spar_member_commit(b->body));
-    OK(b->session, spar_fluid_create(b->body, "fluid", &b->fluid));
-    OK(b->session, spar_fluid_set_motion_nodes(b->fluid, 1, x));
-    OK(b->session, spar_fluid_set_force_nodes(b->fluid, 1, x));
-    OK(b->session, spar_fluid_map(b->fluid));
-    OK(b->session, spar_session_set_integrator(b->session, 1, 1));
-    OK(b->session, spar_session_set_coupling(b->session, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-10, 300));
-}
-
-/* A step; the axes that the fluid's mass stands in are those that the body has before it. */
-static int buoy_step(buoy *b, double dt) {
-    static const double own[4] = {0.8, 0, 0.6, 0};
-    double q[7];
-    int n;
-    OK(b->session, spar_member_get_motion(b->body, q, NULL, NULL));
-    spari_quat_mul(q + 3, own, b->axes);
-    OK(b->session, spar_step(b->session, dt, buoy_fluid, b, &n));
-    return n;
-}
-
-static double largest_difference(const double *a, const double *b, int n) {
-    double most = 0;
-    for (int i = 0; i < n; i++) {
-        most = fmax(most, fabs(a[i] - b[i]));
-    }
-    return most;
-}
 
 /* All 21 numbers of a full mass, in the body's own axes as it turns, to 1e-6 of the largest (an acceleration is known
    to 1e-8 of itself where Newton leaves 1e-12 of the way), and fixed points contract by the 2 per cent that the mass in
@@ -532,79 +443,7 @@ static void explicit_is_iterated(void **state) {
     }
 }
 
-/* ---- life ---- */
-
-/* Steps given up at every stage, trials, and files written and read between steps and in the middle of one change no
-   bit of what is learned, nor of the motion (without columns of earlier steps: these go with steps given up). */
-static void bits(void **state) {
-    (void)state;
-    static const char path[] = "learned_mass.spar";
-    static double seen[3][7 + 36 + 2];
-    for (int way = 0; way < 3; way++) { /* undisturbed; steps given up and trials; files */
-        buoy b;
-        int used, done;
-        double report[SPAR_TRY_COUNT];
-        buoy_create(&b, 10, 1);
-        OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
-        for (int step = 0; step < 30; step++) {
-            unsigned long long seed = b.seed;
-            for (int stage = 0; stage < 3 && way == 1; stage++) {
-                OK(b.session, spar_step_begin(b.session, 0.02));
-                for (int i = 0; i < stage; i++) {
-                    OK(b.session, spar_step_solve(b.session));
-                    OK(b.session, buoy_fluid(b.session, 0, 0.02, i, &b));
-                    OK(b.session, spar_step_check(b.session, &done));
-                }
-                OK(b.session, spar_step_reject(b.session));
-            }
-            if (way == 1 && step == 8) {
-                OK(b.session, spar_session_try(b.session, 0.02, 16, NULL, buoy_fluid, &b, 0, SPAR_TRY_COUNT, report));
-            }
-            b.seed = seed;
-            OK(b.session, spar_step_begin(b.session, 0.02));
-            done = 0;
-            for (int i = 0; !done; i++) {
-                OK(b.session, spar_step_solve(b.session));
-                if (way == 2 && (i == 1 || i == 2)) {
-                    buoy kept = b;
-                    OK(b.session, spar_session_save(b.session, path));
-                    spar_session_destroy(&b.session);
-                    buoy_create(&b, 10, 1);
-                    OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
-                    OK(b.session, spar_session_load(b.session, path));
-                    memcpy(b.drive, kept.drive, sizeof b.drive);
-                    b.seed = kept.seed;
-                }
-                OK(b.session, buoy_fluid(b.session, 0, 0.02, i, &b));
-                OK(b.session, spar_step_check(b.session, &done));
-            }
-            OK(b.session, spar_step_accept(b.session));
-            if (way == 2) {
-                buoy kept = b;
-                OK(b.session, spar_session_save(b.session, path));
-                spar_session_destroy(&b.session);
-                buoy_create(&b, 10, 1);
-                OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
-                OK(b.session, spar_session_load(b.session, path));
-                b.seed = kept.seed;
-            }
-        }
-        OK(b.session, spar_member_get_motion(b.body, seen[way], NULL, NULL));
-        OK(b.session, spar_member_get_learned_added_mass(b.body, &used, &seen[way][43], NULL, 1, NULL, seen[way] + 7));
-        seen[way][44] = used;
-        assert_true(used);
-        if (way == 2) { /* a session that learns nothing has another description */
-            OK(b.session, spar_session_save(b.session, path));
-            spar_session_destroy(&b.session);
-            buoy_create(&b, 10, 0);
-            assert_int_not_equal(spar_session_load(b.session, path), SPAR_OK);
-        }
-        spar_session_destroy(&b.session);
-    }
-    assert_memory_equal(seen[1], seen[0], sizeof seen[0]);
-    assert_memory_equal(seen[2], seen[0], sizeof seen[0]);
-    (void)remove(path);
-}
+/* ---- what is refused ---- */
 
 /* What is given is read; what cannot be is refused with its reason. */
 static void refusals(void **state) {
@@ -663,7 +502,6 @@ int main(void) {
         cmocka_unit_test(beams),
         cmocka_unit_test(explicit_after),
         cmocka_unit_test(explicit_is_iterated),
-        cmocka_unit_test(bits),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -936,7 +936,7 @@ SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, 
      q[n][4]: out, orientation of the section now, scalar part >= 0
      omega[n][3]: out, rad/s
      accel[n][3]: out, acceleration of the node, m/s^2; with substeps, of a member without a guess of the added mass,
-   the mean over the step carried on to its end by the mean before, (T20), of second order too: one that an added mass
+   the mean over the step carried on to its end by the mean before, (T15), of second order too: one that an added mass
    may answer to */
 SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
 /* All of a section's motion at once, for blade element hosts, at the motion nodes. Each NULL: not wanted.
@@ -995,7 +995,7 @@ SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
 /* For a fluid that takes several steps within dt: its mean loads over the part of the step that ends at t^n + theta dt
    (it pulls at any theta). In use at t^{n+1} is m + (e - e^n) / 2: m the mean of the parts over the step so far, e
-   where the line of least squares through them ends, e^n where that of the step before did (T15): of second order in
+   where the line of least squares through them ends, e^n where that of the step before did (T13): of second order in
    dt, and the parts' impulse is kept. Loads that are known at t^{n+1} itself: spar_fluid_push_forces. Not before the
    first step; otherwise as that. theta: in, in (0, 1], rising from push to push; one that does not rise begins anew
    (the next iteration)

@@ -1,4 +1,4 @@
-/* Loads that come several times in a step, each over a part of it: see docs/theory.md, (T15).
+/* Loads that come several times in a step, each over a part of it: see docs/theory.md, (T13).
 
    A part's load is its mean over the part. What the structure asks for is the load at t^{n+1}, between which and that
    at t^n it takes a straight line. The line of least squares through the parts has their mean m, so their impulse, and

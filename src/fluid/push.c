@@ -289,7 +289,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
     const double *begin = p->ended ? p->end[0] : fluid->load_accepted;
     double slope = fluid->member->session->standing ? 0 : 0.5; /* of time that stands there is no end */
-    for (int64_t i = 0; i < n; i++) {                          /* (T15) */
+    for (int64_t i = 0; i < n; i++) {                          /* (T13) */
         fluid->load[i] = p->mean[i] + slope * (p->end[1][i] - begin[i]);
     }
     spari_fluid_refill_bins(fluid); /* one rank: the values do not depend on the order of the nodes either */

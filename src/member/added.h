@@ -22,6 +22,7 @@ typedef struct spari_strips {
 } spari_strips;
 
 struct spari_added {
+    int stands;                        /* there is a mass */
     int whole;                         /* one body carries all of a beam's nodes */
     int elements, per_element, points; /* of the mass: the member's, or one node and point where one body carries all */
     double *mass;        /* [elements][points][36] of a point, weight in it, global axes of the reference */
@@ -57,7 +58,7 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S);
 
 /* Predicted loads become y, w being the predictor's weights in a step of dt: load_used += A (w[0] a^n + w[1] a^{n-1} +
-   w[2] a^{n-2}), and the shift that of t^n; of a fluid that takes accelerations from velocities (T21) of
+   w[2] a^{n-2}), and the shift that of t^n; of a fluid that takes accelerations from velocities (T19) of
    docs/theory.md. */
 void spari_added_predict(spar_member *m, const double w[3], double dt);
 /* The motion now has been set anew: as if it had always been accelerated so. */

@@ -6,15 +6,32 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "edge.h"
+#include "means.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Differences by their part of the largest one of their step, fading; of those that were tested before they were used:
-   what the mass learned until then left of them, and all, squared; whether there is a mass; whether it stands in the
-   equations. The same of the step under way, with its squares and the largest of them. */
-enum { COUNT, LEFT, WHOLE, KNOWN, USED, STEP_LEFT, STEP_WHOLE, STEP_SQUARES, STEP_LARGEST, HEADS };
+   what the mass learned until then left of them, and all, squared; the same of those in directions seen before, less
+   what comes of the mass being known so far only; whether there is a mass; whether it stands in the equations. The same
+   of the step under way, with its squares and the largest of them. */
+enum {
+    COUNT,
+    LEFT,
+    WHOLE,
+    NOISE,
+    SEEN,
+    KNOWN,
+    USED,
+    STEP_LEFT,
+    STEP_WHOLE,
+    STEP_NOISE,
+    STEP_SEEN,
+    STEP_SQUARES,
+    STEP_LARGEST,
+    HEADS
+};
 
 struct spari_learned {
     int64_t n, count; /* stations; doubles of the state */
@@ -25,12 +42,15 @@ struct spari_learned {
     double *step_G, *step_B;
     double *one_G, *one_B;  /* of one difference: no part of the state */
     double *metric, *root;  /* [n][36] the member's own mass at the stations, and its Cholesky factor */
-    double *axes, *squares; /* [n][36], [n][6] of a fit */
+    double *axes, *squares; /* [n][36], [n][6] of G: look_around */
+    double *plain;          /* [n][36] least squares without doubt */
 };
 
 /* A load is not tested on fewer differences than that; what it leaves of a change has to be less than USE to stand in
    the equations, and it does not stay there beyond DROP. */
 static const double ENOUGH = 2.5, USE = 0.25, DROP = 0.5, FADE = 0.9;
+/* A direction that has less of the squares than that has not been seen. */
+static const double UNSEEN = 1e-8;
 
 /* ---- description ---- */
 
@@ -53,7 +73,7 @@ static spari_learned *create_learned(int64_t n, const double *eta) {
     int64_t whole = 36 * n * n, each = 36 * n;
     l->n = n, l->count = HEADS + 2 * each + 2 * (whole + each);
     l->eta = eta ? spari_copy(eta, n) : spari_zalloc(n, sizeof *l->eta);
-    l->head = spari_zalloc(l->count + whole + each + 3 * each + 6 * n, sizeof *l->head);
+    l->head = spari_zalloc(l->count + whole + each + 4 * each + 6 * n, sizeof *l->head);
     if (!l->eta || !l->head) {
         spari_learned_free(l);
         return NULL;
@@ -63,7 +83,7 @@ static spari_learned *create_learned(int64_t n, const double *eta) {
     l->step_G = l->B + each, l->step_B = l->step_G + whole;
     l->one_G = l->step_B + each, l->one_B = l->one_G + whole;
     l->metric = l->one_B + each, l->root = l->metric + each, l->axes = l->root + each;
-    l->squares = l->axes + each;
+    l->plain = l->axes + each, l->squares = l->plain + each;
     return l;
 }
 
@@ -95,6 +115,7 @@ int spar_member_get_learned_added_mass(const spar_member *member, int *used, dou
                                        int64_t capacity, double *eta, double *mass) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_member(member, __func__));
+    SPARI_TRY(member->committed ? spari_need_here(member, __func__, SPARI_LOADS_AWAY) : SPAR_OK);
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     const spari_learned *l = member->learned;
     if (used) {
@@ -274,14 +295,14 @@ static void to_section(const spar_member *m, int64_t e, const double *phi, const
 }
 
 /* Differences of the nodes from the iteration before, in the sections' axes. */
-static void differ_at_nodes(const spar_member *m, const nodal_view *at) {
+static void differ_at_nodes(const spar_member *m, const double *seen, const nodal_view *at) {
     int P = m->per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
         double phi[SPARI_MAX_NODES] = {0}, df[6], da[6];
         phi[i % P] = 1;
         for (int k = 0; k < 6; k++) {
             df[k] = m->load_pushed[6 * i + k] - at->load[6 * i + k];
-            da[k] = m->after.a[6 * i + k] - at->rate[6 * i + k];
+            da[k] = seen[6 * i + k] - at->rate[6 * i + k];
         }
         to_section(m, i / P, phi, at->R + 9 * i, df, at->f + 6 * i);
         to_section(m, i / P, phi, at->R + 9 * i, da, at->a + 6 * i);
@@ -319,7 +340,7 @@ static void add_outer(double f, const double x[6], const double y[6], double *to
 /* With N_s the share of station s along the line and I what the nodes' interpolation makes of values there,
      G_st = integral of N_t a (I N_s a)^T,    B_s = - sum over nodes of N_s f a^T,
    so that loads f of a mass with stations M_t have B_s = sum over t of M_t G_st to the last digit. */
-static void gather_difference(const spar_member *m, const nodal_view *at, spari_learned *l) {
+static void gather_difference(const spar_member *m, const double *seen, const nodal_view *at, spari_learned *l) {
     const spari_strips *p = &m->added->strips;
     int P = p->per_element;
     memset(l->one_G, 0, (size_t)(36 * l->n * (l->n + 1)) * sizeof *l->one_G);
@@ -335,7 +356,7 @@ static void gather_difference(const spar_member *m, const nodal_view *at, spari_
         double da[6] = {0}, own[6];
         for (int i = 0; i < 6 * P; i++) {
             int64_t node = 6 * e * P + i;
-            da[i % 6] += phi[i / 6] * (m->after.a[node] - at->rate[node]);
+            da[i % 6] += phi[i / 6] * (seen[node] - at->rate[node]);
         }
         to_section(m, e, phi, p->R + 9 * k, da, own);
         shares here = shares_of(l, p->eta[k]);
@@ -349,22 +370,37 @@ static void gather_difference(const spar_member *m, const nodal_view *at, spari_
     }
 }
 
-/* Of the difference: the square of its size, in the member's own mass; of what the mass learned so far makes of it, the
-   part that is left in its own direction, which is what the coupling contracts by with that mass. */
-static double weigh_difference(const spari_learned *l, double *square) {
-    double added = 0, back = 0;
-    *square = 0;
+/* da . M da of the difference, M a mass with its stations or the metric. */
+static double square_in(const spari_learned *l, const double *M) {
+    double sum = 0;
     for (int64_t s = 0; s < l->n; s++) {
         for (int64_t t = 0; t < l->n; t++) {
-            const double *G = l->one_G + 36 * (l->n * s + t);
-            *square += product_six(l->metric + 36 * t, G);
-            added += product_six(l->mass + 36 * t, G);
-        }
-        for (int i = 0; i < 6; i++) {
-            back += l->one_B[36 * s + 7 * i];
+            sum += product_six(M + 36 * t, l->one_G + 36 * (l->n * s + t));
         }
     }
-    return (added - back) / (*square + added);
+    return sum;
+}
+
+/* - da . df */
+static double square_that_came_back(const spari_learned *l) {
+    double sum = 0;
+    for (int64_t i = 0; i < 36 * l->n; i++) {
+        sum += i % 36 % 7 == 0 ? l->one_B[i] : 0;
+    }
+    return sum;
+}
+
+/* D [36] := the part of the squares G at station s, all its stations' accelerations together, in the metric. */
+static void squares_at(const spari_learned *l, const double *squares, int64_t s, double D[36]) {
+    double sum[36] = {0}, half[36];
+    for (int64_t t = 0; t < l->n; t++) {
+        const double *G = squares + 36 * (l->n * s + t);
+        for (int i = 0; i < 36; i++) {
+            sum[i] += 0.5 * (G[i] + G[6 * (i % 6) + i / 6]);
+        }
+    }
+    multiply_six(l->root + 36 * s, sum, FIRST, half);
+    multiply_six(half, l->root + 36 * s, NEITHER, D);
 }
 
 /* The square of the accelerations themselves: a difference of their rounding says nothing. */
@@ -382,23 +418,60 @@ static double size_of_rates(const spar_member *m, const spari_learned *l, const 
     return W * whole * sum / (double)m->nodes;
 }
 
-static void take_difference(spar_member *m, const nodal_view *at) {
+/* Least squares know A along a difference of accelerations da to the noise's variance times h, with the difference's
+   weight: the mean over the stations, by their parts of da, of the sum over the axes of da^2 over the squares seen.
+   INFINITY: of directions that have not been seen. */
+static double leverage_of(const spari_learned *l, double square, double weight) {
+    double h = 0;
+    for (int64_t s = 0; s < l->n; s++) {
+        const double *E = l->axes + 36 * s, *lambda = l->squares + 6 * s;
+        double half[36], all[36], here = 0, sum = 0;
+        squares_at(l, l->one_G, s, half);
+        multiply_six(E, half, FIRST, all);
+        multiply_six(all, E, NEITHER, half);
+        for (int i = 0; i < 6; i++) {
+            here += half[7 * i];
+        }
+        for (int i = 0; i < 6; i++) {
+            if (half[7 * i] > UNSEEN * here) {
+                sum += lambda[i] > 0 ? half[7 * i] / lambda[i] : INFINITY;
+            }
+        }
+        h += here > UNSEEN * square ? weight * sum * here / square : 0;
+    }
+    return h;
+}
+
+/* What the mass known so far leaves of a difference in its own direction, `left`, is what the coupling contracts by
+   with that mass. What plain least squares leave, `plain`, is noise where its direction has been seen: 1 + h times that
+   of one difference. */
+static void test_mass(spari_learned *l, double square, double left, double plain) {
+    double *head = l->head;
+    head[STEP_SQUARES] += square;
+    head[STEP_LARGEST] = fmax(head[STEP_LARGEST], square);
+    head[STEP_LEFT] += square * left * left;
+    head[STEP_WHOLE] += square;
+    double h = head[KNOWN] > 0 ? leverage_of(l, square, 1 / sqrt(head[STEP_LARGEST])) : INFINITY;
+    if (h < INFINITY) {
+        head[STEP_NOISE] += square * plain * plain / (1 + h);
+        head[STEP_SEEN] += square;
+    }
+}
+
+static void take_difference(spar_member *m, const double *seen, const nodal_view *at) {
     static const double ROUNDING = 1e-8;
     spari_learned *l = m->learned;
-    double square, left;
-    differ_at_nodes(m, at);
-    gather_difference(m, at, l);
-    left = weigh_difference(l, &square);
-    if (!isfinite(square) || !isfinite(left) || !(square > ROUNDING * ROUNDING * size_of_rates(m, l, m->after.a))) {
+    differ_at_nodes(m, seen, at);
+    gather_difference(m, seen, at, l);
+    double square = square_in(l, l->metric), added = square_in(l, l->mass), back = square_that_came_back(l);
+    double left = (added - back) / (square + added);
+    if (!isfinite(square) || !isfinite(left) || !(square > ROUNDING * ROUNDING * size_of_rates(m, l, seen))) {
         return;
     }
     for (int64_t i = 0; i < 36 * l->n * (l->n + 1); i++) {
         l->step_G[i] += l->one_G[i];
     }
-    l->head[STEP_SQUARES] += square;
-    l->head[STEP_LARGEST] = fmax(l->head[STEP_LARGEST], square);
-    l->head[STEP_LEFT] += square * left * left;
-    l->head[STEP_WHOLE] += square;
+    test_mass(l, square, left, (square_in(l, l->plain) - back) / (square + added));
 }
 
 void spari_learned_note(spar_member *m, int iteration) {
@@ -406,11 +479,12 @@ void spari_learned_note(spar_member *m, int iteration) {
         return;
     }
     nodal_view at = view_of_nodes(m);
+    const double *seen = spari_means_seen(m, 1); /* what the loads answer to */
     if (iteration > 1) {
-        take_difference(m, &at);
+        take_difference(m, seen, &at);
     }
     memcpy(at.load, m->load_pushed, (size_t)(6 * m->nodes) * sizeof *at.load);
-    memcpy(at.rate, m->after.a, (size_t)(6 * m->nodes) * sizeof *at.rate);
+    memcpy(at.rate, seen, (size_t)(6 * m->nodes) * sizeof *at.rate);
 }
 
 /* ---- the fit ---- */
@@ -418,17 +492,9 @@ void spari_learned_note(spar_member *m, int iteration) {
 /* Eigenvectors of what the accelerations at each station were, in the metric of the mass, and eigenvalues; 0 of those
    that were not seen. */
 static void look_around(spari_learned *l) {
-    static const double UNSEEN = 1e-8;
     for (int64_t s = 0; s < l->n; s++) {
-        double D[36] = {0}, half[36], all[36], *lambda = l->squares + 6 * s, most = 0;
-        for (int64_t t = 0; t < l->n; t++) {
-            const double *G = l->G + 36 * (l->n * s + t);
-            for (int i = 0; i < 36; i++) {
-                D[i] += 0.5 * (G[i] + G[6 * (i % 6) + i / 6]);
-            }
-        }
-        multiply_six(l->root + 36 * s, D, FIRST, half);
-        multiply_six(half, l->root + 36 * s, NEITHER, all);
+        double all[36], *lambda = l->squares + 6 * s, most = 0;
+        squares_at(l, l->G, s, all);
         diagonalise_six(all, l->axes + 36 * s);
         for (int i = 0; i < 6; i++) {
             most = fmax(most, all[7 * i]);
@@ -440,19 +506,19 @@ static void look_around(spari_learned *l) {
 }
 
 /* What is missing at station s: B_s less what the masses make of G, in the metric and on the axes there. */
-static void missing_at(const spari_learned *l, int64_t s, double doubt, double out[36]) {
+static void missing_at(const spari_learned *l, const double *mass, int64_t s, double doubt, double out[36]) {
     const double *S = l->root + 36 * s, *E = l->axes + 36 * s;
     double r[36], part[36], half[36];
     memcpy(r, l->B + 36 * s, sizeof r);
     for (int64_t t = 0; t < l->n; t++) {
-        multiply_six(l->mass + 36 * t, l->G + 36 * (l->n * s + t), NEITHER, part);
+        multiply_six(mass + 36 * t, l->G + 36 * (l->n * s + t), NEITHER, part);
         for (int i = 0; i < 36; i++) {
             r[i] -= part[i];
         }
     }
     reduce_rows(S, r);
     multiply_six(r, S, NEITHER, half);
-    to_metric(S, l->mass + 36 * s, part);
+    to_metric(S, mass + 36 * s, part);
     for (int i = 0; i < 36; i++) {
         half[i] -= doubt * part[i];
     }
@@ -462,10 +528,10 @@ static void missing_at(const spari_learned *l, int64_t s, double doubt, double o
 
 /* One correction of station s: the symmetric mass whose answer is nearest (Higham, BIT 28, 1988), in the directions
    that were seen, doubted by the scatter. */
-static void correct_station(spari_learned *l, int64_t s, double doubt) {
+static void correct_station(const spari_learned *l, double *mass, int64_t s, double doubt) {
     const double *lambda = l->squares + 6 * s;
     double r[36], X[36], half[36], T[36];
-    missing_at(l, s, doubt, r);
+    missing_at(l, mass, s, doubt, r);
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++) {
             int seen = lambda[i] > 0 && lambda[j] > 0;
@@ -476,7 +542,7 @@ static void correct_station(spari_learned *l, int64_t s, double doubt) {
     multiply_six(T, X, NEITHER, half);
     multiply_six(half, T, SECOND, X);
     for (int i = 0; i < 36; i++) {
-        l->mass[36 * s + i] += X[i];
+        mass[36 * s + i] += X[i];
     }
 }
 
@@ -492,22 +558,37 @@ static void keep_positive(spari_learned *l, int64_t s) {
     multiply_six(U, U, SECOND, M);
 }
 
-static void fit_mass(spari_learned *l) {
+/* doubt: that of all stations together. */
+static void fit_stations(const spari_learned *l, double doubt, double *mass) {
     enum { SWEEPS = 60 };
-    double part = l->head[COUNT] > 0 && l->head[WHOLE] > 0
-                      ? fmin(l->head[LEFT] / l->head[WHOLE], 1) / fmax(l->head[COUNT], 1)
-                      : 0;
-    look_around(l);
-    memset(l->mass, 0, (size_t)(36 * l->n) * sizeof *l->mass);
-    for (int sweep = 0; sweep < (l->n > 1 ? SWEEPS : 1); sweep++) {
+    double whole = 0;
+    for (int64_t i = 0; i < 6 * l->n; i++) {
+        whole += l->squares[i];
+    }
+    memset(mass, 0, (size_t)(36 * l->n) * sizeof *mass);
+    for (int sweep = 0; sweep < (l->n > 1 ? SWEEPS : 1) && whole > 0; sweep++) {
         for (int64_t s = 0; s < l->n; s++) {
             double all = 0;
             for (int i = 0; i < 6; i++) {
                 all += l->squares[6 * s + i];
             }
-            correct_station(l, s, part * all);
+            correct_station(l, mass, s, doubt * all / whole);
         }
     }
+}
+
+/* The square of the noise in a difference of the weight 1: of those in directions seen before; while there are none
+   all that was wrong is noise. */
+static double noise_of(const spari_learned *l) {
+    const double *h = l->head;
+    return fmin(h[SEEN] > 0 ? h[NOISE] * h[WHOLE] / h[SEEN] : h[LEFT], h[WHOLE]) / fmax(h[COUNT], 1);
+}
+
+/* Of the differences accepted: their axes, plain least squares, and the mass. */
+static void fit_mass(spari_learned *l) {
+    look_around(l);
+    fit_stations(l, 0, l->plain);
+    fit_stations(l, noise_of(l), l->mass);
     for (int64_t s = 0; s < l->n; s++) {
         keep_positive(l, s);
     }
@@ -564,6 +645,8 @@ int spari_learned_accept(spar_member *m) {
     if (h[KNOWN] > 0) { /* else nothing was there to be tested */
         h[LEFT] = FADE * h[LEFT] + scale * h[STEP_LEFT];
         h[WHOLE] = FADE * h[WHOLE] + scale * h[STEP_WHOLE];
+        h[NOISE] = FADE * h[NOISE] + scale * h[STEP_NOISE];
+        h[SEEN] = FADE * h[SEEN] + scale * h[STEP_SEEN];
         h[COUNT] = FADE * h[COUNT] + h[STEP_SQUARES] / h[STEP_LARGEST];
     }
     h[KNOWN] = 1;
@@ -573,7 +656,9 @@ int spari_learned_accept(spar_member *m) {
 }
 
 void spari_learned_put(spar_member *m) {
-    const spari_learned *l = m->learned;
+    spari_learned *l = m->learned;
+    look_around(l); /* these are no part of the state */
+    fit_stations(l, 0, l->plain);
     if (l->head[USED] > 0) {
         spari_added_fill(m, l->n, l->eta, l->force);
     } else {

@@ -1,8 +1,8 @@
 /* Accelerations as fluids see them where a step has several substeps: the mean over the step, carried on to its end by
-   the mean before, (T20) of docs/theory.md. Loads are linear between the ends of a step; under them a mode of the
+   the mean before, (T15) of docs/theory.md. Loads are linear between the ends of a step; under them a mode of the
    structure that the step does not resolve ends with an acceleration of the wrong sign, and an added mass that
-   answered to that would feed it. A member with a guess of the added mass has that in every substep and needs none of
-   this. */
+   answered to that would feed it. A member with an added mass in its equations has that in every substep and needs none
+   of this; one that is to learn it does until it is known. */
 #ifndef SPARI_MEANS_H
 #define SPARI_MEANS_H
 
