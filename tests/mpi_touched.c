@@ -69,6 +69,8 @@ typedef struct scene {
     int nan_at, user_at, calls; /* this rank fails in that call of its fluid solver */
 } scene;
 
+static int learns; /* the added mass of the beam, at one station, and of the piston */
+
 static int owner_of(int i, int deal, int ranks) {
     return deal == ON_ALL ? i % ranks : deal == ON_LAST ? ranks - 1 : i % ((ranks + 1) / 2);
 }
@@ -77,12 +79,13 @@ static void place_of(int i, double x[3]) {
     x[0] = 10.0 * i / (NODES - 1), x[1] = 0.2 * cos(0.9 * i), x[2] = 0.2 * sin(0.9 * i);
 }
 
-static spar_member *create_body(spar_session *s, const char *name, const double where[3], double m) {
+static spar_member *create_body(spar_session *s, const char *name, const double where[3], double m, int learn) {
     static const double q[4] = {1, 0, 0, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 2, 3};
     double mass[36];
     spar_member *body = NULL;
     scene_mass(mass, m, centre, J);
     OK(s, spar_rigid_create(s, name, where, q, mass, &body));
+    OK(s, spar_member_learn_added_mass(body, learn, NULL));
     OK(s, spar_member_commit(body));
     return body;
 }
@@ -90,15 +93,17 @@ static spar_member *create_body(spar_session *s, const char *name, const double 
 /* Rank 0 solves beam and body, the second rank, if there is one, the piston; the others none. */
 static void create_members(scene *c, int ranks) {
     static const double tip[3] = {10, 0, 0}, beyond[3] = {12, 0, 0}, aside[3] = {0, 5, 0};
+    const double root[1] = {0};
     double K[36], M[36];
     spar_session *s = c->session;
     scene_box(K, M);
     c->member[BEAM] = scene_beam(s, "beam", 1, POINTS, 10, K, M);
     OK(s, spar_member_set_effects(c->member[BEAM], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
     OK(s, spar_member_set_owner(c->member[BEAM], 0));
+    OK(s, spar_member_learn_added_mass(c->member[BEAM], learns, root));
     OK(s, spar_member_commit(c->member[BEAM]));
-    c->member[BODY] = create_body(s, "body", beyond, 2);
-    c->member[PISTON] = create_body(s, "piston", aside, 3);
+    c->member[BODY] = create_body(s, "body", beyond, 2, 0);
+    c->member[PISTON] = create_body(s, "piston", aside, 3, learns);
     OK(s, spar_line_create(s, "spring", c->member[BEAM], POINTS - 1, tip, c->member[BODY], 0, beyond, &c->spring));
     OK(s, spar_line_set_spring(c->spring, 50, 0.5, 2, 0));
     (void)ranks;
@@ -267,6 +272,50 @@ static void same_as_alone(void **state) {
     same_run(SPAR_COUPLING_AITKEN, ON_FIRST_HALF, 1);
 }
 
+/* What is learned by the ranks that solve something is that of one process, in the same bits, and so is the motion that
+   it leads to on all that know it; the others are told that they do not know. With substeps it is refused, where there
+   are others, as long as no guess is given, and the step can be taken with one substep after that. */
+static void learned_by_those_that_solve(void **state) {
+    (void)state;
+    const MPI_Comm world = MPI_COMM_WORLD;
+    enum { LONGER = 12 };
+    for (int deal = 0; deal < DEALS; deal++) {
+        scene alone, all;
+        int turns[2][LONGER], used, any = 0;
+        learns = 1;
+        create(&alone, NULL, deal, SPAR_COUPLING_AITKEN, 1);
+        create(&all, &world, deal, SPAR_COUPLING_AITKEN, 1);
+        learns = 0;
+        advance(&alone, LONGER, turns[0]);
+        advance(&all, LONGER, turns[1]);
+        assert_memory_equal(turns[0], turns[1], sizeof turns[0]);
+        if (size > 1) {
+            compare(&all, &alone, 1);
+        }
+        for (int k = BEAM; k <= PISTON; k += PISTON - BEAM) {
+            double M[2][36], spread[2];
+            int status = spar_member_get_learned_added_mass(all.member[k], &used, &spread[0], NULL, 1, NULL, M[0]);
+            assert_int_equal(status, size == 1 || is_core(&all) ? SPAR_OK : SPAR_ERR_STATE);
+            if (status == SPAR_OK) {
+                OK(alone.session,
+                   spar_member_get_learned_added_mass(alone.member[k], &any, &spread[1], NULL, 1, NULL, M[1]));
+                assert_int_equal(used, any);
+                assert_true(used && spread[0] == spread[1]);
+                assert_memory_equal(M[0], M[1], sizeof M[0]);
+            }
+        }
+        OK(all.session, spar_session_set_integrator(all.session, 0.9, 2));
+        assert_int_equal(spar_step_begin(all.session, 0.02), size > 1 ? SPAR_ERR_UNSUPPORTED : SPAR_OK);
+        if (size > 1) {
+            assert_non_null(strstr(spar_session_message(all.session), "substeps"));
+            OK(all.session, spar_session_set_integrator(all.session, 0.9, 1));
+            advance(&all, 1, turns[1]);
+        }
+        spar_session_destroy(&all.session);
+        spar_session_destroy(&alone.session);
+    }
+}
+
 /* A rank that solves nothing and touches nothing: no message of more than 64 bytes in the steps. */
 static void bystanders_get_no_data(void **state) {
     (void)state;
@@ -415,9 +464,13 @@ static void refused(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_alone),     cmocka_unit_test(bystanders_get_no_data),
-        cmocka_unit_test(saved_and_resumed), cmocka_unit_test(failures),
-        cmocka_unit_test(refused),           cmocka_unit_test(no_convergence_and_no_solution),
+        cmocka_unit_test(same_as_alone),
+        cmocka_unit_test(learned_by_those_that_solve),
+        cmocka_unit_test(bystanders_get_no_data),
+        cmocka_unit_test(saved_and_resumed),
+        cmocka_unit_test(failures),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(no_convergence_and_no_solution),
     };
     return RANKS_RUN(argc, argv, tests);
 }

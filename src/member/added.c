@@ -172,6 +172,7 @@ void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double
     const spari_strips *p = &d->strips;
     int64_t points = (int64_t)d->elements * d->points;
     double own[36], section[36];
+    d->stands = n > 0;
     memset(d->mass, 0, (size_t)(36 * points) * sizeof *d->mass);
     for (int64_t k = 0; k < p->count && n > 0; k++) {
         spari_beam_table_at(n, eta, mass, p->eta[k], own);

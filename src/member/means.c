@@ -3,12 +3,14 @@
 
 #include "../base/scene.h"
 #include "../math/resample.h"
+#include "added.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 int spari_means_keep(spar_member *m) {
-    if (m->means || m->added || !m->body || !(m->effects & SPAR_EFFECT_INERTIA) || m->session->substeps < 2) {
+    if (m->means || (m->added && (m->guess_count > 0 || !m->learned)) || !m->body ||
+        !(m->effects & SPAR_EFFECT_INERTIA) || m->session->substeps < 2) {
         return SPAR_OK;
     }
     spari_means *k = spari_zalloc(1, sizeof *k);
@@ -39,7 +41,7 @@ const double *spari_means_seen(const spar_member *m, int after) {
 void spari_means_find(spar_member *m) {
     const spar_session *s = m->session;
     spari_means *k = m->means;
-    k->has[1] = s->substeps > 1;
+    k->has[1] = s->substeps > 1 && !(m->added && m->added->stands);
     double on = k->has[0] ? s->dt / (s->dt + k->dt) : s->step > 0 || m->begun ? 1 : 0;
     const double *before = k->has[0] ? k->mean : m->now.a; /* that one at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {

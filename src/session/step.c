@@ -33,6 +33,18 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
+/* Fluids see other accelerations in substeps once a mass is known, and ranks that solve nothing learn none. */
+static int check_learning(spar_session *s, const char *call) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_REQUIRE(s, !m->learned || m->guess_count > 0, SPAR_ERR_UNSUPPORTED,
+                      "%s: member '%s' learns the fluid's added mass, in %d substeps, and ranks that solve nothing do "
+                      "not know when it is known (option ranks.state = touched): take one substep, give a first guess "
+                      "by spar_member_set_added_mass, or keep ranks.state = all",
+                      call, m->name, s->substeps);
+    }
+    return SPAR_OK;
+}
+
 static int check_begin(spar_session *s, const char *call, double dt) {
 
     if (s->phase != SPARI_IDLE) {
@@ -51,6 +63,9 @@ static int check_begin(spar_session *s, const char *call, double dt) {
         "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
         "it to touched again, or save, and load into a session with ranks.state = all",
         call);
+    if (s->touched && s->substeps > 1 && spari_comm_size(s->comm) > 1) {
+        SPARI_TRY(check_learning(s, call));
+    }
     SPARI_TRY(spari_named(s, call, spari_threads_prepare(s)));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
