@@ -164,18 +164,19 @@ static int read_data(spari_reader *r, const char *what) {
 /* On to the line with a key. Coordinates, the lines that include files of them (@"...") and the coefficients of
    unsteady aerodynamics stand before the keys and are passed over. */
 static int find_data(spari_reader *r, const char *key, int *interpolation) {
-    char value[SPARI_READ_LINE], word[SPARI_READ_LINE];
+    char word[SPARI_READ_LINE];
     for (;;) {
         SPARI_TRY(read_data(r, key));
         const char *at = r->line;
-        if (!spari_read_word(&at, value) || !spari_read_word(&at, word)) {
+        int cubic = spari_read_word(&at, word) && strcmp(word, "3") == 0;
+        if (!spari_read_word(&at, word)) {
             continue;
         }
         if (strcasecmp(word, key) == 0) {
             return SPAR_OK;
         }
         if (strcasecmp(word, "InterpOrd") == 0) { /* 1, 3 or "DEFAULT", which is 1 */
-            *interpolation = strcmp(value, "3") == 0 ? SPAR_POLAR_CUBIC : SPAR_POLAR_LINEAR;
+            *interpolation = cubic ? SPAR_POLAR_CUBIC : SPAR_POLAR_LINEAR;
         }
     }
 }

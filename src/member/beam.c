@@ -438,7 +438,6 @@ int spari_beam_rule(const spari_beam *beam) {
    piece of the element of relative length d gets `points` Gauss points, or, unasked, as many as integrate its share of
    the element's polynomials. */
 static int element_points(const spari_beam *beam, int elements, int e, int P, double *xi, double *w) {
-    double gx[512], gw[512];
     int rule = spari_beam_rule(beam);
     if (rule != SPAR_QUADRATURE_SECTIONS) {
         int n = beam->points > 0 ? beam->points : P;
@@ -462,12 +461,12 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
         double half = 0.5 * (to - from);
         int n = beam->points > 0 ? beam->points : 1 + (int)ceil(half * P);
         if (xi) {
-            if (spari_gauss(n, gx, gw)) {
+            if (spari_gauss(n, xi + count, w + count)) {
                 return -1;
             }
-            for (int k = 0; k < n; k++) {
-                xi[count + k] = from + half * (1 + gx[k]);
-                w[count + k] = half * gw[k];
+            for (int k = count; k < count + n; k++) {
+                xi[k] = from + half * (1 + xi[k]);
+                w[k] *= half;
             }
         }
         count += n;

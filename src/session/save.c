@@ -94,6 +94,8 @@ static int agree_to_save(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
+enum { PIECE = 1 << 13 }; /* words that go through rank 0 at once */
+
 /* What all ranks know of the parts, and rank 0 of the file. */
 typedef struct save_plan {
     spari_image common; /* on rank 0 */
@@ -103,6 +105,7 @@ typedef struct save_plan {
     char why[SPARI_MESSAGE_SIZE / 2];
     char temporary[SPARI_MESSAGE_SIZE]; /* where its bytes are now, for all ranks; empty: not to be told */
     uint64_t mark;                      /* that they know it by */
+    uint64_t room[PIECE];               /* for what goes through rank 0: too large for a small stack */
 } save_plan;
 enum { PART_COUNT, PART_SUM, PART_STATUS, PART_WORDS };
 
@@ -216,16 +219,14 @@ static int write_own_part(spar_session *s, save_plan *p, const spari_image *own,
 
 /* Through rank 0; what it cannot write it takes all the same, and tells at the end. */
 static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) {
-    enum { PIECE = 1 << 13 };
-    uint64_t room[PIECE];
     int rank = spari_comm_rank(s->comm);
     for (int r = 1; r < spari_comm_size(s->comm); r++) {
         for (int64_t at = 0; at < part_count(p, r) && (rank == 0 || rank == r); at += PIECE) {
             int64_t n = part_count(p, r) - at < PIECE ? part_count(p, r) - at : PIECE;
-            SPARI_TRY(spari_comm_move(s->comm, r, 0, rank == r ? own->word + at : room, 8 * n, s->message,
+            SPARI_TRY(spari_comm_move(s->comm, r, 0, rank == r ? own->word + at : p->room, 8 * n, s->message,
                                       sizeof s->message));
             if (rank == 0) {
-                spari_saving_put(&p->file, room, n);
+                spari_saving_put(&p->file, p->room, n);
             }
         }
     }

@@ -268,20 +268,24 @@ static int is_plain(const segment *s) {
     return s->deviation <= 0.05 * length && s->radius <= 2 * length;
 }
 
+/* What cutting works with, too large for a small stack. */
+typedef struct cutting {
+    binomials bin;
+    segment s; /* the one that is looked at */
+} cutting;
+
 /* Halves [a,b] until its parts are plain; NULL: only count. Returns how many. */
-static int cut(const spari_line *line, const binomials *bin, int element, double a, double b, int splits,
-               segment *out) {
-    segment s;
-    make_segment(line, bin, element, a, b, &s);
-    if (splits == 0 || is_plain(&s)) {
+static int cut(const spari_line *line, cutting *with, int element, double a, double b, int splits, segment *out) {
+    make_segment(line, &with->bin, element, a, b, &with->s);
+    if (splits == 0 || is_plain(&with->s)) {
         if (out) {
-            *out = s;
+            *out = with->s;
         }
         return 1;
     }
     double middle = 0.5 * (a + b);
-    int n = cut(line, bin, element, a, middle, splits - 1, out);
-    return n + cut(line, bin, element, middle, b, splits - 1, out ? out + n : NULL);
+    int n = cut(line, with, element, a, middle, splits - 1, out);
+    return n + cut(line, with, element, middle, b, splits - 1, out ? out + n : NULL);
 }
 
 /* ---- the tree ---- */
@@ -316,19 +320,24 @@ static int make_ball(spari_line *line, int first, int last) {
 }
 
 static int build_balls(spari_line *line) {
-    binomials bin;
+    cutting *with = spari_zalloc(1, sizeof *with);
     int n = 0;
-    fill_binomials(&bin);
+    if (!with) {
+        return SPAR_ERR_MEMORY;
+    }
+    fill_binomials(&with->bin);
     for (int e = 0; e < line->elements; e++) {
-        n += cut(line, &bin, e, -1, 1, SPLITS, NULL);
+        n += cut(line, with, e, -1, 1, SPLITS, NULL);
     }
     line->segment = spari_zalloc(n, sizeof *line->segment);
     line->ball = spari_zalloc(n, sizeof *line->ball);
-    if (!line->segment || !line->ball) {
-        return SPAR_ERR_MEMORY;
+    int whole = line->segment && line->ball;
+    for (int e = 0; e < line->elements && whole; e++) {
+        line->segments += cut(line, with, e, -1, 1, SPLITS, line->segment + line->segments);
     }
-    for (int e = 0; e < line->elements; e++) {
-        line->segments += cut(line, &bin, e, -1, 1, SPLITS, line->segment + line->segments);
+    free(with);
+    if (!whole) {
+        return SPAR_ERR_MEMORY;
     }
     if (n > 1) {
         make_ball(line, 0, n);

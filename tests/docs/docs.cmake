@@ -22,6 +22,11 @@ endif()
 if(NOT SPAR_AWK OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
   return()
 endif()
+if(SPAR_BUILD_BENCHMARKS) # the quickest scene; tests/docs/accuracy compares all
+  add_test(NAME docs_accuracy COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/accuracy" "${PROJECT_BINARY_DIR}/benchmarks/accuracy"
+    "${PROJECT_BINARY_DIR}/tests/docs/accuracy" body)
+  spar_set_test(docs_accuracy docs 120)
+endif()
 add_test(NAME docs_verification COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/verification" "${PROJECT_BINARY_DIR}")
 spar_set_test(docs_verification docs 60)
 file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/verification/*.c")
