@@ -264,10 +264,11 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
      coupling.target        1e-15 to 1, default 0.01: the error that the advised dt keeps
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
                             (T12), or the node motion interpolated on the group (does not cut corners)
-     fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for the loads that
-                            are predicted of members with one that is given or learned: accelerations as they are pulled
-                            at t^{n+1}, or the change of the velocity over the step, as flow solvers with moving walls
-                            have it; explicit coupling with heavy fluids of that kind needs it. With one substep
+     fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for loads that
+                            are predicted of members with one that is given or learned: accelerations as they are
+                            pulled at t^{n+1}, or the change of the velocity over the step, as flow solvers with
+                            moving walls have it; explicit coupling with heavy fluids of that kind needs it. With one
+                            substep
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
      ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks.
@@ -533,7 +534,7 @@ SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, i
    SPAR_ERR_UNSUPPORTED: as spar_member_set_added_mass. */
 SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta);
 /* What has been learned, of steps accepted; a host may give it as the guess at the start of the next run. Local, and
-   the same on every rank.
+   the same on every rank; with ranks.state = touched SPAR_ERR_STATE on those that solve nothing.
      used: out, whether it stands in the equations (from the next step on)
      spread: out, the part of a change of the loads that it has left, of differences before it knew them, root of the
              mean of the squares: iterations will contract by about as much. Used below 1/4, and not any more beyond

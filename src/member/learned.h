@@ -1,6 +1,6 @@
 /* The fluid's added mass as the iterations of the coupling show it, in the form of the guess that a host gives
    (added.h): of each difference of two iterations of a step, the loads that came back against the accelerations that
-   they answer to. See docs/theory.md, "Known added mass". Every rank has the motion and the loads of every member, and
+   they answer to. See docs/theory.md, "Known added mass". Every rank that has the motion and the loads of a member
    learns the same. */
 #ifndef SPARI_LEARNED_H
 #define SPARI_LEARNED_H

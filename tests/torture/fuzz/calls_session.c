@@ -192,7 +192,7 @@ void do_spar_session_set_option(call *c) {
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
                                        "coupling.motion_rtol", "coupling.target", "advise.horizon",
                                        "advise.fluid_cost",    "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate",    "ranks.state",         "fluid.added_mass"};
+                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
