@@ -462,6 +462,36 @@ static void refused(void **state) {
     spar_session_destroy(&alone.session);
 }
 
+/* Before the first step all ranks know all: equilibrium under the start's loads, trials and advice are those of one
+   process, and leave no trace in the run that follows. */
+static void before_the_first_step(void **state) {
+    (void)state;
+    const MPI_Comm world = MPI_COMM_WORLD;
+    scene both[2];
+    double tried[2][SPAR_TRY_COUNT], advice[2][SPAR_ADVICE_COUNT];
+    int turns[2][STEPS], iterations[2] = {0, 0};
+    create(both, NULL, ON_ALL, SPAR_COUPLING_IQN_ILS, 1);
+    create(both + 1, &world, ON_ALL, SPAR_COUPLING_IQN_ILS, 1);
+    for (int k = 0; k < 2; k++) {
+        spar_session *s = both[k].session;
+        OK(s, spar_session_set_option(s, "advise.nodes", "keep"));
+        OK(s, spar_session_set_option(s, "advise.fidelity", "keep"));
+        OK(s, spar_session_start(s, 0.02, solve, both + k, iterations + k));
+        OK(s, spar_session_try(s, 0.02, 8, NULL, solve, both + k, 0, SPAR_TRY_COUNT, tried[k]));
+        OK(s, spar_session_advise(s, 0.3, 0.02, 8, NULL, solve, both + k, SPAR_ADVICE_COUNT, advice[k]));
+        advance(both + k, STEPS, turns[k]);
+    }
+    assert_int_equal(iterations[0], iterations[1]);
+    assert_true(tried[0][SPAR_TRY_SOLUTIONS] > 0 && tried[0][SPAR_TRY_SOLUTIONS] == tried[1][SPAR_TRY_SOLUTIONS]);
+    assert_true(advice[0][SPAR_ADVICE_DT] == advice[1][SPAR_ADVICE_DT]);
+    assert_memory_equal(turns[0], turns[1], sizeof turns[0]);
+    if (size > 1) {
+        compare(both + 1, both, 1);
+    }
+    spar_session_destroy(&both[0].session);
+    spar_session_destroy(&both[1].session);
+}
+
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_alone),
@@ -471,6 +501,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(failures),
         cmocka_unit_test(refused),
         cmocka_unit_test(no_convergence_and_no_solution),
+        cmocka_unit_test(before_the_first_step),
     };
     return RANKS_RUN(argc, argv, tests);
 }

@@ -95,9 +95,9 @@ static void hold_root(spar_member *m) {
     }
 }
 
-/* Memory for what the ranks exchange in the steps to come. */
+/* Memory for what the ranks exchange in the steps to come. In trials each rank has all of the state. */
 static int prepare_exchange(spar_session *s) {
-    if (s->apart || (s->touched && spari_comm_size(s->comm) > 1)) {
+    if (s->apart || (s->touched && !s->trial && spari_comm_size(s->comm) > 1)) {
         return s->apart ? spari_spread_prepare(s) : spari_spread_begin(s);
     }
     return s->started && spari_session_is_sealed(s) ? SPAR_OK : spari_session_seal(s, SPAR_OK);
