@@ -1,5 +1,5 @@
-# Target spar::gsl: GSL with a fast CBLAS under it. Sets SPAR_CBLAS_LIBRARY, SPAR_OPENBLAS, SPAR_OPENBLAS_FOLDER (empty where the
-# loader looks anyway) and SPAR_LAPACK. Used by the build and, for the static library, by the installed package.
+# Target spar::gsl: GSL with a fast CBLAS under it. Sets SPAR_CBLAS_LIBRARY, SPAR_OPENBLAS and SPAR_OPENBLAS_FOLDER (empty where
+# the loader looks anyway). Used by the build and, for the static library, by the installed package.
 find_package(GSL REQUIRED)
 
 # The one-thread build of OpenBLAS first: the members are small, and the host owns the threads.
@@ -14,22 +14,8 @@ if(SPAR_OPENBLAS_LIBRARY AND (SPAR_OPENBLAS OR NOT DEFINED SPAR_OPENBLAS))
     set(SPAR_OPENBLAS_FOLDER)
   endif()
   set(SPAR_CBLAS_LIBRARY "${SPAR_OPENBLAS_LIBRARY}")
-  include(CheckFunctionExists)
-  set(CMAKE_REQUIRED_LIBRARIES "${SPAR_OPENBLAS_LIBRARY}")
-  if(NOT SPAR_OPENBLAS_LIBRARY STREQUAL SPAR_OPENBLAS_CHECKED) # another one than last time
-    unset(SPAR_OPENBLAS_HAS_LAPACK CACHE)
-    set(SPAR_OPENBLAS_CHECKED "${SPAR_OPENBLAS_LIBRARY}" CACHE INTERNAL "whose LAPACK was looked for")
-  endif()
-  check_function_exists(dgetrf_ SPAR_OPENBLAS_HAS_LAPACK)
-  unset(CMAKE_REQUIRED_LIBRARIES)
-  if(SPAR_OPENBLAS_HAS_LAPACK)
-    set(SPAR_LAPACK ON)
-  else()
-    set(SPAR_LAPACK OFF)
-  endif()
 else()
   set(SPAR_OPENBLAS OFF)
-  set(SPAR_LAPACK OFF)
   set(SPAR_CBLAS_LIBRARY "${GSL_CBLAS_LIBRARY}")
 endif()
 

@@ -19,7 +19,7 @@ target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" 
 target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
 target_compile_definitions(spar_test_base INTERFACE
   SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
-  $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1> $<$<BOOL:${SPAR_LAPACK}>:SPARI_HAVE_LAPACK=1>)
+  $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1>)
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE
   "$<$<COMPILE_LANGUAGE:C>:SHELL:-include stdarg.h -include stddef.h -include stdint.h -include setjmp.h>")

@@ -7,6 +7,8 @@
 #include "solve/assembly.h"
 #include "solve/tied.h"
 
+#include <stdio.h>
+
 enum { MOST = 2, NODES = 10, STEPS = 12 };
 
 static const double upright[4] = {1, 0, 0, 0}, dt = 0.01;

@@ -50,9 +50,6 @@ int spar_has(const char *feature) {
 #ifdef SPARI_HAVE_OPENBLAS
         "openblas",
 #endif
-#ifdef SPARI_HAVE_LAPACK
-        "lapack",
-#endif
         "gsl",
     };
     if (!feature) {

@@ -127,6 +127,15 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     return scale;
 }
 
+/* How the nodes have turned since the kept tangent was formed. */
+void spari_alpha_see_turn(const spari_solver *s, const double *q) {
+    for (int i = 0; i < s->n && !s->body->linear[0]; i++) {
+        double back[4];
+        spari_quat_conj(s->kept_q + 4 * i, back);
+        spari_quat_mul(q + 7 * i + 3, back, s->turn + 4 * i);
+    }
+}
+
 /* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
@@ -136,10 +145,9 @@ void spari_alpha_turn_back(const spari_solver *s, const double *q, const double 
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
         return;
     }
+    spari_alpha_see_turn(s, q);
     for (int i = 0; i < s->n; i++) {
-        double back[4], *turn = s->turn + 4 * i;
-        spari_quat_conj(s->kept_q + 4 * i, back);
-        spari_quat_mul(q + 7 * i + 3, back, turn);
+        const double *turn = s->turn + 4 * i;
         spari_rotate_back(turn, r + 6 * i, dx + 6 * i);
         spari_rotate_back(turn, r + 6 * i + 3, dx + 6 * i + 3);
     }

@@ -22,7 +22,9 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
 void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r);
 /* Forms and factors the tangent. 0 or 1. */
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to);
-/* Forces in the axes of the kept tangent, and corrections out of them. */
+/* How the nodes have turned since the kept tangent was formed. */
+void spari_alpha_see_turn(const spari_solver *s, const double *q);
+/* Forces in the axes of the kept tangent, that seen, and corrections out of them. */
 void spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx);
 void spari_alpha_turn_forth(const spari_solver *s, double *dx);
 /* x -= correction dx, in global axes and shortened to `longest`; its size. */

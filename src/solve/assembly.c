@@ -82,14 +82,6 @@ static double correct(spari_assembly *a, double longest) {
     return largest;
 }
 
-/* The rates that take off the gaps of the links, into the limbs. */
-static int close_rate_gaps(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->clear(a->limb + i);
-    }
-    return spari_tied_solve(a, a->limb[0].scheme.cv);
-}
-
 /* Brings the rates onto the constraints' while the places stay: what the correction before it, for the places' sake,
    leaves of the rates' gaps as they were then. *size: at least that of what it takes off. */
 static int correct_rates(spari_assembly *a, double cut, double *size) {
@@ -104,7 +96,7 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
     if (!(most > 0)) {
         return 0;
     }
-    if (close_rate_gaps(a)) {
+    if (spari_tied_close(a, a->limb[0].scheme.cv)) {
         return 1;
     }
     for (int i = 0; i < a->limbs; i++) {
@@ -217,7 +209,7 @@ static int project(spari_assembly *a, double s, double dt) {
         if (worst <= 8 * DBL_EPSILON * size) {
             return 0;
         }
-        if (close_rate_gaps(a)) {
+        if (spari_tied_close(a, a->limb[0].scheme.cv)) {
             return 1;
         }
         for (int i = 0; i < a->limbs; i++) {

@@ -32,9 +32,6 @@ static void take_all(void *self, double f) {
 
 /* Takes x out of b. */
 static int take_held(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->clear(a->limb + i);
-    }
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
         double y[6];
@@ -46,7 +43,7 @@ static int take_held(spari_assembly *a) {
             l->gap[k] = l->row[k] >= 0 ? y[k] : 0;
         }
     }
-    if (respond_all(a)) {
+    if (spari_tied_close(a, a->limb[0].scheme.cv)) {
         return 1;
     }
     take_all(a, 1);

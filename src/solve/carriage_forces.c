@@ -158,13 +158,13 @@ static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_po
 /* out += what turning of the frame adds */
 static void add_turning(const spari_frame *f, const spari_pose *root, double *out) {
     const double *parts = f->carriage->parts;
-    double omega[3], alpha[3], c[SPARI_TURNS];
+    double omega[3], alpha[3], c[SPARI_TURNS], less[ALL_PARTS - TURN_PARTS];
     int n = f->n;
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
     for (int k = 0; k < SPARI_TURNS; k++) {
         c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-        cblas_daxpy(n, c[k], parts + (int64_t)(TURN_PARTS + k) * n, 1, out, 1);
+        less[k] = -c[k];
         for (int l = 0; l <= k && f->twice[0] && !f->S[0]; l++) {
             if (c[k] * c[l] != 0) {
                 cblas_daxpy(n, -c[k] * c[l], f->twice[spari_frame_pair_of(k, l)], 1, out, 1);
@@ -172,9 +172,10 @@ static void add_turning(const spari_frame *f, const spari_pose *root, double *ou
         }
     }
     for (int k = 0; k < 3; k++) {
-        cblas_daxpy(n, omega[k], parts + (int64_t)(GYRO_PARTS + k) * n, 1, out, 1);
-        cblas_daxpy(n, alpha[k], parts + (int64_t)(EULER_PARTS + k) * n, 1, out, 1);
+        less[GYRO_PARTS - TURN_PARTS + k] = -omega[k];
+        less[EULER_PARTS - TURN_PARTS + k] = -alpha[k];
     }
+    spari_linear_less_columns(n, ALL_PARTS - TURN_PARTS, parts + (int64_t)TURN_PARTS * n, less, out);
 }
 
 /* heavy := M R (a - g, alpha) - loads of the nodes, in the axes of the frame; out += the same of the unknowns */

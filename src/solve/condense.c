@@ -73,15 +73,6 @@ void spari_condensed_take(spari_condensed *c, spari_linear *tangent, int fixed) 
     }
 }
 
-/* x . y over the unknowns */
-static double dot_of(int n, const double *x, const double *y) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 int spari_condensed_form(spari_condensed *c, spari_linear *factors) {
     int m = 6 * c->ends, n = c->n;
     for (int k = 0; k < m; k++) {
@@ -89,8 +80,10 @@ int spari_condensed_form(spari_condensed *c, spari_linear *factors) {
         if (spari_linear_solve(factors, column)) {
             return 1;
         }
+        memset(c->held, 0, (size_t)m * sizeof *c->held);
+        spari_linear_add_rows(n, m, c->rows, -1, column, c->held);
         for (int j = 0; j < m; j++) {
-            c->K[m * j + k] -= dot_of(n, c->rows + (int64_t)n * j, column);
+            c->K[m * j + k] += c->held[j];
         }
     }
     return spari_first_nonfinite(c->K, (int64_t)m * m) >= 0;
@@ -103,11 +96,11 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
         c->held[j] = is_fixed(c, u) ? 0 : r[u];
         r[u] = 0;
     }
-    if (spari_linear_solve(factors, r)) {
-        return 1;
-    }
-    for (int j = 0; j < m; j++) {
-        c->held[j] -= dot_of(c->n, c->rows + (int64_t)c->n * j, r);
+    if (c->n > m) { /* there is more of it than its ends */
+        if (spari_linear_solve(factors, r)) {
+            return 1;
+        }
+        spari_linear_add_rows(c->n, m, c->rows, -1, r, c->held);
     }
     for (int j = 0; j < m; j++) {
         r[unknown_of(c, j)] = c->held[j];
@@ -118,11 +111,10 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
 void spari_condensed_expand(const spari_condensed *c, double *x) {
     int m = 6 * c->ends;
     for (int j = 0; j < m; j++) {
-        double by = x[unknown_of(c, j)];
-        const double *column = c->W + (int64_t)c->n * j;
-        for (int i = 0; i < c->n; i++) {
-            x[i] -= by * column[i];
-        }
+        c->held[j] = x[unknown_of(c, j)];
+    }
+    if (c->n > m) {
+        spari_linear_less_columns(c->n, m, c->W, c->held, x);
     }
 }
 

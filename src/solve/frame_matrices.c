@@ -1,7 +1,6 @@
 /* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
 #include "carriage.h"
 
-#include "../base/blas.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
@@ -20,8 +19,7 @@ int spari_frame_pair_of(int k, int l) {
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
     int m = f->block, step = f->block - f->overlap;
     for (int e = 0; e < f->elements; e++) {
-        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, m, m, factor, X + (int64_t)m * m * e, m,
-                               x + (int64_t)e * step, 1, 1, y + (int64_t)e * step, 1));
+        spari_linear_add_rows(m, m, X + (int64_t)m * m * e, factor, x + (int64_t)e * step, y + (int64_t)e * step);
     }
 }
 

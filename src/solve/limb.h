@@ -44,8 +44,9 @@ typedef struct spari_limb_row {
     void (*correct)(struct spari_limb *p, double cut);
     /* The size of what the step has moved it by. */
     double (*way)(const struct spari_limb *p);
-    /* No forces at all; the corrections, times v, a and b, come off the velocities and accelerations at the end. */
+    /* What reduce leaves where there are no forces at all: none at the ends. */
     void (*clear)(struct spari_limb *p);
+    /* The corrections, times v, a and b, come off the velocities and accelerations at the end. */
     void (*shift_rates)(struct spari_limb *p, double v, double a, double b);
 
     /* A step much longer than the last (assembly_leap.c). The tangent at its beginning is formed, and the state that

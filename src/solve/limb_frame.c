@@ -198,14 +198,18 @@ static int frame_serves(const spari_limb *p) {
     return f->factored && spari_alpha_close(p->scheme.cm, f->kept_cm) && spari_alpha_close(p->scheme.cv, f->kept_cv);
 }
 
+static void see_turn_of_frame(const spari_limb *p) {
+    const spari_solver *s = p->solver;
+    double back[4];
+    spari_quat_conj(s->kept_q, back);
+    spari_quat_mul(p->state->q + 3, back, s->turn);
+}
+
 static int reduce_frame(spari_limb *p, double *x) {
     spari_frame *f = p->frame;
-    spari_solver *s = p->solver;
     const double *y = f->to.y, *root = p->state->q + 3;
-    double back[4];
     int M = 6 * p->condensed->ends;
-    spari_quat_conj(s->kept_q, back);
-    spari_quat_mul(root, back, s->turn);
+    see_turn_of_frame(p);
     memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
     if (spari_condensed_reduce(p->condensed, f->linear, f->dx)) {
         return 1;
@@ -278,8 +282,8 @@ static double way_of_frame(const spari_limb *p) {
 }
 
 static void clear_frame(spari_limb *p) {
-    memset(p->frame->r, 0, (size_t)p->frame->n * sizeof(double));
-    memset(p->force, 0, (size_t)(6 * p->condensed->ends) * sizeof(double));
+    see_turn_of_frame(p);
+    memset(p->frame->dx, 0, (size_t)p->frame->n * sizeof(double));
 }
 
 static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
@@ -426,7 +430,7 @@ static int start_of_frame(spari_limb *p) {
     look_at_end_of_step(p);
     spari_carriage_turn(f, &f->to, 0);
     (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
-    clear_frame(p);
+    memset(f->r, 0, (size_t)f->n * sizeof *f->r);
     return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, 0, unit, f->r);
 }
 

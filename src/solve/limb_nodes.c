@@ -147,8 +147,9 @@ static double noise_of_nodes(const spari_limb *p) {
     const spari_solver *s = p->solver;
     double most = 0, poison = 0;
     for (int k = 0; k < 6 * s->n; k++) {
-        most = fmax(most, fabs(s->r[k]));
-        poison += 0 * s->r[k];
+        double size = fabs(s->r[k]);
+        most = size > most ? size : most;
+        poison += 0 * size;
     }
     return most + poison;
 }
@@ -210,7 +211,9 @@ static double way_of_nodes(const spari_limb *p) {
 }
 
 static void clear_nodes(spari_limb *p) {
-    memset(p->solver->r, 0, (size_t)(6 * p->solver->n) * sizeof(double));
+    spari_solver *s = p->solver;
+    spari_alpha_see_turn(s, p->state->q);
+    memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
 }
 
 static void shift_rates_of_nodes(spari_limb *p, double v, double a, double b) {

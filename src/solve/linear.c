@@ -1,4 +1,4 @@
-/* A chain of blocks that overlap, factored and solved from end to end. */
+/* Dense and banded systems, of a chain of blocks that overlap or of any entries, factored and solved. */
 #include "linear.h"
 #include "../base/blas.h"
 
@@ -29,17 +29,29 @@
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
    it got any. */
 struct spari_linear {
-    int elements, block, overlap;
-    size_t n, band; /* unknowns; half bandwidth (banded storage) */
-    gsl_matrix *A;  /* dense n x n, column by column, or banded n x (3 band + 1) as gsl_linalg_LU_band wants it */
-    int *swap;      /* dense: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int elements, block, overlap; /* of a chain; else 0 */
+    size_t n, band;               /* unknowns; half bandwidth (banded storage) */
+    gsl_matrix *A; /* dense n x n, column by column, or banded n x (3 band + 1) as gsl_linalg_LU_band has it */
+    int *swap;     /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
     gsl_vector_uint *band_swap; /* banded */
     gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
 };
 
-#ifdef SPARI_HAVE_LAPACK
-extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
-#endif
+/* Room for the matrix, whose size is known. */
+static spari_linear *with_room(spari_linear *s, int dense) {
+    if (dense) {
+        s->A = gsl_matrix_calloc(s->n, s->n);
+        s->swap = spari_zalloc((int64_t)s->n, sizeof *s->swap);
+    } else {
+        s->A = gsl_matrix_calloc(s->n, 3 * s->band + 1);
+        s->band_swap = gsl_vector_uint_alloc(s->n);
+    }
+    if (!s->A || (dense ? !s->swap : !s->band_swap)) {
+        spari_linear_free(s);
+        return NULL;
+    }
+    return s;
+}
 
 spari_linear *spari_linear_create(int elements, int block, int overlap) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
@@ -49,18 +61,16 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
     s->elements = elements, s->block = block, s->overlap = overlap;
     s->n = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
     s->band = (size_t)block - 1;
-    if (elements == 1) {
-        s->A = gsl_matrix_calloc(s->n, s->n);
-        s->swap = spari_zalloc((int64_t)s->n, sizeof *s->swap);
-    } else {
-        s->A = gsl_matrix_calloc(s->n, 3 * s->band + 1);
-        s->band_swap = gsl_vector_uint_alloc(s->n);
-    }
-    if (!s->A || (elements == 1 ? !s->swap : !s->band_swap)) {
-        spari_linear_free(s);
+    return with_room(s, elements == 1);
+}
+
+spari_linear *spari_linear_create_banded(int n, int band) {
+    spari_linear *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
         return NULL;
     }
-    return s;
+    s->n = (size_t)n, s->band = (size_t)band;
+    return with_room(s, 3 * s->band + 1 >= s->n);
 }
 
 void spari_linear_free(spari_linear *s) {
@@ -79,7 +89,12 @@ void spari_linear_zero(spari_linear *s) {
 
 /* entry (i, j): row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j there */
 static double *entry(const spari_linear *s, size_t i, size_t j) {
-    return s->A->data + j * s->A->tda + (s->elements == 1 ? i : 2 * s->band + i - j);
+    return s->A->data + j * s->A->tda + (s->swap ? i : 2 * s->band + i - j);
+}
+
+double *spari_linear_entries(const spari_linear *s, int64_t *step) {
+    *step = (int64_t)s->A->tda - (s->swap ? 0 : 1);
+    return entry(s, 0, 0);
 }
 
 void spari_linear_add(spari_linear *s, int element, const double *S) {
@@ -94,8 +109,8 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
 
 /* The unknowns [from, to) that unknown i may have entries with */
 static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) {
-    *from = s->elements > 1 && i > s->band ? i - s->band : 0;
-    *to = s->elements > 1 && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
+    *from = !s->swap && i > s->band ? i - s->band : 0;
+    *to = !s->swap && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
 }
 
 void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
@@ -118,25 +133,33 @@ void spari_linear_fix(spari_linear *s, int i) {
     *entry(s, at, at) = 1;
 }
 
-/* LU with row exchanges, in place; 0 or 1 */
-static int factor_dense(spari_linear *s) {
-    int n = (int)s->n, info = 0;
-#ifdef SPARI_HAVE_LAPACK
-    SPARI_BLAS(dgetrf_(&n, &n, s->A->data, &n, s->swap, &info));
-#else
-    for (int k = 0; k < n && !info; k++) {
-        double *at = s->A->data + (int64_t)k * n + k;
-        int p = k + (int)cblas_idamax(n - k, at, 1);
-        s->swap[k] = p + 1;
-        info = !(fabs(at[p - k]) > 0);
-        if (!info) {
-            cblas_dswap(n, s->A->data + k, n, s->A->data + p, n);
-            cblas_dscal(n - k - 1, 1 / *at, at + 1, 1);
-            cblas_dger(CblasColMajor, n - k - 1, n - k - 1, -1, at + 1, 1, at + n, n, at + n + 1, n);
-        }
+typedef struct linear_kernels {
+    int (*factor_dense)(int64_t n, double least, double *A, int *swap);
+    int (*factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, unsigned *swap);
+    void (*dense)(int64_t n, const double *A, double *x);
+    void (*band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap, double *x);
+    void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
+    void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);
+} linear_kernels;
+
+#define LINEAR_KERNELS(width)                                                                                          \
+    (linear_kernels) {                                                                                                 \
+        factor_dense_##width, factor_band_##width, solve_dense_##width, solve_band_##width, take_columns_##width,      \
+            add_rows_##width                                                                                           \
+    }
+
+static linear_kernels kernels_here(void) {
+#ifdef SPARI_X86
+    switch (spari_lanes_here(8)) {
+    case 8:
+        return LINEAR_KERNELS(avx512);
+    case 4:
+        return LINEAR_KERNELS(avx2);
+    default:
+        break;
     }
 #endif
-    return info != 0;
+    return LINEAR_KERNELS(plain);
 }
 
 int spari_linear_factor(spari_linear *s) {
@@ -145,10 +168,12 @@ int spari_linear_factor(spari_linear *s) {
         return 1;
     }
     int bad = 0;
-    if (s->elements == 1) {
-        bad = factor_dense(s);
+    double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
+    if (s->swap) {
+        bad = kernels_here().factor_dense((int64_t)s->n, least, s->A->data, s->swap);
     } else {
-        SPARI_BLAS(bad = gsl_linalg_LU_band_decomp(s->n, s->band, s->band, s->A, s->band_swap) != GSL_SUCCESS);
+        bad = kernels_here().factor_band((int64_t)s->n, (int64_t)s->band, least, s->A->data, (int64_t)s->A->tda,
+                                         s->band_swap->data);
     }
     if (bad) {
         return 1;
@@ -165,14 +190,14 @@ int spari_linear_factor(spari_linear *s) {
 int spari_linear_sign(const spari_linear *s) {
     int sign = 1;
     for (size_t i = 0; i < s->n; i++) {
-        size_t from = s->elements == 1 ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
+        size_t from = s->swap ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
     return sign;
 }
 
 int spari_linear_watch(spari_linear *s) {
-    s->symmetric = s->symmetric ? s->symmetric : gsl_matrix_calloc(s->n, s->elements == 1 ? s->n : s->band + 1);
+    s->symmetric = s->symmetric ? s->symmetric : gsl_matrix_calloc(s->n, s->swap ? s->n : s->band + 1);
     return s->symmetric ? 0 : 1;
 }
 
@@ -182,7 +207,7 @@ void spari_linear_unwatch(spari_linear *s) {
 }
 
 int spari_linear_definite(spari_linear *s) {
-    size_t n = s->n, band = s->elements == 1 ? n - 1 : s->band;
+    size_t n = s->n, band = s->swap ? n - 1 : s->band;
     /* scaled to a unit diagonal, shifted by what rounding can do to it */
     const double symmetric = 1e-9, shift = 4e-15;
     for (size_t i = 0; i < n; i++) {
@@ -202,7 +227,7 @@ int spari_linear_definite(spari_linear *s) {
         for (size_t j = i; j < n && j <= i + band; j++) {
             double size = sqrt(*entry(s, i, i) * *entry(s, j, j)),
                    value = 0.5 * (*entry(s, i, j) + *entry(s, j, i)) / size + (i == j ? shift : 0);
-            if (s->elements == 1) {
+            if (s->swap) {
                 gsl_matrix_set(L, i, j, value);
                 gsl_matrix_set(L, j, i, value);
             } else {
@@ -211,32 +236,13 @@ int spari_linear_definite(spari_linear *s) {
         }
     }
     int status;
-    SPARI_BLAS(status = s->elements == 1 ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L));
+    SPARI_BLAS(status = s->swap ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L));
     return status == GSL_SUCCESS;
-}
-
-typedef struct linear_kernels {
-    void (*dense)(int64_t n, const double *A, double *x);
-    void (*band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap, double *x);
-} linear_kernels;
-
-static linear_kernels kernels_here(void) {
-#ifdef SPARI_X86
-    switch (spari_lanes_here(8)) {
-    case 8:
-        return (linear_kernels){solve_dense_avx512, solve_band_avx512};
-    case 4:
-        return (linear_kernels){solve_dense_avx2, solve_band_avx2};
-    default:
-        break;
-    }
-#endif
-    return (linear_kernels){solve_dense_plain, solve_band_plain};
 }
 
 int spari_linear_solve(spari_linear *s, double *x) {
     int64_t n = (int64_t)s->n;
-    if (s->elements == 1) {
+    if (s->swap) {
         for (int64_t i = 0; i < n; i++) {
             double there = x[s->swap[i] - 1];
             x[s->swap[i] - 1] = x[i];
@@ -247,6 +253,14 @@ int spari_linear_solve(spari_linear *s, double *x) {
         kernels_here().band(n, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, s->band_swap->data, x);
     }
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
+}
+
+void spari_linear_less_columns(int n, int count, const double *columns, const double *by, double *x) {
+    kernels_here().columns(n, count, columns, by, x);
+}
+
+void spari_linear_add_rows(int n, int count, const double *rows, double by, const double *x, double *y) {
+    kernels_here().rows(n, count, rows, by, x, y);
 }
 
 int64_t spari_linear_state_size(const spari_linear *s) {

@@ -1,5 +1,5 @@
-/* Linear systems of a member: element matrices on a chain of elements, dense for one element, banded for more. Nothing
-   but create and watch takes memory. */
+/* Linear systems: of a member, element matrices on a chain of elements, dense for one element, banded for more; and any
+   with a band. Nothing but create and watch takes memory. */
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
@@ -10,9 +10,13 @@ typedef struct spari_linear spari_linear;
 /* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. NULL when there is no
  * memory. */
 spari_linear *spari_linear_create(int elements, int block, int overlap);
+/* n unknowns of which i and j have an entry where |i - j| <= band at most; dense where that takes no more room. */
+spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
+/* Entry (0, 0); (i, j), within the band, is i + step j further on. Factored, (i, i) is the pivot. */
+double *spari_linear_entries(const spari_linear *system, int64_t *step);
 /* Row and column of unknown i, [unknowns] each. Before factoring. */
 void spari_linear_read(const spari_linear *system, int i, double *row, double *column);
 /* Takes unknown i out: its row and column become those of the identity. Before factoring. */
@@ -29,6 +33,9 @@ void spari_linear_unwatch(spari_linear *system);
 int spari_linear_definite(spari_linear *system);
 /* x := A^-1 x; 0, or 1 when the result is not finite. */
 int spari_linear_solve(spari_linear *system, double *x);
+/* x[n] -= `count` columns of n, one after the other, times by[count]; y[count] += by times as many rows times x[n]. */
+void spari_linear_less_columns(int n, int count, const double *columns, const double *by, double *x);
+void spari_linear_add_rows(int n, int count, const double *rows, double by, const double *x, double *y);
 /* The factors as doubles, for save and load. */
 int64_t spari_linear_state_size(const spari_linear *system);
 void spari_linear_save(const spari_linear *system, double *state);

@@ -1,18 +1,14 @@
 /* The banded system of an assembly: see tied.h. */
 #include "tied.h"
 
-#include "../base/blas.h"
 #include "../math/rotation.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* entry (i, j), as gsl_linalg_LU_band wants it */
 static double *entry_at(const spari_assembly *a, int i, int j) {
-    return a->A->data + (size_t)j * a->A->tda + (size_t)(2 * a->band + i - j);
+    return a->entry + i + a->step * j;
 }
 
 /* The unknown of the system for motion k (0 to 11) of a link's nodes; -1: it is given. */
@@ -31,16 +27,26 @@ static const double *turn_of_side(const spari_link *l, int side) {
     return p ? p->row->turn(p, l->joint->unique[side]) : NULL;
 }
 
-/* K [3][3] of row stride `stride` := R(row) K R(column)^T */
-static void turn_block(const double *row, const double *column, int stride, double *K) {
-    for (int i = 0; i < 3 && column; i++) {
-        spari_rotate(column, K + i * stride, K + i * stride);
+/* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
+static void turn_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
+    double half[9];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            const double *row = K + from * i;
+            half[3 * i + j] = row[0] * Q[3 * j] + row[1] * Q[3 * j + 1] + row[2] * Q[3 * j + 2];
+        }
     }
-    for (int j = 0; j < 3 && row; j++) {
-        double x[3] = {K[j], K[stride + j], K[2 * stride + j]};
-        spari_rotate(row, x, x);
-        K[j] = x[0], K[stride + j] = x[1], K[2 * stride + j] = x[2];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out[to * i + j] = R[3 * i] * half[j] + R[3 * i + 1] * half[3 + j] + R[3 * i + 2] * half[6 + j];
+        }
     }
+}
+
+/* turn NULL: none */
+static void matrix_of_turn(const double *turn, double R[9]) {
+    const double none[4] = {1, 0, 0, 0};
+    spari_quat_matrix(turn ? turn : none, R);
 }
 
 void spari_tied_keep(spari_assembly *a) {
@@ -52,31 +58,44 @@ void spari_tied_keep(spari_assembly *a) {
     }
 }
 
-/* K[12][12] := what the link adds to the tangent: the turning of its load, springs and dampers. */
-static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
+/* K -= B^T (stiffness + cv damping) B of the free motions */
+static void release_springs(const spari_link *l, double cv, double K[12][12]) {
     const spar_joint *j = l->joint;
     int given = spari_joint_given(j);
-    for (int i = 0; i < 144; i++) {
-        K[i / 12][i % 12] = -l->turning[i / 12][i % 12];
-    }
-    for (int i = 0; i < 12; i += 3) {
-        for (int k = 0; k < 12; k += 3) {
-            turn_block(turn_of_side(l, i / 6), turn_of_side(l, k / 6), 12, &K[i][k]);
-        }
-    }
-    if (!j->sprung || spari_joint_is_slack(j, &j->after)) {
-        return;
-    }
     for (int p = 0; p < 6; p++) {
+        double row[12] = {0};
+        int some = 0;
         for (int q = 0; q < 6; q++) {
             double stiff = j->stiffness[6 * p + q] + cv * j->damping[6 * p + q];
             if ((given >> p & 1) || (given >> q & 1) || stiff == 0) {
                 continue;
             }
-            for (int i = 0; i < 144; i++) {
-                K[i / 12][i % 12] += stiff * l->B[p][i / 12] * l->B[q][i % 12];
+            some = 1;
+            for (int i = 0; i < 12; i++) {
+                row[i] += stiff * l->B[q][i];
             }
         }
+        for (int i = 0; i < 12 && some; i++) {
+            for (int k = 0; k < 12; k++) {
+                K[i][k] -= l->B[p][i] * row[k];
+            }
+        }
+    }
+}
+
+/* K[12][12] := what the link takes from the tangent: the turning of its load, springs and dampers. */
+static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
+    const spar_joint *j = l->joint;
+    double R[2][9];
+    matrix_of_turn(turn_of_side(l, 0), R[0]);
+    matrix_of_turn(turn_of_side(l, 1), R[1]);
+    for (int i = 0; i < 12; i += 3) {
+        for (int k = 0; k < 12; k += 3) {
+            turn_block(R[i / 6], R[k / 6], 12, &l->turning[i][k], 12, &K[i][k]);
+        }
+    }
+    if (j->sprung && !spari_joint_is_slack(j, &j->after)) {
+        release_springs(l, cv, K);
     }
 }
 
@@ -84,12 +103,12 @@ static void add_part(spari_assembly *a, const spari_limb *p) {
     const spari_condensed *c = p->condensed;
     int m = 6 * c->ends;
     for (int i = 0; i < m; i += 3) {
+        double R[9];
+        matrix_of_turn(p->row->turn(p, p->end[i / 6]), R);
         for (int j = 0; j < m; j += 3) {
-            double K[9];
-            for (int k = 0; k < 9; k++) {
-                K[k] = c->K[m * (i + k / 3) + j + k % 3];
-            }
-            turn_block(p->row->turn(p, p->end[i / 6]), p->row->turn(p, p->end[j / 6]), 3, K);
+            double Q[9], K[9];
+            matrix_of_turn(p->row->turn(p, p->end[j / 6]), Q);
+            turn_block(R, Q, m, c->K + m * i + j, 3, K);
             for (int k = 0; k < 9; k++) {
                 *entry_at(a, p->at + i + k / 3, p->at + j + k % 3) += K[k];
             }
@@ -110,7 +129,7 @@ static void add_link(spari_assembly *a, const spari_link *l, double cv) {
     for (int i = 0; i < 12; i++) {
         for (int j = 0; j < 12 && to[i] >= 0; j++) {
             if (to[j] >= 0) {
-                *entry_at(a, to[i], to[j]) += K[i][j];
+                *entry_at(a, to[i], to[j]) -= K[i][j];
             }
         }
         for (int k = 0; k < 6 && to[i] >= 0; k++) {
@@ -123,7 +142,7 @@ static void add_link(spari_assembly *a, const spari_link *l, double cv) {
 
 /* The system of the parts and links as they stand. */
 static void fill_system(spari_assembly *a, double cv) {
-    gsl_matrix_set_zero(a->A);
+    spari_linear_zero(a->linear);
     a->scale = 0;
     for (int i = 0; i < a->limbs; i++) {
         add_part(a, a->limb + i);
@@ -134,36 +153,12 @@ static void fill_system(spari_assembly *a, double cv) {
     }
 }
 
-/* 0 or 1. */
-static int factor_system(spari_assembly *a) {
-    int status;
-    if (spari_first_nonfinite(a->A->data, (int64_t)(a->A->size1 * a->A->tda)) >= 0) {
-        return 1;
-    }
-    size_t band = (size_t)a->band;
-    SPARI_BLAS(status = gsl_linalg_LU_band_decomp((size_t)a->n, band, band, a->A, a->swap));
-    for (int i = 0; i < a->n && status == GSL_SUCCESS; i++) {
-        double pivot = fabs(*entry_at(a, i, i));
-        if (!(pivot > 0) || !isfinite(pivot)) {
-            return 1;
-        }
-    }
-    return status != GSL_SUCCESS;
-}
-
-int spari_tied_solve(spari_assembly *a, double cv) {
-    size_t band = (size_t)a->band;
-    /* first: it says how the parts have turned, which the system goes by */
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        if (p->row->reduce(p, a->x + p->at)) {
-            return 1;
-        }
-    }
+/* With what is left of the parts' forces at their ends in x. */
+static int solve_reduced(spari_assembly *a, double cv) {
     if (!a->standing || fabs(a->cv - cv) > 0) {
         a->standing = 0;
         fill_system(a, cv);
-        if (factor_system(a)) {
+        if (spari_linear_factor(a->linear)) {
             return 1;
         }
         a->standing = 1, a->cv = cv, a->moved = 0;
@@ -176,9 +171,7 @@ int spari_tied_solve(spari_assembly *a, double cv) {
             }
         }
     }
-    gsl_vector_view v = gsl_vector_view_array(a->x, (size_t)a->n);
-    SPARI_BLAS(gsl_linalg_LU_band_svx(band, band, a->A, a->swap, &v.vector));
-    if (spari_first_nonfinite(a->x, a->n) >= 0) {
+    if (spari_linear_solve(a->linear, a->x)) {
         return 1;
     }
     for (int i = 0; i < a->limbs; i++) {
@@ -192,6 +185,26 @@ int spari_tied_solve(spari_assembly *a, double cv) {
         }
     }
     return 0;
+}
+
+int spari_tied_solve(spari_assembly *a, double cv) {
+    /* first: it says how the parts have turned, which the system goes by */
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->row->reduce(p, a->x + p->at)) {
+            return 1;
+        }
+    }
+    return solve_reduced(a, cv);
+}
+
+int spari_tied_close(spari_assembly *a, double cv) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        p->row->clear(p);
+        memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
+    }
+    return solve_reduced(a, cv);
 }
 
 double spari_tied_weakest(const spari_assembly *a) {
@@ -218,7 +231,7 @@ static double slip_of(const spari_link *l, const double *x, int k) {
 /* The motion x that the system resists least, by two steps of inverse iteration from a motion of no symmetry; every
    motion is given a little stiffness, so that there are factors. 0 or 1. */
 static int free_motion(spari_assembly *a) {
-    const size_t band = (size_t)a->band;
+    int lost = 0;
     a->standing = 0;
     fill_system(a, 0);
     for (int i = 0; i < a->limbs; i++) {
@@ -226,16 +239,15 @@ static int free_motion(spari_assembly *a) {
             *entry_at(a, a->limb[i].at + k, a->limb[i].at + k) += 1e-12 * a->scale;
         }
     }
-    if (factor_system(a)) {
+    if (spari_linear_factor(a->linear)) {
         return 1;
     }
     for (int i = 0; i < a->n; i++) {
         a->x[i] = 1 + 0.37 * sin(2.7 * i);
     }
-    gsl_vector_view v = gsl_vector_view_array(a->x, (size_t)a->n);
-    for (int pass = 0; pass < 2; pass++) {
+    for (int pass = 0; pass < 2 && !lost; pass++) {
         double largest = 0;
-        SPARI_BLAS(gsl_linalg_LU_band_svx(band, band, a->A, a->swap, &v.vector));
+        lost = spari_linear_solve(a->linear, a->x);
         for (int i = 0; i < a->n; i++) {
             largest = fmax(largest, fabs(a->x[i]));
         }
@@ -243,7 +255,7 @@ static int free_motion(spari_assembly *a) {
             a->x[i] /= largest;
         }
     }
-    return spari_first_nonfinite(a->x, a->n) >= 0;
+    return lost;
 }
 
 /* Joints that move name it best; where none does, the whole goes, and the farthest motion of a member's node does. */
@@ -332,10 +344,11 @@ static int place_of_end(const spari_link *l, int side) {
     return p->at + 6 * e;
 }
 
-/* Parts stand in the order in which links reach them; the rows of a link after the later of its parts. */
+/* Parts stand in the order opposite to that in which links reach them, the rows of a link after the one of its parts
+   that it reached: factors then begin where branches end, and a branch fills nothing but its own. */
 void spari_tied_place(spari_assembly *a) {
     a->n = 0;
-    for (int i = 0; i < a->limbs; i++) {
+    for (int i = a->limbs - 1; i >= 0; i--) {
         spari_limb *p = a->limb + i;
         p->at = a->n;
         a->n += 6 * p->condensed->ends;
@@ -354,22 +367,20 @@ void spari_tied_place(spari_assembly *a) {
 }
 
 int spari_tied_room(spari_assembly *a) {
-    a->band = bandwidth(a);
-    a->band = a->band < a->n ? a->band : a->n - 1;
-    a->A = gsl_matrix_calloc((size_t)a->n, (size_t)(3 * a->band + 1));
-    a->swap = gsl_vector_uint_alloc((size_t)a->n);
+    int band = bandwidth(a);
+    a->linear = spari_linear_create_banded(a->n, band < a->n ? band : a->n - 1);
     a->x = spari_zalloc(a->n, sizeof *a->x);
     int64_t most = 0;
     for (int i = 0; i < a->limbs; i++) {
         most = a->limb[i].member->nodes > most ? a->limb[i].member->nodes : most;
     }
     a->rates = spari_zalloc(6 * most, sizeof *a->rates);
-    return a->A && a->swap && a->x && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
+    a->entry = a->linear ? spari_linear_entries(a->linear, &a->step) : NULL;
+    return a->linear && a->x && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
 void spari_tied_free(spari_assembly *a) {
-    gsl_matrix_free(a->A);
-    gsl_vector_uint_free(a->swap);
+    spari_linear_free(a->linear);
     free(a->x);
     free(a->rates);
 }

@@ -5,9 +5,6 @@
 #include "../member/joint.h"
 #include "limb.h"
 
-#include <gsl/gsl_matrix.h>
-#include <gsl/gsl_vector.h>
-
 /* A joint of an assembly, as it stands in the system. */
 typedef struct spari_link {
     spar_joint *joint;
@@ -30,15 +27,16 @@ struct spari_assembly {
     spari_limb *limb;
     spari_link *link; /* on every rank; what follows is the owner's */
     double mass;      /* of the parts */
-    int n, band;
+    int n;
     int solved;       /* the parts and links stand at the end of a step */
     int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
     int violent;      /* velocities are held within the step's equations */
     int standing;     /* the system below is factored, for the tangents there are and this cv, */
     double cv, moved; /* and the parts' way since; only within a solution */
     double scale;     /* of the constraints' rows */
-    gsl_matrix *A;
-    gsl_vector_uint *swap;
+    spari_linear *linear;
+    double *entry; /* (i, j) of its matrix is entry[i + step j] */
+    int64_t step;
     double *x;
     double *rates; /* 6 of each node of the largest part */
 };
@@ -65,6 +63,8 @@ void spari_tied_keep(spari_assembly *a);
    constraints are those of the links as they stand; the parts' tangents, kept, go along with their nodes. cv: as for
    the tangents. 0 or 1. */
 int spari_tied_solve(spari_assembly *a, double cv);
+/* Of the gaps alone, without forces. */
+int spari_tied_close(spari_assembly *a, double cv);
 /* Takes out of the accelerations that the substep begins with what it does not resolve, where it is much longer than
    the last; a status and a message. */
 int spari_tied_leap(spari_assembly *a, double dt);
