@@ -6,6 +6,7 @@
 #include "../member/added.h"
 #include "../member/applied.h"
 #include "leap.h"
+#include "newton.h"
 #include "root.h"
 #include "solver.h"
 
@@ -43,14 +44,43 @@ static spari_rates rates_of(const spari_state *s) {
     return (spari_rates){s->v, s->a, s->b};
 }
 
+/* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
+   jumps, the nodes that keep their places are left behind (root.c). `to` is not in use there. */
+static void keep_shape(const spari_solver *s, const spar_member *member, spari_ends *e, double *dx) {
+    const spari_pose before = spari_pose_of(s->from.q, s->from.v, s->from.a);
+    const spari_state *from = &e->from, *shape = &e->to;
+    spari_root_look_from(s, member, &before, &s->from, &e->to);
+    for (int i = 0; i < s->n; i++) {
+        double back[4], turn[4];
+        spari_quat_conj(from->q + 7 * i + 3, back);
+        spari_quat_mul(shape->q + 7 * i + 3, back, turn);
+        spari_quat_log(turn, dx + 6 * i + 3);
+        for (int k = 0; k < 3; k++) {
+            dx[6 * i + k] = from->q[7 * i + k] - shape->q[7 * i + k];
+            dx[6 * i + 3 + k] *= -1;
+        }
+    }
+}
+
 /* Starting values of Newton. */
-void spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
-                         spari_ends *e, double *x) {
-    spari_scheme_predict(c, stays, 6 * s->n, rates_of(&e->from), x, rates_of(&e->to));
+int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
+                        spari_ends *e, double *x) {
+    int shape = stays == SPARI_KEEP_SHAPE;
+    if (shape && !e->root) {
+        return 0;
+    }
+    if (shape) {
+        keep_shape(s, member, e, s->dx);
+    }
+    spari_scheme_predict(c, shape ? SPARI_KEEP_PLACE : stays, 6 * s->n, rates_of(&e->from), x, rates_of(&e->to));
+    if (shape) {
+        spari_scheme_correct(c, 1, 6 * s->n, s->dx, x, rates_of(&e->to));
+    }
     for (int i = 0; i < s->n; i++) {
         place_node(c, &e->from, &e->to, x, i);
     }
     spari_root_show(s, member, e);
+    return 1;
 }
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
@@ -270,11 +300,8 @@ static double infinity_norm(const double *r, int n) {
     return big;
 }
 
-static const double SLOW = 0.5;
+/* A tangent that needed more iterations is replaced in the next solution. */
 enum { PATIENCE = 5 };
-
-/* How hard Newton tries: with the tangent it has, with a new one, with a new one in every iteration and short steps. */
-typedef enum effort { KEPT, FRESH, FULL } effort;
 
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
     const double *v = c->still && !s->body->D ? NULL : to->v;
@@ -286,81 +313,85 @@ int spari_alpha_close(double x, double kept) {
     return fabs(x - kept) <= 0.01 * fabs(kept);
 }
 
-/* One attempt from the predicted state. theta is the observed contraction, theta/(1 - theta) times the last correction
-   what is left (Hairer & Wanner, Solving ODEs II, IV.8). A tangent that contracts slower than SLOW is formed anew, one
-   that needed more than PATIENCE iterations is replaced in the next solution. Returns NULL, or what went wrong. */
-static const char *attempt(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
-                           effort how, spari_ends *e, double *x, int *iterations) {
-    const spar_session *session = member->session;
-    double last = 0, longest = how == FULL ? 0.5 : INFINITY;
-    s->factored =
-        s->factored && how == KEPT && spari_alpha_close(c->cm, s->kept_cm) && spari_alpha_close(c->cv, s->kept_cv);
-    int fresh = !s->factored;
-    for (int it = 1; it <= session->newton_max; it++, ++*iterations) {
-        spari_alpha_impose_root(member, root, e, x);
-        double scale = spari_alpha_balance(s, member, c, &e->seen, s->r);
-        if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
-            return "met numbers that are not finite";
-        }
-        spari_alpha_operators(s, c, e, x);
-        if (!s->factored && spari_alpha_tangent(s, member, c, &e->seen)) {
-            return "found a singular tangent";
-        }
-        if (solve_turned(s, e->seen.q, s->r, s->dx)) {
-            return "found a singular tangent";
-        }
-        double noise = infinity_norm(s->r, 6 * s->n);
-        double correction = spari_alpha_correct(s, member, c, e, longest, x, s->dx);
-        s->newton++;
-        double tolerance = session->newton_atol + session->newton_rtol * (spari_alpha_size(s, x) + e->carried);
-        double theta = last > 0 ? correction / last : 0;
-        double left = last > 0 && theta < 1 && how != FULL ? theta / (1 - theta) * correction : correction;
-        int stuck = theta > 0.5 && (correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest);
-        if (left <= tolerance || noise <= 16 * DBL_EPSILON * scale || stuck) {
-            spari_alpha_impose_root(member, root, e, x);
-            s->factored = s->factored && (fresh || it <= PATIENCE);
-            return NULL;
-        }
-        if (theta > 2 && how != FULL) {
-            return "diverges";
-        }
-        if (how == FULL || theta > SLOW) {
-            s->factored = 0;
-            fresh = 1;
-        }
-        last = correction;
+/* A substep of one member, as newton.h has it. */
+typedef struct alpha_step {
+    spari_solver *s;
+    const spar_member *member;
+    const spari_scheme *c;
+    const spari_pose *root;
+    const double *turn;
+    spari_ends *e;
+    double *x;
+} alpha_step;
+
+static int guess_alone(void *self, spari_guess stays) {
+    const alpha_step *t = self;
+    if (t->c->still) {
+        spari_alpha_carry(t->s, t->member, t->c, t->root, t->turn, t->e, t->x);
+        return stays != SPARI_KEEP_SHAPE;
     }
-    return "does not converge";
+    return spari_alpha_predict(t->s, t->member, t->c, stays, t->e, t->x);
 }
 
-/* The state at the end of a substep, by attempts that get more careful. */
-static int newton(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
-                  const double turn[4], spari_ends *e, double *x) {
-    const char *wrong = NULL;
-    int iterations = 0;
-    static const struct {
-        effort how;
-        spari_guess stays;
-    } attempts[] = {{KEPT, SPARI_KEEP_ACCELERATION},
-                    {FRESH, SPARI_KEEP_ACCELERATION},
-                    {FULL, SPARI_KEEP_VELOCITY},
-                    {FULL, SPARI_KEEP_PLACE}};
-    for (size_t k = s->factored ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
-        if (c->still) {
-            spari_alpha_carry(s, member, c, root, turn, e, x);
-        } else {
-            spari_alpha_predict(s, member, c, attempts[k].stays, e, x);
-        }
-        wrong = attempt(s, member, c, root, attempts[k].how, e, x, &iterations);
-        if (!wrong) {
-            return SPAR_OK;
-        }
+static int kept_serves_alone(const alpha_step *t) {
+    const spari_solver *s = t->s;
+    return s->factored && spari_alpha_close(t->c->cm, s->kept_cm) && spari_alpha_close(t->c->cv, s->kept_cv);
+}
+
+static int begin_alone(void *self, int kept) {
+    const alpha_step *t = self;
+    t->s->factored = kept && kept_serves_alone(t);
+    return t->s->factored;
+}
+
+static const char *iterate_alone(void *self, double longest, spari_iterate *it) {
+    const alpha_step *t = self;
+    spari_solver *s = t->s;
+    const spar_session *session = t->member->session;
+    spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
+    if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
+        return "met numbers that are not finite";
     }
-    return spari_fail(
-        member->session, SPAR_ERR_NUMERIC,
-        "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
-        "or look at the loads",
-        member->name, wrong, iterations, member->session->time);
+    spari_alpha_operators(s, t->c, t->e, t->x);
+    if (!s->factored && spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
+        return "found a singular tangent";
+    }
+    if (solve_turned(s, t->e->seen.q, s->r, s->dx)) {
+        return "found a singular tangent";
+    }
+    double noise = infinity_norm(s->r, 6 * s->n);
+    it->correction = spari_alpha_correct(s, t->member, t->c, t->e, longest, t->x, s->dx);
+    s->newton++;
+    it->tolerance = session->newton_atol + session->newton_rtol * (spari_alpha_size(s, t->x) + t->e->carried);
+    it->rounded = noise <= 16 * DBL_EPSILON * scale;
+    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
+    return NULL;
+}
+
+static void renew_alone(void *self) {
+    const alpha_step *t = self;
+    t->s->factored = 0;
+}
+
+static void end_alone(void *self, int iterations, int fresh) {
+    const alpha_step *t = self;
+    spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    t->s->factored = t->s->factored && (fresh || iterations <= PATIENCE);
+}
+
+/* The state at the end of a substep. */
+static int newton(const alpha_step *t) {
+    static const spari_newton how = {INFINITY, guess_alone, begin_alone, iterate_alone, renew_alone, end_alone};
+    const spar_session *session = t->member->session;
+    alpha_step step = *t;
+    int iterations = 0;
+    const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max, &iterations);
+    SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
+                  "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
+                  "or look at the loads",
+                  t->member->name, wrong, iterations, session->time);
+    return SPAR_OK;
 }
 
 /* Forces less loads at t^0 with the accelerations a. */
@@ -461,7 +492,7 @@ static int substep(void *self, const spar_member *member, const spari_scheme *c,
     if (part->leaps) {
         SPARI_TRY(begin_leap(s, member, c, &e, &s->from));
     }
-    int status = newton(s, member, c, &part->root, turn, &e, s->increment);
+    int status = newton(&(alpha_step){s, member, c, &part->root, turn, &e, s->increment});
     s->factored = s->factored && status == SPAR_OK;
     *power = s->power;
     return status;

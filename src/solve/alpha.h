@@ -5,9 +5,10 @@
 
 #include "root.h"
 
-/* Starting values: the state e->to and the increments x [unique][6]. */
-void spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
-                         spari_ends *e, double *x);
+/* Starting values: the state e->to and the increments x [unique][6]. 0: there are none of that kind, none is written.
+ */
+int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
+                        spari_ends *e, double *x);
 /* The same without inertia: the member goes along with its root, which turns by `turn`. */
 void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                        const double turn[4], const spari_ends *e, double *x);

@@ -4,6 +4,7 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "fidelity.h"
+#include "newton.h"
 #include "tied.h"
 
 #include <float.h>
@@ -13,20 +14,21 @@
 
 /* ---- one substep ---- */
 
-/* How hard Newton tries: see alpha.c. */
-typedef struct effort {
-    int kept; /* with the tangents there are */
-    int full; /* new ones in every iteration, and short steps */
-    spari_guess stays;
-} effort;
-
-static void predict(spari_assembly *a, spari_guess stays) {
+/* Whether any part has starting values of that kind; the others keep their velocities then. */
+static int predict(spari_assembly *a, spari_guess stays) {
+    int any = 0;
     for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->predict(a->limb + i, stays);
+        spari_limb *p = a->limb + i;
+        int has = p->row->predict(p, stays);
+        any = has || any;
+        if (!has) {
+            (void)p->row->predict(p, SPARI_KEEP_VELOCITY);
+        }
     }
     for (int i = 0; i < a->links; i++) {
         a->link[i].joint->after = a->link[i].begin;
     }
+    return any;
 }
 
 /* Residuals of all parts and gaps of all links at the latest iterate; what rounding in the former is relative to, or
@@ -127,7 +129,7 @@ static int kept_serves(const spari_assembly *a) {
 
 /* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
    contracts by about as much. */
-static const double SLOW_TIED = 0.5, longest_tied = 0.5, near_tied = 0.01;
+static const double near_tied = 0.01;
 enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 
 /* What is left of the tangents for the next solution (see tied.h) after one of so many iterations; took: of those that
@@ -141,54 +143,66 @@ static int tangents_after(int iterations, int took) {
     return iterations <= patience ? took : 0;
 }
 
-/* One attempt from the predicted states, as alpha.c's for one member. NULL, or what went wrong. */
-static const char *attempt_all(spari_assembly *a, effort how, double s, double dt, int *iterations) {
-    double last = 0, longest = how.full ? longest_tied : INFINITY;
-    int took = a->factored;
-    a->factored = how.kept && kept_serves(a);
-    a->standing = 0; /* what a solution begins with is not to depend on those before it */
-    int fresh = !a->factored;
-    for (int it = 1; it <= a->session->newton_max; it++, ++*iterations) {
-        double noise, scale = balance(a, s, dt, &noise);
-        if (!isfinite(scale)) {
-            return "met numbers that are not finite";
-        }
-        for (int i = 0; i < a->links; i++) {
-            for (int k = 0; k < 6; k++) {
-                a->link[i].gap[k] = a->link[i].row[k] >= 0 ? spari_link_gap(a->link + i, k) : 0;
-            }
-        }
-        if (!a->factored && form(a)) {
-            return "found a singular tangent";
-        }
-        a->factored = 1;
-        if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
-            return "found a singular tangent";
-        }
-        double correction = correct(a, longest);
-        if (a->violent && correct_rates(a, correction > longest ? longest / correction : 1, &correction)) {
-            return "found a singular tangent";
-        }
-        a->moved += correction;
-        a->standing = a->standing && a->moved < near_tied;
-        double theta = last > 0 ? correction / last : 0;
-        double left = last > 0 && theta < 1 && !how.full ? theta / (1 - theta) * correction : correction;
-        int stuck = theta > 0.5 && correction < 1e-11;
-        if (left <= tolerance(a) || (noise <= 16 * DBL_EPSILON * scale && correction < 1e-11) || stuck) {
-            a->factored = tangents_after(it, fresh ? 0 : took);
-            return NULL;
-        }
-        /* a far correction may lead to another way of closing a loop */
-        if ((theta > 2 || correction > longest_tied) && !how.full) {
-            return "diverges";
-        }
-        if (how.full || theta > SLOW_TIED) {
-            a->factored = 0;
-            fresh = 1;
-        }
-        last = correction;
+/* A substep of all, as newton.h has it. */
+typedef struct tied_step {
+    spari_assembly *a;
+    double s, dt;
+    int took; /* of the tangents that it began with */
+} tied_step;
+
+static int guess_tied(void *self, spari_guess stays) {
+    const tied_step *t = self;
+    return predict(t->a, stays);
+}
+
+static int begin_tied(void *self, int kept) {
+    tied_step *t = self;
+    t->took = t->a->factored;
+    t->a->factored = kept && kept_serves(t->a);
+    t->a->standing = 0; /* what a solution begins with is not to depend on those before it */
+    return t->a->factored;
+}
+
+static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
+    const tied_step *t = self;
+    spari_assembly *a = t->a;
+    double noise, scale = balance(a, t->s, t->dt, &noise);
+    if (!isfinite(scale)) {
+        return "met numbers that are not finite";
     }
-    return "does not converge";
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->link[i].gap[k] = a->link[i].row[k] >= 0 ? spari_link_gap(a->link + i, k) : 0;
+        }
+    }
+    if (!a->factored && form(a)) {
+        return "found a singular tangent";
+    }
+    a->factored = 1;
+    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+        return "found a singular tangent";
+    }
+    it->correction = correct(a, longest);
+    double cut = it->correction > longest ? longest / it->correction : 1;
+    if (a->violent && correct_rates(a, cut, &it->correction)) {
+        return "found a singular tangent";
+    }
+    a->moved += it->correction;
+    a->standing = a->standing && a->moved < near_tied;
+    it->tolerance = tolerance(a);
+    it->small = it->correction < 1e-11;
+    it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
+    return NULL;
+}
+
+static void renew_tied(void *self) {
+    const tied_step *t = self;
+    t->a->factored = 0;
+}
+
+static void end_tied(void *self, int iterations, int fresh) {
+    const tied_step *t = self;
+    t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
 }
 
 /* Velocities onto the constraints, as near as the tangent tells distances. */
@@ -219,21 +233,11 @@ static int project(spari_assembly *a, double s, double dt) {
     return 0;
 }
 
-/* By attempts that get more careful. NULL, or what went wrong in the last. */
+/* NULL, or what went wrong in the last attempt. A far correction may lead to another way of closing a loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
-    static const effort attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
-                                      {0, 0, SPARI_KEEP_ACCELERATION},
-                                      {0, 1, SPARI_KEEP_VELOCITY},
-                                      {0, 1, SPARI_KEEP_PLACE}};
-    const char *wrong = NULL;
-    for (size_t k = kept_serves(a) ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
-        predict(a, attempts[k].stays);
-        wrong = attempt_all(a, attempts[k], s, dt, iterations);
-        if (!wrong) {
-            return NULL;
-        }
-    }
-    return wrong;
+    static const spari_newton how = {SPARI_LONGEST, guess_tied, begin_tied, iterate_tied, renew_tied, end_tied};
+    tied_step step = {a, s, dt, 0};
+    return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max, iterations);
 }
 
 /* The states at the end of a substep. */

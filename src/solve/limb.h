@@ -24,8 +24,8 @@ typedef struct spari_limb_row {
     /* Its rates at the end are kept, or what was kept comes back. */
     void (*keep_rates)(struct spari_limb *p, int back);
 
-    /* Starting values. */
-    void (*predict)(struct spari_limb *p, spari_guess stays);
+    /* Starting values; 0: there are none of that kind. */
+    int (*predict)(struct spari_limb *p, spari_guess stays);
     /* Forces less loads of the latest iterate: those on the ends go to p->force, which links add to; what rounding in
        them is relative to. */
     double (*balance)(struct spari_limb *p);

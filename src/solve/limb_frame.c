@@ -140,23 +140,27 @@ static void keep_rates_of_frame(spari_limb *p, int back) {
 
 /* ---- an iteration ---- */
 
-static void predict_frame(spari_limb *p, spari_guess stays) {
+static int predict_frame(spari_limb *p, spari_guess stays) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     double *x = f->dx + 6;
     int n = f->n - 6;
+    if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: nothing leads astray */
+        return 0;
+    }
     if (p->scheme.still) {
         spari_alpha_carry(s, p->member, &p->scheme, &p->root, p->turn, &p->ends, s->increment);
         memset(x, 0, (size_t)n * sizeof *x);
         memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
     } else {
-        spari_alpha_predict(s, p->member, &p->scheme, stays, &p->ends, s->increment);
+        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->ends, s->increment);
         spari_scheme_predict(&p->scheme, stays, n, deformation_rates(&f->from), x, deformation_rates(&f->to));
     }
     for (int k = 6; k < f->n; k++) {
         f->to.y[k] = f->from.y[k] + f->dx[k];
     }
     look_at_end_of_step(p);
+    return 1;
 }
 
 static double balance_frame(spari_limb *p) {

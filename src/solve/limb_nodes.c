@@ -126,13 +126,13 @@ static void keep_rates_of_nodes(spari_limb *p, int back) {
 
 /* ---- an iteration ---- */
 
-static void predict_nodes(spari_limb *p, spari_guess stays) {
+static int predict_nodes(spari_limb *p, spari_guess stays) {
     double *x = p->solver->increment;
     if (p->scheme.still) {
         spari_alpha_carry(p->solver, p->member, &p->scheme, &p->root, p->turn, &p->ends, x);
-    } else {
-        spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->ends, x);
+        return stays != SPARI_KEEP_SHAPE;
     }
+    return spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->ends, x);
 }
 
 static double balance_nodes(spari_limb *p) {

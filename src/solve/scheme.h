@@ -71,8 +71,13 @@ void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
 
 /* What stays over the step in the starting values of Newton. Smooth motion: the acceleration. Where stiff parts ring,
    their acceleration says nothing of the next: the velocity. Where the step is longer than the motion lasts: the place.
- */
-typedef enum spari_guess { SPARI_KEEP_ACCELERATION, SPARI_KEEP_VELOCITY, SPARI_KEEP_PLACE } spari_guess;
+   Where a driven root jumps: the shape, the place as seen from there. */
+typedef enum spari_guess {
+    SPARI_KEEP_ACCELERATION,
+    SPARI_KEEP_SHAPE,
+    SPARI_KEEP_VELOCITY,
+    SPARI_KEEP_PLACE
+} spari_guess;
 
 /* Rates of n unknowns, and true and algorithmic accelerations. */
 typedef struct spari_rates {
