@@ -410,11 +410,25 @@ void spari_joint_spring(const spar_joint *j, const double z[6], const double rat
     }
 }
 
-int spari_joint_place(spar_joint *j) {
+int spari_joint_check_place(const spar_joint *j) {
+    const spar_member *a = j->member[0], *b = j->member[1];
+    double apart = 0, size = 0;
+    for (int k = 0; k < 3 && b && !j->tie.line && !j->frame_given; k++) {
+        double x = a->xr[3 * j->node[0] + k];
+        apart = hypot(apart, b->xr[3 * j->node[1] + k] - x);
+        size = fmax(size, fabs(x));
+    }
+    SPARI_REQUIRE(j->session, apart <= 1e-6 * fmax(spari_member_length(a), size), SPAR_ERR_ARGUMENT,
+                  "joint '%s': node %lld of '%s' and node %lld of '%s' are %g m apart in the reference; place them "
+                  "together, or say by spar_joint_set_frame where the joint is, to which rigid arms then lead",
+                  j->name, (long long)j->node[0], a->name, (long long)j->node[1], b ? b->name : "", apart);
+    return SPAR_OK;
+}
+
+void spari_joint_place(spar_joint *j) {
     const spar_member *a = j->member[0], *b = j->member[1];
     static const double origin[3] = {0};
     const double *x[2] = {a->xr + 3 * j->node[0], b ? b->xr + 3 * j->node[1] : origin};
-    double apart = 0, size = 0;
     for (int side = 0; side < 2; side++) {
         j->seat[side] = j->node[side];
         j->unique[side] = j->member[side] ? spari_member_unique(j->member[side], j->node[side]) : 0;
@@ -424,15 +438,6 @@ int spari_joint_place(spar_joint *j) {
     }
     if (!j->tie.line && !j->frame_given) {
         memcpy(j->place, x[0], sizeof j->place);
-        for (int k = 0; k < 3 && b; k++) {
-            apart = hypot(apart, x[1][k] - x[0][k]);
-            size = fmax(size, fabs(x[0][k]));
-        }
-        double length = spari_member_length(a);
-        SPARI_REQUIRE(j->session, apart <= 1e-6 * fmax(length, size), SPAR_ERR_ARGUMENT,
-                      "joint '%s': node %lld of '%s' and node %lld of '%s' are %g m apart in the reference; place them "
-                      "together, or say by spar_joint_set_frame where the joint is, to which rigid arms then lead",
-                      j->name, (long long)j->node[0], a->name, (long long)j->node[1], b ? b->name : "", apart);
     }
     for (int side = 0; side < 2; side++) {
         const double *to = j->tie.line ? j->point[side] : j->place;
@@ -442,7 +447,6 @@ int spari_joint_place(spar_joint *j) {
         memcpy(j->tie.axes[side], j->axes, sizeof j->axes);
     }
     j->placed = 1;
-    return SPAR_OK;
 }
 
 void spari_joint_count_turns(const spar_joint *j, const double near[6], double z[6]) {

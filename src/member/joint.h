@@ -63,8 +63,10 @@ void spari_joint_spring(const spar_joint *joint, const double z[6], const double
                         double load[6]);
 /* Whether a line that only pulls does not. */
 int spari_joint_is_slack(const spar_joint *joint, const spari_relative *at);
-/* Places arms and axes. After both members are committed. A status and a message. */
-int spari_joint_place(spar_joint *joint);
+/* Whether its nodes are where it can tie them; a status and a message. And places arms and axes. After both members are
+   committed. */
+int spari_joint_check_place(const spar_joint *joint);
+void spari_joint_place(spar_joint *joint);
 /* z with a hinge's angle brought to the turn nearest to `near`. */
 void spari_joint_count_turns(const spar_joint *joint, const double near[6], double z[6]);
 /* Driven motions at the part s of the step dt: cubic Hermite. */

@@ -218,13 +218,20 @@ int spari_members_retie(spar_session *s) {
     return SPAR_OK;
 }
 
-int spari_joints_place(spar_session *s) {
-    for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
+/* Nothing is changed until all of them can be placed. */
+static int check_joints(const spar_session *s) {
+    for (const spar_joint *j = s->joints; j; j = j->next) {
         SPARI_TRY(check_members(j));
+        SPARI_TRY(spari_joint_check_place(j));
     }
+    return SPAR_OK;
+}
+
+int spari_joints_place(spar_session *s) {
+    SPARI_TRY(s->joints_stale ? check_joints(s) : SPAR_OK);
     SPARI_TRY(spari_members_retie(s));
     for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
-        SPARI_TRY(spari_joint_place(j));
+        spari_joint_place(j);
         lead_to_limbs(j);
     }
     return SPAR_OK;
@@ -264,15 +271,19 @@ int spari_assemblies_make(spar_session *s, const char *call) {
     if (!s->joints_stale) {
         return SPAR_OK;
     }
-    spari_assemblies_free(s);
-    int status = agree_on_joints(s, call, make_all(s));
+    int status = check_joints(s), changed = status == SPAR_OK;
+    if (changed) {
+        spari_assemblies_free(s);
+        status = make_all(s);
+    }
+    status = agree_on_joints(s, call, status);
     for (spari_assembly *a = s->assemblies; a; a = a->next) {
         end_moves(a, status != SPAR_OK);
     }
-    if (status != SPAR_OK) {
+    if (status != SPAR_OK && changed) {
         spari_assemblies_free(s);
-        return status;
     }
+    SPARI_TRY(status);
     s->joints_stale = 0;
     return SPAR_OK;
 }
