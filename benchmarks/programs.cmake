@@ -10,7 +10,7 @@ endforeach()
 # the internal headers. The yardstick is GSL over its own CBLAS, so it must not see the fast one.
 find_library(SPAR_GSLCBLAS_LIBRARY gslcblas)
 mark_as_advanced(SPAR_GSLCBLAS_LIBRARY)
-foreach(program IN ITEMS benchmarks_beam benchmarks_beam_curves)
+foreach(program IN ITEMS benchmarks_beam benchmarks_beam_curves benchmarks_stability)
   set_target_properties(${program} PROPERTIES
     LINK_LIBRARIES "spar_flags;spar_example_parts;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
   target_include_directories(${program} PRIVATE "${PROJECT_SOURCE_DIR}/src")

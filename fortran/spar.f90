@@ -300,6 +300,8 @@ module spar
         member_set_load_32_single_1
     procedure, private :: member_solve_modes, member_solve_modes_single_1
     generic :: solve_modes => member_solve_modes, member_solve_modes_single_1
+    procedure, private :: member_solve_eigenvalues, member_solve_eigenvalues_single_1
+    generic :: solve_eigenvalues => member_solve_eigenvalues, member_solve_eigenvalues_single_1
     procedure, private :: member_set_modal_damping, member_set_modal_damping_single_1
     generic :: set_modal_damping => member_set_modal_damping, member_set_modal_damping_single_1
   end type spar_member
@@ -598,7 +600,7 @@ module spar
   real(c_double), parameter :: untouched = -1.2345678901234567e38_c_double
 
   interface take
-    procedure :: take_0, take_1, take_2, take_3
+    procedure :: take_0, take_1, take_2, take_3, take_4
   end interface take
 
   interface
@@ -1317,6 +1319,35 @@ contains
     call finish(spar_member_solve_modes(self%handle, size(frequency_hz, kind=c_int64_t), frequency_hz, &
         shapes), self%session, stat, errmsg)
   end subroutine member_solve_modes
+
+  ! shift(2), eigenvalue(2,n): growth rate and angular frequency; shapes(2,6,nodes,n)
+  subroutine member_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(in) :: shift(2)
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
+    real(c_double), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n, count
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    count = size(eigenvalue, 2, kind=c_int64_t)
+    call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, count])
+    if (present(shapes)) call need(fault, 'shapes', shape(shapes, kind=c_int64_t), [2_c_int64_t, 6_c_int64_t, n, count])
+    if (allocated(fault)) then
+      call refuse('member%solve_eigenvalues', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_solve_eigenvalues(self%handle, count, shift, eigenvalue, shapes, frame), self%session, &
+        stat, errmsg)
+  end subroutine member_solve_eigenvalues
 
   ! ---- fluids ----
 
@@ -4247,6 +4278,29 @@ contains
     call take(c_shapes, shapes)
   end subroutine member_solve_modes_single_1
 
+  subroutine member_solve_eigenvalues_single_1(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(in) :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call member_solve_eigenvalues(self, shift=real(shift, c_double), eigenvalue=c_eigenvalue, shapes=c_shapes, &
+        frame=c_frame, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine member_solve_eigenvalues_single_1
+
   subroutine joint_create_line_64_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
@@ -7014,6 +7068,14 @@ contains
     if (.not. present(to)) return
     where (is_set(from)) to = real(from, c_float)
   end subroutine take_3
+
+  subroutine take_4(from, to)
+    real(c_double), allocatable, intent(in) :: from(:,:,:,:)
+    real(c_float), intent(inout), optional :: to(:,:,:,:)
+
+    if (.not. present(to)) return
+    where (is_set(from)) to = real(from, c_float)
+  end subroutine take_4
 
   ! ---- status and messages ----
 

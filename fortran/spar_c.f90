@@ -606,6 +606,15 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_solve_modes
 
+    function spar_member_solve_eigenvalues(member, n, shift, eigenvalue, shapes, frame) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: shift(2)
+      real(c_double), intent(inout), optional :: eigenvalue(*), shapes(*), frame(3)
+      integer(c_int) :: status
+    end function spar_member_solve_eigenvalues
+
     function spar_beam_set_modal_damping(beam, mode, ratio, mu) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam

@@ -124,6 +124,7 @@ constants SPAR_WORK_LOADS=0 SPAR_WORK_FLUID=1 SPAR_WORK_ROOT=2 SPAR_WORK_JOINTS=
 call spar_member_get_work int member|member|value| capacity|int64_t|value| work|double|out|[SPAR_WORK_COUNT]
 call spar_member_solve_static int member|member|value| load_steps|int|value|
 call spar_member_solve_modes int member|member|value| n|int64_t|value| frequency_hz|double|out|[n] shapes|double|out|[n][nodes][6]
+call spar_member_solve_eigenvalues int member|member|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 call spar_beam_set_modal_damping int beam|member|value| mode|int64_t|in|[2] ratio|double|in|[2] mu|double|out|[6]
 call spar_joint_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| b|member|value| node_b|int64_t|value| free_motions|int|value| joint|joint|out|
 call spar_joint_set_frame int joint|joint|value| x|double|in|[3] q|double|in|[4]

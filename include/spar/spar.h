@@ -679,6 +679,27 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
      shapes[n][nodes][6]: out, displacement and rotation, normalised to unit modal mass, of an assembly that of all its
            members together, NULL: not wanted */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
+/* Eigenvalues of the small motions x e^(lambda t) about the present state, at rest or turning steadily, with all that
+   spar_member_solve_modes leaves out: damping, Coriolis' and gyroscopic terms and the unsymmetric stiffness of loads
+   that follow are in the equations M x'' + C x' + K x = 0 (docs/theory.md). lambda = growth rate, 1/s, + i times
+   angular frequency, rad/s: a growth rate > 0 is an instability, with a frequency flutter or whirl, without one
+   buckling. Of the conjugate pairs of eigenvalues the one with frequency >= 0 counts alone; a motion without stiffness
+   (a free body's) has zero twice, which counts once. Fluid loads stay as they are: the fluid's answer is not there. Of
+   a member that joints tie to others: those of them all, dampers included, the same whichever is asked. Members with
+   LARGE_ROTATION off, linear and modal ones: of their equations, as for modes. Local.
+     n: in, how many, at most the number of unknowns that the roots leave free
+     shift[2]: in, growth rate, 1/s, and angular frequency, rad/s: those nearest to it are found; NULL: zero, the lowest
+     eigenvalue[n][2]: out, growth rate and angular frequency, by their distance from the shift
+     shapes[n][nodes][6][2]: out, displacement and rotation, real and imaginary part, of unit x^H M x (of all parts
+           together), the phase such that its largest part is real; NULL: not wanted
+     frame[3]: out, rad/s, how the frame turns that x is seen from: as the whole where all turns as one (a whirl of w in
+           axes that stand is seen as w +- that), else 0; NULL: not wanted
+   Up to 90 unknowns are solved as one dense problem, more by restarted shift-and-invert Arnoldi iterations; what is
+   handed out has been tried in the equations. SPAR_ERR_STATE: the state is no equilibrium; SPAR_ERR_UNSUPPORTED: parts
+   turn against each other and are not alike all around, so that the equations change with time; SPAR_ERR_NUMERIC: fewer
+   than n were found, the others having no mass or not converging. */
+SPAR_API int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const double shift[2], double *eigenvalue,
+                                           double *shapes, double frame[3]);
 /* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
    shear y, torsion with stretch), the third group gets the geometric mean. Between commit and the first step.

@@ -172,6 +172,25 @@ void spari_tie_tangent(const spari_tie *t, const spari_place *a, const spari_pla
     }
 }
 
+void spari_tie_rates(const spari_tie *t, const spari_place *a, const spari_place *b, const double v[12],
+                     double R[6][12]) {
+    const double turn = 1e-5, way = turn * size_of_tie(t, a, b);
+    for (int j = 0; j < 12; j++) {
+        double by = j % 6 < 3 ? way : turn, z[6], B[2][6][12];
+        for (int side = 0; side < 2; side++) {
+            spari_place at = *a, bt = *b;
+            nudge(&at, &bt, j, side ? -by : by);
+            spari_tie_motion(t, &at, &bt, z, B[side]);
+        }
+        for (int i = 0; i < 6; i++) {
+            R[i][j] = 0;
+            for (int k = 0; k < 12; k++) {
+                R[i][j] += (B[0][i][k] - B[1][i][k]) / (2 * by) * v[k];
+            }
+        }
+    }
+}
+
 void spari_tie_drift(const spari_tie *t, const spari_place *a, const spari_place *b, const double v[12],
                      double rate[6]) {
     double fastest = 0, size = size_of_tie(t, a, b), z[6], B[2][6][12];

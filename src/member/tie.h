@@ -28,6 +28,9 @@ void spari_tie_forces(double B[6][12], const double load[6], double f[12]);
 /* K[12][12] += d(B^T load) at constant load: what a turning load adds to the tangent. */
 void spari_tie_tangent(const spari_tie *tie, const spari_place *a, const spari_place *b, const double load[6],
                        double K[12][12]);
+/* R[6][12] := d(B v) of small motions of the two nodes at constant v[12]. */
+void spari_tie_rates(const spari_tie *tie, const spari_place *a, const spari_place *b, const double v[12],
+                     double R[6][12]);
 /* What of B v changes with time though v does not: B-dot v, by v[12] of both nodes. */
 void spari_tie_drift(const spari_tie *tie, const spari_place *a, const spari_place *b, const double v[12],
                      double rate[6]);

@@ -1,14 +1,17 @@
 /* The exact member: geometrically exact beams and rigid bodies, with or without LARGE_ROTATION. */
+#include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "eigen.h"
 #include "fidelity.h"
 #include "limb.h"
+#include "pencil.h"
 #include "reaction.h"
 #include "scheme.h"
 #include "solver.h"
 #include "turn.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,6 +154,55 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     return SPAR_OK;
 }
 
+/* Forces of the steady turn less the loads in use. */
+static int exact_left(const spar_member *m, const double *q, const double *v, const double *a, spari_pencil *to) {
+    int64_t u = m->body->unique;
+    double *load = spari_zalloc(6 * m->nodes + 12 * u, sizeof *load), *r = load + 6 * m->nodes, *sum = r + 6 * u;
+    if (!load) {
+        return SPAR_ERR_MEMORY;
+    }
+    int status = spar_member_get_loads(m, load);
+    if (status == SPAR_OK) {
+        to->scale = fmax(to->scale, spari_body_residual(m->body, q, v, a, 1, r, NULL));
+        spari_member_gather(m, load, sum);
+        for (int64_t i = 0; i < 6 * u; i++) {
+            r[i] -= sum[i];
+            to->scale = fmax(to->scale, fabs(sum[i]));
+        }
+        to->noise = fmax(to->noise, m->body->stiffest);
+        spari_pencil_leave(to, -spari_member_held(m), (int)(6 * u), r);
+    }
+    free(load);
+    return status;
+}
+
+static int exact_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    int64_t u = m->body->unique, n = 6 * (int64_t)m->per_element;
+    double *q = spari_zalloc(19 * u + 3 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *K = a + 6 * u,
+           *C = K + n * n, *M = C + n * n;
+    if (!q) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_turn turn;
+    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn) || spari_norm(w) > 0;
+    spari_member_to_unique(m, 7, m->after.q, q);
+    if (turning) {
+        spari_turn_rates(m, &turn, q, v, a);
+    } else {
+        v = a = NULL;
+    }
+    for (int e = 0; e < m->elements; e++) {
+        spari_turn_pencil(m->body, w, turn.w, e, q, v, a, K, C, M);
+        if (m->applied) {
+            spari_applied_tangent(m, e, q, 1, K);
+        }
+        spari_pencil_add(to, 6 * e * (m->per_element - 1) - spari_member_held(m), (int)n, n, K, C, M);
+    }
+    int status = exact_left(m, q, v, a, to);
+    free(q);
+    return status;
+}
+
 static void exact_shape(const spar_member *m, const double *x, double *room, double *nodes) {
     int64_t held = spari_member_held(m);
     memset(room, 0, (size_t)held * sizeof *room);
@@ -198,6 +250,7 @@ const spari_fidelity spari_fidelity_exact = {
     .unknowns = exact_unknowns,
     .problem = exact_problem,
     .shape = exact_shape,
+    .linearise = exact_linearise,
     .limb = &spari_limb_nodes,
     .solver = exact_solver,
     .take_loads = exact_take_loads,

@@ -7,6 +7,8 @@
 #include "../member/structure.h"
 #include "effort.h"
 
+struct spari_pencil;
+
 /* A row. Of the operations NULL means: nothing to do. They are called where spari_fidelity_is_here, but for those that
    every rank calls. 0 or a status; messages name the member, the public call puts its name before. */
 typedef struct spari_fidelity {
@@ -64,6 +66,10 @@ typedef struct spari_fidelity {
     int64_t (*unknowns)(const spar_member *m);
     int (*problem)(const spar_member *m, double *K, double *M);
     void (*shape)(const spar_member *m, const double *x, double *room, double *nodes);
+    /* every rank: its equations of small motions about the motion after, unsymmetric and with rates, seen from a frame
+       that turns with w: entries of the pencil, and what is left of its forces. SPAR_ERR_UNSUPPORTED: it can be seen
+       from the frame of its own root only, which turns otherwise */
+    int (*linearise)(const spar_member *m, const double w[3], struct spari_pencil *to);
 
     /* Of members that joints tie to others, and that are solved with them (assembly.h): how (limb.h; NULL: joints
        cannot tie it); what it has found, into m->after; of those whose unknowns are nodes' the solver of the body, on

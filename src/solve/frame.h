@@ -27,6 +27,8 @@
 #include "linear.h"
 #include "scheme.h"
 
+struct spari_pencil;
+
 enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */
 
 /* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root. */
@@ -76,6 +78,8 @@ int spari_frame_static(spari_frame *frame, spar_member *member, const double *fl
 /* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
    parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
 void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
+/* The same unsymmetric and with rates, D + G, as entries of a pencil. */
+void spari_frame_linearise(const spari_frame *frame, const spar_member *member, struct spari_pencil *to);
 void spari_frame_shape(const spari_frame *frame, const spar_member *member, const double *x, double *nodes);
 /* As spari_solver_state_size and its fellows, between steps. */
 int64_t spari_frame_state_size(const spari_frame *frame);

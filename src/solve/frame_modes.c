@@ -8,6 +8,7 @@
 #include "../member/pose.h"
 #include "carriage.h"
 #include "eigen.h"
+#include "pencil.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
@@ -286,6 +287,33 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
         assemble_dense(f, f->N[k], c, held, K);
         if (f->S[k]) {
             assemble_dense(f, f->S[k], c, held, K);
+        }
+    }
+}
+
+void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pencil *to) {
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    int held = spari_member_held(m), step = f->block - f->overlap;
+    int64_t mm = (int64_t)f->block * f->block;
+    double omega[3];
+    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
+    for (int e = 0; e < f->elements; e++) {
+        int64_t at = mm * e;
+        spari_pencil_add(to, e * step - held, f->block, f->block, f->K + at, f->D ? f->D + at : NULL,
+                         f->M ? f->M + at : NULL);
+        for (int i = 0; i < f->block * f->block && f->N[0]; i++) {
+            int row = e * step - held + i / f->block, column = e * step - held + i % f->block;
+            spari_pencil_entry x = {to->base + row, to->base + column, 0, 0, 0};
+            for (int k = 0; k < SPARI_TURNS; k++) {
+                double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+                x.k += c * (f->N[k][at + i] + (f->S[k] ? f->S[k][at + i] : 0));
+            }
+            for (int k = 0; k < 3; k++) {
+                x.c += omega[k] * f->G[k][at + i];
+            }
+            if (row >= 0 && column >= 0) {
+                spari_pencil_put(to, x);
+            }
         }
     }
 }

@@ -2,14 +2,17 @@
 #include "frame.h"
 
 #include "../base/scene.h"
+#include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
 #include "carriage.h"
 #include "fidelity.h"
 #include "limb.h"
+#include "pencil.h"
 #include "reaction.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -230,6 +233,19 @@ static int frame_problem(const spar_member *m, double *K, double *M) {
     return SPAR_OK;
 }
 
+/* Small deformation is seen from the root, which must turn as the frame does. */
+static int frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    double apart[3], own = spari_norm(m->after.v + 3);
+    for (int k = 0; k < 3; k++) {
+        apart[k] = m->after.v[3 + k] - w[k];
+    }
+    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
+        return SPAR_ERR_UNSUPPORTED;
+    }
+    spari_frame_linearise(m->solution, m, to);
+    return SPAR_OK;
+}
+
 static void frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
     spari_frame_shape(m->solution, m, x, room);
     spari_member_from_unique(m, 6, room, nodes);
@@ -305,8 +321,9 @@ static void frame_publish(spar_member *m) {
     .balance = frame_balance, .answer = frame_answer, .accept = frame_accept, .effort = frame_effort,                  \
     .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole,            \
     .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape,                \
-    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
-    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
+    .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,      \
+    .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of,                       \
+    .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};

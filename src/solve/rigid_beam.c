@@ -8,6 +8,7 @@
 #include "eigen.h"
 #include "fidelity.h"
 #include "limb.h"
+#include "pencil.h"
 #include "reaction.h"
 #include "turn.h"
 
@@ -283,6 +284,38 @@ static int rigid_problem(const spar_member *m, double *K, double *M) {
     return SPAR_OK;
 }
 
+static int rigid_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    const spari_rigid_beam *b = m->solution;
+    double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], K[36], C[36], M[36], r[6];
+    spari_arms arms = {0};
+    spari_turn turn;
+    if (!load) {
+        return SPAR_ERR_MEMORY;
+    }
+    int status = spar_member_get_loads(m, load), held = spari_member_held(m);
+    sum_on_root(m, load, sum, arms.Z);
+    free(load);
+    SPARI_TRY(status);
+    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn) || spari_norm(w) > 0;
+    for (int k = 0; k < 3; k++) {
+        v[k] = turn.v0[k], v[3 + k] = turn.w[k];
+        a[k] = turn.a0[k], a[3 + k] = 0;
+    }
+    memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
+    spari_turn_pencil(b->body, w, turn.w, 0, m->after.q, turning ? v : NULL, turning ? a : NULL, K, C, M);
+    spari_arms_tangent(&arms, m->after.q + 3, K);
+    spari_pencil_add(to, -held, 6, 6, K, C, M);
+    to->scale =
+        fmax(to->scale, spari_body_residual(b->body, m->after.q, turning ? v : NULL, turning ? a : NULL, 1, r, NULL));
+    spari_arms_residual(&arms, m->after.q + 3, r + 3);
+    for (int k = 0; k < 6; k++) {
+        r[k] -= sum[k];
+        to->scale = fmax(to->scale, fabs(sum[k]));
+    }
+    spari_pencil_leave(to, -held, 6, r);
+    return SPAR_OK;
+}
+
 static void rigid_shape(const spar_member *m, const double *x, double *room, double *nodes) {
     memset(room, 0, 6 * sizeof *room);
     memcpy(room + spari_member_held(m), x, (size_t)rigid_unknowns(m) * sizeof *room);
@@ -334,6 +367,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .unknowns = rigid_unknowns,
     .problem = rigid_problem,
     .shape = rigid_shape,
+    .linearise = rigid_linearise,
     .limb = &spari_limb_nodes,
     .solver = solver_of,
     .take_loads = rigid_take_loads,

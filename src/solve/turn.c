@@ -76,3 +76,45 @@ void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e,
         }
     }
 }
+
+/* to [n][n] += X T, X [n][n], T the same 3 x 3 block for each vector of a node's that begins at `from` */
+static void add_by_blocks(int n, const double *X, int from, double T[3][3], double *to) {
+    for (int i = 0; i < n; i++) {
+        for (int l = from; l < n; l += 6) {
+            const double *x = X + (int64_t)i * n + l;
+            double *y = to + (int64_t)i * n + l;
+            for (int j = 0; j < 3; j++) {
+                y[j] += x[0] * T[0][j] + x[1] * T[1][j] + x[2] * T[2][j];
+            }
+        }
+    }
+}
+
+void spari_turn_pencil(const spari_body *body, const double w[3], const double own[3], int e, const double *q,
+                       const double *v, const double *a, double *K, double *C, double *M) {
+    int n = 6 * body->per_element;
+    spari_body_tangent(body, e, q, v, a, 1, 0, 0, NULL, K);
+    spari_body_rates(body, e, q, v, a, 1, K, C, M);
+    if (!v || body->linear[0]) {
+        return;
+    }
+    /* dv = x' + w x and x' - s x, da = x'' + 2 w x' + w w x and x'' + (w - s) x' - w s x, of places and turns */
+    double W[3][3], S[3][3], WW[3][3], WS[3][3], two[3][3], less[3][3], back[3][3];
+    double s[3] = {own[0] - w[0], own[1] - w[1], own[2] - w[2]};
+    spari_skew(w, *W);
+    spari_skew(s, *S);
+    for (int i = 0; i < 9; i++) {
+        int r = i / 3, c = i % 3;
+        WW[r][c] = W[r][0] * W[0][c] + W[r][1] * W[1][c] + W[r][2] * W[2][c];
+        WS[r][c] = -(W[r][0] * S[0][c] + W[r][1] * S[1][c] + W[r][2] * S[2][c]);
+        two[r][c] = 2 * W[r][c];
+        less[r][c] = W[r][c] - S[r][c];
+        back[r][c] = -S[r][c];
+    }
+    add_by_blocks(n, C, 0, W, K);
+    add_by_blocks(n, C, 3, back, K);
+    add_by_blocks(n, M, 0, WW, K);
+    add_by_blocks(n, M, 3, WS, K);
+    add_by_blocks(n, M, 0, two, C);
+    add_by_blocks(n, M, 3, less, C);
+}

@@ -29,4 +29,11 @@ double spari_turn_residual(const spari_body *damped, const double *q, const doub
 void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e, const double *q, const double *v,
                         const double *a, double factor, double *S, double *M);
 
+/* The equations of small motions of element e, M x'' + C x' + K x [6P][6P] each, seen from a frame that turns with w
+   while the member itself turns with `own`: x are displacements, and small turns beyond the turning of the member, in
+   the axes of the frame as they stand. Of a section that turns otherwise than the frame, with s = own - w, the turn x
+   has the rate x' + x cross s beyond own. q, v, a: as it turns; v, a NULL: it rests, as the frame does. */
+void spari_turn_pencil(const spari_body *body, const double w[3], const double own[3], int e, const double *q,
+                       const double *v, const double *a, double *K, double *C, double *M);
+
 #endif

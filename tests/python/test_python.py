@@ -77,6 +77,17 @@ class Values(unittest.TestCase):
             self.assertAlmostEqual(frequency[0], expected, delta=0.01 * expected)
             self.assertEqual(shapes.shape, (3, 6, 6))
 
+    def test_eigenvalues(self):
+        """The same beam's growth rates and angular frequencies: nothing grows, and the frequencies are those of its modes."""
+        with spar.Session() as s:
+            beam = cantilever(s, stiffness=1e3, length=20.0)
+            frequency, _ = beam.solve_modes(3)
+            eigenvalue, shapes, frame = beam.solve_eigenvalues(3)
+            self.assertLess(abs(eigenvalue[:, 0]).max(), 1e-9)
+            self.assertLess(abs(eigenvalue[:, 1] - 2 * numpy.pi * frequency).max(), 1e-6 * frequency[2])
+            self.assertEqual(shapes.shape, (3, 6, 6, 2))
+            self.assertEqual(frame.tolist(), [0, 0, 0])
+
     def test_coupled(self):
         """A spring that is the fluid: x'' = -(k / m) x from x = 0, v = 1; order 2, so sin(w t) / w to 2e-5 at this dt."""
         with spar.Session() as s:

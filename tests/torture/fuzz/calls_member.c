@@ -439,6 +439,14 @@ void do_spar_member_solve_modes(call *c) {
     RUN(c, spar_member_solve_modes(m->m, n, frequency, shapes));
 }
 
+void do_spar_member_solve_eigenvalues(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t nodes = nodes_of(m), n = arg_count(c, 0, 8), room = length(n);
+    double *shift = arg_reals_or_null(c, 2, -30, 100), *eigenvalue = OUT(c, 2 * room),
+           *shapes = OUT_OR_NULL(c, room * nodes * 12), *frame = OUT_OR_NULL(c, 3);
+    RUN(c, spar_member_solve_eigenvalues(m->m, n, shift, eigenvalue, shapes, frame));
+}
+
 void do_spar_member_get_advice(call *c) {
     live_member *m = arg_member(c, -1);
     int *fidelity = arg_out(c, sizeof(int), 1), *nodes = arg_out(c, sizeof(int), 1),

@@ -578,6 +578,9 @@ static void act_static(void) {
         note_member(b);
         CALL(spar_member_solve_modes, b, 4, frequency, shapes);
         NOTE(frequency);
+        double eigenvalue[3][2], frame[3], shift[2] = {0, 2};
+        CALL(spar_member_solve_eigenvalues, b, 3, shift, &eigenvalue[0][0], NULL, frame);
+        NOTE(eigenvalue);
     }
     end_session(&s);
 }

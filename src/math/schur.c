@@ -1,0 +1,184 @@
+/* Householder's reduction to Hessenberg's form, then QR with Wilkinson's shifts by rotations of two rows: Golub and Van
+   Loan, Matrix Computations, chapter 7. */
+#include "schur.h"
+
+#include <float.h>
+#include <math.h>
+
+/* A rotation of two rows: (c, s; -conj(s), c) (a, b)^T = (r, 0)^T. */
+typedef struct schur_turn {
+    double c;
+    double complex s;
+} schur_turn;
+
+static schur_turn turn_onto(double complex a, double complex b) {
+    double big = hypot(cabs(a), cabs(b));
+    if (!(cabs(b) > 0)) {
+        return (schur_turn){1, 0};
+    }
+    if (!(cabs(a) > 0)) {
+        return (schur_turn){0, conj(b) / cabs(b)};
+    }
+    double complex phase = a / cabs(a);
+    return (schur_turn){cabs(a) / big, phase * conj(b) / big};
+}
+
+/* Rows i and i + 1, columns [from, n) */
+static void schur_rows(int n, double complex *A, int i, int from, schur_turn g) {
+    double complex *x = A + (long)n * i, *y = x + n;
+    for (int k = from; k < n; k++) {
+        double complex a = x[k], b = y[k];
+        x[k] = g.c * a + g.s * b;
+        y[k] = g.c * b - conj(g.s) * a;
+    }
+}
+
+/* Columns i and i + 1, rows [0, to), by the conjugate transpose */
+static void schur_columns(int n, double complex *A, int i, int to, schur_turn g) {
+    for (int k = 0; k < to; k++) {
+        double complex *x = A + (long)n * k + i, a = x[0], b = x[1];
+        x[0] = g.c * a + conj(g.s) * b;
+        x[1] = g.c * b - g.s * a;
+    }
+}
+
+/* A := (I - 2 v v^H) A (I - 2 v v^H), Q := Q (I - 2 v v^H), v of the rows from `first` on */
+static void reflect(int n, double complex *A, double complex *Q, const double complex *v, int first) {
+    for (int j = 0; j < n; j++) {
+        double complex sum = 0;
+        for (int i = first; i < n; i++) {
+            sum += conj(v[i]) * A[(long)n * i + j];
+        }
+        for (int i = first; i < n; i++) {
+            A[(long)n * i + j] -= 2 * sum * v[i];
+        }
+    }
+    for (int side = 0; side < 2; side++) {
+        double complex *B = side ? Q : A;
+        for (int i = 0; i < n; i++) {
+            double complex sum = 0;
+            for (int j = first; j < n; j++) {
+                sum += B[(long)n * i + j] * v[j];
+            }
+            for (int j = first; j < n; j++) {
+                B[(long)n * i + j] -= 2 * sum * conj(v[j]);
+            }
+        }
+    }
+}
+
+/* To Hessenberg's form; v [n] room. */
+static void to_hessenberg(int n, double complex *A, double complex *Q, double complex *v) {
+    for (int i = 0; i < n * n; i++) {
+        Q[i] = i % (n + 1) == 0;
+    }
+    for (int k = 0; k + 2 < n; k++) {
+        double size = 0, rest = 0;
+        for (int i = k + 1; i < n; i++) {
+            v[i] = A[(long)n * i + k];
+            size = hypot(size, cabs(v[i]));
+            rest = i > k + 1 ? hypot(rest, cabs(v[i])) : 0;
+        }
+        if (!(rest > 0)) {
+            continue;
+        }
+        double complex first = v[k + 1], phase = cabs(first) > 0 ? first / cabs(first) : 1;
+        v[k + 1] += phase * size;
+        double norm = hypot(rest, cabs(v[k + 1]));
+        for (int i = k + 1; i < n; i++) {
+            v[i] /= norm;
+        }
+        reflect(n, A, Q, v, k + 1);
+        for (int i = k + 2; i < n; i++) {
+            A[(long)n * i + k] = 0;
+        }
+    }
+}
+
+/* The eigenvalue of the last 2 x 2 block [.., end] nearest to its last entry; now and then another shift. */
+static double complex shift_of(int n, const double complex *A, int end, int pass) {
+    const double complex *p = A + (long)n * (end - 1) + end - 1, *q = p + n;
+    if (pass % 10 == 9) {
+        return q[1] + cabs(q[0]);
+    }
+    double complex half = 0.5 * (p[0] - q[1]), root = csqrt(half * half + p[1] * q[0]);
+    double complex near = cabs(half + root) > cabs(half - root) ? half + root : half - root;
+    return cabs(near) > 0 ? q[1] - p[1] * q[0] / near : q[1];
+}
+
+/* One sweep over the rows [begin, end]. */
+static void sweep(int n, double complex *A, double complex *Q, int begin, int end, double complex shift) {
+    double complex a = A[(long)n * begin + begin] - shift, b = A[(long)n * (begin + 1) + begin];
+    for (int i = begin; i < end; i++) {
+        schur_turn g = turn_onto(a, b);
+        schur_rows(n, A, i, i > begin ? i - 1 : begin, g);
+        schur_columns(n, A, i, i + 3 < end + 1 ? i + 3 : end + 1, g);
+        schur_columns(n, Q, i, n, g);
+        if (i + 1 < end) {
+            a = A[(long)n * (i + 1) + i];
+            b = A[(long)n * (i + 2) + i];
+        }
+        if (i > begin) {
+            A[(long)n * (i + 1) + i - 1] = 0;
+        }
+    }
+}
+
+int spari_schur(int n, double complex *S, double complex *Q, double complex *room) {
+    enum { PASSES = 60 };
+    double scale = 0;
+    for (int i = 0; i < n * n; i++) {
+        scale += cabs(S[i]);
+    }
+    if (!isfinite(scale)) {
+        return 1;
+    }
+    to_hessenberg(n, S, Q, room);
+    for (int end = n - 1, pass = 0; end > 0;) {
+        int begin = end;
+        for (; begin > 0; begin--) {
+            double complex *p = S + (long)n * begin + begin - 1;
+            double near = cabs(p[0 - n]) + cabs(p[1]);
+            if (cabs(*p) <= DBL_EPSILON * (near > 0 ? near : scale)) {
+                *p = 0;
+                break;
+            }
+        }
+        if (begin == end) {
+            end--;
+            pass = 0;
+        } else if (pass++ > PASSES) {
+            return 1;
+        } else {
+            sweep(n, S, Q, begin, end, shift_of(n, S, end, pass));
+        }
+    }
+    return 0;
+}
+
+void spari_schur_swap(int n, double complex *S, double complex *Q, int k) {
+    double complex *p = S + (long)n * k + k, first = p[0], second = p[n + 1];
+    schur_turn g = turn_onto(p[1], second - first);
+    schur_rows(n, S, k, k, g);
+    schur_columns(n, S, k, k + 2, g);
+    schur_columns(n, Q, k, n, g);
+    p[0] = second, p[n + 1] = first, p[n] = 0;
+}
+
+void spari_schur_vector(int n, const double complex *S, int k, double complex *x) {
+    double scale = 0;
+    for (int i = 0; i <= k; i++) {
+        scale = fmax(scale, cabs(S[(long)n * i + i]));
+    }
+    double least = DBL_EPSILON * (scale > 0 ? scale : 1);
+    for (int i = 0; i < n; i++) {
+        x[i] = i == k;
+    }
+    for (int i = k - 1; i >= 0; i--) {
+        double complex sum = 0, apart = S[(long)n * i + i] - S[(long)n * k + k];
+        for (int j = i + 1; j <= k; j++) {
+            sum += S[(long)n * i + j] * x[j];
+        }
+        x[i] = -sum / (cabs(apart) > least ? apart : least);
+    }
+}

@@ -1,0 +1,80 @@
+/* The entries of the equations of small motions. */
+#include "pencil.h"
+
+#include "../base/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int spari_pencil_create(spari_pencil *p, int unknowns) {
+    *p = (spari_pencil){.n = unknowns};
+    p->left = spari_zalloc(unknowns, sizeof *p->left);
+    return p->left ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+void spari_pencil_free(spari_pencil *p) {
+    free(p->entry);
+    free(p->tie);
+    free(p->left);
+    *p = (spari_pencil){0};
+}
+
+/* Room for one more of `size` bytes behind `count`; NULL: no memory. */
+static void *room_for_entry(void *array, int64_t count, int64_t *room, size_t size) {
+    if (count < *room) {
+        return array;
+    }
+    int64_t more = *room > 0 ? 2 * *room : 1024;
+    void *grown = realloc(array, (size_t)more * size);
+    *room = grown ? more : *room;
+    return grown;
+}
+
+void spari_pencil_put(spari_pencil *p, spari_pencil_entry entry) {
+    if (entry.k == 0 && entry.c == 0 && entry.m == 0) {
+        return;
+    }
+    spari_pencil_entry *grown = room_for_entry(p->entry, p->entries, &p->entry_room, sizeof *grown);
+    p->full = p->full || !grown;
+    if (grown) {
+        p->entry = grown;
+        p->entry[p->entries++] = entry;
+    }
+}
+
+void spari_pencil_hold_at(spari_pencil *p, spari_pencil_hold hold) {
+    if (hold.g == 0) {
+        return;
+    }
+    spari_pencil_hold *grown = room_for_entry(p->tie, p->ties, &p->tie_room, sizeof *grown);
+    p->full = p->full || !grown;
+    if (grown) {
+        p->tie = grown;
+        p->tie[p->ties++] = hold;
+    }
+}
+
+void spari_pencil_add(spari_pencil *p, int at, int n, int64_t apart, const double *K, const double *C,
+                      const double *M) {
+    for (int i = at < 0 ? -at : 0; i < n; i++) {
+        for (int j = at < 0 ? -at : 0; j < n; j++) {
+            int64_t k = apart * i + j;
+            spari_pencil_entry e = {p->base + at + i, p->base + at + j, K ? K[k] : 0, C ? C[k] : 0, M ? M[k] : 0};
+            spari_pencil_put(p, e);
+        }
+    }
+}
+
+void spari_pencil_leave(spari_pencil *p, int at, int n, const double *r) {
+    for (int i = at < 0 ? -at : 0; i < n; i++) {
+        p->left[p->base + at + i] += r[i];
+    }
+}
+
+void spari_pencil_times(const spari_pencil *p, int64_t first, double a, double b, double c, const double *x,
+                        double *y) {
+    for (int64_t i = first; i < p->entries; i++) {
+        const spari_pencil_entry *e = p->entry + i;
+        y[e->row] += (a * e->k + b * e->c + c * e->m) * x[e->column];
+    }
+}

@@ -1,0 +1,512 @@
+/* Eigenvalues of the equations of small motions nearest to a shift sigma. With y = lambda x the quadratic problem is
+   lambda (x, y) = (y, -M^-1 (K x + C y)); its inverse about the shift, mu = 1 / (lambda - sigma),
+
+     T (p, q) = (x, p + sigma x),  x = -P(sigma)^-1 (M (q + sigma p) + C p),  P = K + sigma C + sigma^2 M
+
+   asks for no inverse of M: what has no mass has eigenvalues beyond all numbers, mu = 0. Where motions are held,
+   P(sigma) is bordered by G and its transpose, and T takes of its argument only what G allows: what it does not comes
+   out as mu = 0 too. Small problems: T with a real shift as a matrix, GSL's unsymmetric solver; large ones: Arnoldi's
+   subspaces, restarted with Schur vectors (Stewart 2001). */
+#include "../base/blas.h"
+#include "../base/status.h"
+#include "../math/band.h"
+#include "../math/schur.h"
+#include "arnoldi.h"
+#include "pencil.h"
+
+#include <float.h>
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A row of G is dependent when so little of it is left: as in redundant.c. */
+static const double dependent_hold = 1e-9;
+/* T z = mu z is kept to this; what is left is larger where rounding drowns an eigenvalue. */
+static const double spectrum_residual = 1e-6;
+/* |mu| of what has no mass, relative to the largest. */
+static const double massless = 1e-9;
+/* P x is nothing but rounding below so much of its terms: a motion without stiffness. The shift goes so many times the
+   root of that rounding beside it, and what is found within so many of those is such a motion. */
+static const double only_rounding = 4e-15, beside = 1e4, without_stiffness = 30;
+/* So many unknowns and fewer are solved as a matrix. */
+enum { MOST_DENSE = 90 };
+
+typedef struct spectrum {
+    spari_pencil *p;
+    int n, all;            /* unknowns; with the multipliers */
+    double *d;             /* [n] what unknowns have been multiplied by */
+    double highest;        /* of K_ii / M_ii, its root, rad/s */
+    int rank;              /* holds that are independent: */
+    int *multiplier;       /* [holds] their number, or -1 */
+    double *Q;             /* [rank][n] orthonormal rows: the motions that they take away */
+    spari_pencil_hold *at; /* [entries + 2 ties]: where entries of the bordered matrix stand */
+    spari_band *band;
+    double complex sigma;
+    double s;             /* x counts by it beside y = lambda x */
+    double complex *room; /* [all + 2 n] */
+    double rounding;      /* of lambda where the shift asked for met a singular matrix; else 0 */
+} spectrum;
+
+static void spectrum_free(spectrum *a) {
+    free(a->d);
+    free(a->multiplier);
+    free(a->Q);
+    free(a->at);
+    free(a->room);
+    spari_band_free(a->band);
+}
+
+/* ---- scales ---- */
+
+/* Unknowns are multiplied by roots of their masses, so that sums of squares are energies whatever the units; of what
+   has no mass that of the highest frequency. */
+static void scale_pencil(spectrum *a) {
+    spari_pencil *p = a->p;
+    double *k = a->d, *m = (double *)a->room;
+    memset(m, 0, (size_t)a->n * sizeof *m);
+    for (int64_t i = 0; i < p->entries; i++) {
+        const spari_pencil_entry *e = p->entry + i;
+        k[e->row] += e->row == e->column ? e->k : 0;
+        m[e->row] += e->row == e->column ? e->m : 0;
+    }
+    double most = 0;
+    for (int i = 0; i < a->n; i++) {
+        most = m[i] > 0 ? fmax(most, fabs(k[i]) / m[i]) : most;
+    }
+    a->highest = most > 0 ? sqrt(most) : 1;
+    for (int i = 0; i < a->n; i++) {
+        double other = fabs(k[i]) / (a->highest * a->highest);
+        a->d[i] = m[i] > 0 ? sqrt(m[i]) : other > 0 ? sqrt(other) : 1;
+    }
+    for (int64_t i = 0; i < p->entries; i++) {
+        spari_pencil_entry *e = p->entry + i;
+        double f = 1 / (a->d[e->row] * a->d[e->column]);
+        e->k *= f, e->c *= f, e->m *= f;
+    }
+    for (int64_t i = 0; i < p->ties; i++) {
+        p->tie[i].g /= a->d[p->tie[i].column];
+    }
+}
+
+/* ---- holds ---- */
+
+/* G^T = Q R with pivoted columns: which rows of G are independent, and what they span. */
+static int find_holds(spectrum *a) {
+    spari_pencil *p = a->p;
+    size_t n = (size_t)a->n, h = (size_t)p->holds;
+    if (h == 0) {
+        return SPAR_OK;
+    }
+    gsl_matrix *G = gsl_matrix_calloc(n, h);
+    gsl_vector *tau = gsl_vector_alloc(n < h ? n : h), *norm = gsl_vector_alloc(h), *unit = gsl_vector_alloc(n);
+    gsl_permutation *order = gsl_permutation_alloc(h);
+    int status = G && tau && norm && unit && order ? SPAR_OK : SPAR_ERR_MEMORY, sign;
+    if (status == SPAR_OK) {
+        for (int64_t i = 0; i < p->ties; i++) {
+            *gsl_matrix_ptr(G, (size_t)p->tie[i].column, (size_t)p->tie[i].row) += p->tie[i].g;
+        }
+        for (size_t c = 0; c < h; c++) {
+            gsl_vector_view column = gsl_matrix_column(G, c);
+            double size = gsl_blas_dnrm2(&column.vector);
+            gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
+        }
+        SPARI_BLAS(gsl_linalg_QRPT_decomp(G, tau, order, &sign, norm));
+        while ((size_t)a->rank < tau->size &&
+               fabs(gsl_matrix_get(G, (size_t)a->rank, (size_t)a->rank)) > dependent_hold) {
+            a->multiplier[gsl_permutation_get(order, (size_t)a->rank)] = a->rank;
+            a->rank++;
+        }
+        a->Q = spari_zalloc((int64_t)a->rank * a->n, sizeof *a->Q);
+        status = a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
+    }
+    for (int k = 0; k < a->rank && status == SPAR_OK; k++) {
+        gsl_vector_set_basis(unit, (size_t)k);
+        SPARI_BLAS(gsl_linalg_QR_Qvec(G, tau, unit));
+        memcpy(a->Q + (int64_t)k * a->n, unit->data, n * sizeof *a->Q);
+    }
+    gsl_matrix_free(G);
+    gsl_vector_free(tau);
+    gsl_vector_free(norm);
+    gsl_vector_free(unit);
+    gsl_permutation_free(order);
+    return status;
+}
+
+/* x := what the holds allow of it, twice for rounding's sake. */
+static void allow(const spectrum *a, double complex *x) {
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < a->rank; k++) {
+            const double *q = a->Q + (int64_t)k * a->n;
+            double re = 0, im = 0;
+            for (int i = 0; i < a->n; i++) {
+                re += q[i] * creal(x[i]);
+                im += q[i] * cimag(x[i]);
+            }
+            for (int i = 0; i < a->n; i++) {
+                x[i] -= q[i] * CMPLX(re, im);
+            }
+        }
+    }
+}
+
+/* ---- the operator ---- */
+
+static int make_band(spectrum *a) {
+    spari_pencil *p = a->p;
+    int64_t count = 0;
+    a->all = a->n + a->rank;
+    for (int64_t i = 0; i < p->entries; i++) {
+        a->at[count++] = (spari_pencil_hold){p->entry[i].row, p->entry[i].column, 0};
+    }
+    for (int64_t i = 0; i < p->ties; i++) {
+        int k = a->multiplier[p->tie[i].row];
+        if (k >= 0) {
+            a->at[count++] = (spari_pencil_hold){a->n + k, p->tie[i].column, 0};
+        }
+    }
+    for (int i = 0; i < a->all; i++) {
+        a->at[count++] = (spari_pencil_hold){i, i, 0};
+    }
+    a->band = spari_band_create(a->all, count, &a->at[0].row, &a->at[0].column, sizeof *a->at);
+    return a->band ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* The bordered P(sigma), factored; 0 or 1. */
+static int factor_at(spectrum *a, double complex sigma) {
+    const spari_pencil *p = a->p;
+    double size = 0;
+    a->sigma = sigma;
+    spari_band_zero(a->band);
+    for (int64_t i = 0; i < p->entries; i++) {
+        const spari_pencil_entry *e = p->entry + i;
+        double complex x = e->k + sigma * (e->c + sigma * e->m);
+        size = fmax(size, cabs(x));
+        spari_band_add(a->band, e->row, e->column, x);
+    }
+    for (int64_t i = 0; i < p->ties; i++) {
+        int k = a->multiplier[p->tie[i].row];
+        if (k >= 0) {
+            spari_band_add(a->band, a->n + k, p->tie[i].column, size * p->tie[i].g);
+            spari_band_add(a->band, p->tie[i].column, a->n + k, size * p->tie[i].g);
+        }
+    }
+    return spari_band_factor(a->band);
+}
+
+/* x [all] := P^-1 of what the first n hold */
+static void solve_at(const spectrum *a, double complex *x) {
+    memset(x + a->n, 0, (size_t)a->rank * sizeof *x);
+    spari_band_solve(a->band, x);
+}
+
+/* out [2 n] := T in; x counts by s. */
+static void apply_inverse(void *self, const double complex *in, double complex *out) {
+    const spectrum *a = self;
+    const spari_pencil *p = a->p;
+    double complex *x = a->room, *first = x + a->all, *second = first + a->n;
+    for (int i = 0; i < a->n; i++) {
+        first[i] = in[i] / a->s;
+        second[i] = in[a->n + i];
+        x[i] = 0;
+    }
+    allow(a, first);
+    allow(a, second);
+    for (int64_t i = 0; i < p->entries; i++) {
+        const spari_pencil_entry *e = p->entry + i;
+        double complex f = first[e->column];
+        x[e->row] -= e->m * (second[e->column] + a->sigma * f) + e->c * f;
+    }
+    solve_at(a, x);
+    for (int i = 0; i < a->n; i++) {
+        out[i] = a->s * x[i];
+        out[a->n + i] = first[i] + a->sigma * x[i];
+    }
+}
+
+static double size_of(int n, const double complex *x) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum = hypot(sum, cabs(x[i]));
+    }
+    return sum;
+}
+
+/* How far the nearest eigenvalue is from the shift, about: by a few steps of x := P^-1 M x. */
+static double near_shift(spectrum *a) {
+    enum { STEPS = 4 };
+    const spari_pencil *p = a->p;
+    double complex *x = a->room, *y = x + a->all;
+    double square = 0;
+    for (int i = 0; i < a->n; i++) {
+        y[i] = 1 + 0.3 * sin(12.9898 * (i + 1));
+    }
+    allow(a, y);
+    for (int step = 0; step < STEPS; step++) {
+        double before = size_of(a->n, y);
+        memset(x, 0, (size_t)a->n * sizeof *x);
+        for (int64_t i = 0; i < p->entries; i++) {
+            x[p->entry[i].row] += p->entry[i].m * y[p->entry[i].column];
+        }
+        solve_at(a, x);
+        double after = size_of(a->n, x);
+        square = after > 0 ? before / after : 0;
+        for (int i = 0; i < a->n && after > 0; i++) {
+            y[i] = x[i] / after;
+        }
+        if (!(after > 0) || !isfinite(after)) {
+            return 0;
+        }
+    }
+    return sqrt(square);
+}
+
+/* Of the vector that near_shift leaves: what rounding in P(shift) makes of lambda; *only: whether P of it is nothing
+   else. */
+static double rounding_at(spectrum *a, double complex shift, int *only) {
+    const spari_pencil *p = a->p;
+    double complex *x = a->room, *y = x + a->all;
+    double *sum = (double *)(y + a->n), most = 0;
+    memset(x, 0, (size_t)a->n * sizeof *x);
+    memset(sum, 0, (size_t)a->n * sizeof *sum);
+    for (int64_t i = 0; i < p->entries; i++) {
+        const spari_pencil_entry *e = p->entry + i;
+        double complex f = e->k + shift * (e->c + shift * e->m);
+        x[e->row] += f * y[e->column];
+        sum[e->row] += cabs(f * y[e->column]);
+    }
+    allow(a, x);
+    for (int i = 0; i < a->n; i++) {
+        most = hypot(most, sum[i]);
+    }
+    double size = size_of(a->n, y);
+    *only = size_of(a->n, x) <= only_rounding * most;
+    return size > 0 ? sqrt(DBL_EPSILON * most / size) : 0;
+}
+
+/* Factors at sigma; 0 or 1. */
+static int stand_at(spectrum *a, double complex sigma) {
+    double near = factor_at(a, sigma) ? 0 : near_shift(a);
+    a->s = fmax(near, cabs(sigma));
+    return !(near > 0) || !isfinite(a->s);
+}
+
+/* Factors at the shift, or beside it where the matrix is singular there: an eigenvalue has been met, and at zero there
+   are motions without stiffness. */
+static int begin_at(spectrum *a, double complex shift) {
+    double some = 1e-3 * sqrt(DBL_EPSILON) * a->highest;
+    int only = 0, bad = stand_at(a, shift);
+    if (!bad) {
+        (void)rounding_at(a, shift, &only);
+    }
+    a->rounding = 0;
+    if (!bad && !only) {
+        return 0;
+    }
+    if (cabs(shift) > 0) {
+        return stand_at(a, shift * (1 + 1e-3)) && stand_at(a, shift * (1 - 1e-3) + 1e-3 * cabs(shift));
+    }
+    if (bad && stand_at(a, some)) {
+        return 1;
+    }
+    a->rounding = fmax(rounding_at(a, 0, &only), DBL_EPSILON * a->highest);
+    return stand_at(a, beside * a->rounding);
+}
+
+/* ---- as a matrix ---- */
+
+/* What has been found of T: mu, and z [2 n] in rows. */
+typedef struct inverse_pairs {
+    int count;
+    double complex *mu, *z;
+} inverse_pairs;
+
+/* GSL's unsymmetric solver never ends where an entry is no number. */
+static int solve_dense(spectrum *a, inverse_pairs *found) {
+    size_t n = 2 * (size_t)a->n;
+    gsl_matrix *T = gsl_matrix_alloc(n, n);
+    gsl_vector_complex *mu = gsl_vector_complex_alloc(n);
+    gsl_matrix_complex *z = gsl_matrix_complex_alloc(n, n);
+    gsl_eigen_nonsymmv_workspace *w = gsl_eigen_nonsymmv_alloc(n);
+    double complex *unit = spari_zalloc(2 * (int64_t)n, sizeof *unit), *image = unit + n;
+    int status = T && mu && z && w && unit ? SPAR_OK : SPAR_ERR_MEMORY;
+    for (size_t j = 0; j < n && status == SPAR_OK; j++) {
+        unit[j] = 1;
+        apply_inverse(a, unit, image);
+        unit[j] = 0;
+        for (size_t i = 0; i < n; i++) {
+            gsl_matrix_set(T, i, j, creal(image[i]));
+            status = isfinite(creal(image[i])) ? status : SPAR_ERR_NUMERIC;
+        }
+    }
+    if (status == SPAR_OK) {
+        int failed;
+        gsl_eigen_nonsymmv_params(1, w);
+        SPARI_BLAS(failed = gsl_eigen_nonsymmv(T, mu, z, w));
+        status = failed ? SPAR_ERR_NUMERIC : SPAR_OK;
+    }
+    for (size_t j = 0; j < n && status == SPAR_OK; j++) {
+        found->mu[j] = CMPLX(mu->data[2 * mu->stride * j], mu->data[2 * mu->stride * j + 1]);
+        for (size_t i = 0; i < n; i++) {
+            const double *at = z->data + 2 * (i * z->tda + j);
+            found->z[n * j + i] = CMPLX(at[0], at[1]);
+        }
+    }
+    found->count = status == SPAR_OK ? (int)n : 0;
+    free(unit);
+    gsl_matrix_free(T);
+    gsl_vector_complex_free(mu);
+    gsl_matrix_complex_free(z);
+    gsl_eigen_nonsymmv_free(w);
+    return status;
+}
+
+/* ---- what is handed out ---- */
+
+typedef struct spectrum_choice {
+    double complex lambda;
+    double apart; /* from the shift */
+    int from;
+} spectrum_choice;
+
+static int by_distance(const void *a, const void *b) {
+    const spectrum_choice *x = a, *y = b;
+    if (x->apart != y->apart) {
+        return x->apart < y->apart ? -1 : 1;
+    }
+    return (cimag(x->lambda) < cimag(y->lambda)) - (cimag(x->lambda) > cimag(y->lambda));
+}
+
+/* T z = mu z, taken anew: an eigenvalue that rounding has made fails. */
+static int is_pair(spectrum *a, double complex mu, const double complex *z, double complex *image) {
+    double left = 0, size = 0;
+    apply_inverse(a, z, image);
+    for (int i = 0; i < 2 * a->n; i++) {
+        left = hypot(left, cabs(image[i] - mu * z[i]));
+        size = hypot(size, cabs(z[i]));
+    }
+    return left <= spectrum_residual * cabs(mu) * size && size > 0;
+}
+
+/* Half of the eigenvalues: of a conjugate pair the upper one. Motions without stiffness have zero twice, which rounding
+   tears apart: they count once. */
+static int choose_pairs(spectrum *a, const inverse_pairs *found, double complex shift, spectrum_choice *choice,
+                        double complex *image) {
+    double most = 0;
+    int count = 0, still = 0;
+    for (int i = 0; i < found->count; i++) {
+        most = fmax(most, cabs(found->mu[i]));
+    }
+    for (int i = 0; i < found->count; i++) {
+        double complex mu = found->mu[i];
+        if (!(cabs(mu) > massless * most) || !is_pair(a, mu, found->z + 2 * (int64_t)a->n * i, image)) {
+            continue;
+        }
+        double complex lambda = a->sigma + 1 / mu;
+        if (fabs(cimag(lambda)) <= 1e-9 * cabs(lambda)) {
+            lambda = creal(lambda);
+        }
+        int stands = a->rounding > 0 && cabs(lambda) <= without_stiffness * a->rounding;
+        lambda = stands ? 0 : lambda;
+        if (cimag(lambda) >= 0 && (!stands || still++ % 2 == 0)) {
+            choice[count++] = (spectrum_choice){lambda, cabs(lambda - shift), i};
+        }
+    }
+    qsort(choice, (size_t)count, sizeof *choice, by_distance);
+    return count;
+}
+
+/* The vector x of a pair, in the units of the unknowns: of unit x^H M x, its largest entry (as it counts there) real.
+ */
+static void give_vector(const spectrum *a, const double complex *z, double complex *x) {
+    const spari_pencil *p = a->p;
+    double complex square = 0, phase = 1;
+    double most = 0;
+    for (int64_t i = 0; i < p->entries; i++) {
+        square += conj(z[p->entry[i].row]) * p->entry[i].m * z[p->entry[i].column];
+    }
+    for (int i = 0; i < a->n; i++) {
+        if (cabs(z[i]) > most * (1 + 1e-6)) {
+            most = cabs(z[i]);
+            phase = conj(z[i]) / most;
+        }
+    }
+    double f = creal(square) > 0 ? 1 / sqrt(creal(square)) : most > 0 ? 1 / most : 1;
+    for (int i = 0; i < a->n; i++) {
+        x[i] = f * phase * z[i] / a->d[i];
+    }
+}
+
+static int solve_about(spectrum *a, int n, int how, inverse_pairs *found) {
+    if (how == SPARI_SPECTRUM_DENSE) {
+        return solve_dense(a, found);
+    }
+    const spari_arnoldi_problem of = {apply_inverse, a, 2 * a->n, 2 * (a->n - a->rank)};
+    return spari_arnoldi(&of, 2 * n + 2, &found->count, found->mu, found->z);
+}
+
+/* Beside motions without stiffness: near them these are so large in T that others lose digits, so that a second pass
+   goes from nearer to the others. */
+static int solve_pairs(spectrum *a, int n, double complex shift, int how, inverse_pairs *found) {
+    double nearest = INFINITY;
+    if (begin_at(a, how == SPARI_SPECTRUM_DENSE ? creal(shift) : shift)) {
+        return SPAR_ERR_NUMERIC;
+    }
+    int status = solve_about(a, n, how, found);
+    for (int i = 0; i < found->count && status == SPAR_OK && a->rounding > 0; i++) {
+        double size = cabs(a->sigma + 1 / found->mu[i]);
+        nearest = size > 1e3 * a->rounding && size < nearest ? size : nearest;
+    }
+    if (status != SPAR_OK || !isfinite(nearest) || 0.3 * nearest <= cabs(a->sigma)) {
+        return status;
+    }
+    return stand_at(a, 0.3 * nearest) ? SPAR_ERR_NUMERIC : solve_about(a, n, how, found);
+}
+
+static int solve_spectrum(spectrum *a, int n, double complex shift, int how, int *count, double complex *value,
+                          double complex *x) {
+    int64_t all = 2 * (int64_t)a->n, most = how == SPARI_SPECTRUM_DENSE || 2 * n + 2 > all ? all : 2 * n + 2;
+    inverse_pairs found = {0, spari_zalloc(most + all, sizeof *found.mu), spari_zalloc(most * all, sizeof *found.z)};
+    spectrum_choice *choice = spari_zalloc(most, sizeof *choice);
+    int status = found.mu && found.z && choice ? solve_pairs(a, n, shift, how, &found) : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        *count = choose_pairs(a, &found, shift, choice, found.mu + most);
+        *count = *count < n ? *count : n;
+    }
+    for (int k = 0; k < *count && status == SPAR_OK; k++) {
+        value[k] = choice[k].lambda;
+        give_vector(a, found.z + all * choice[k].from, x + (int64_t)a->n * k);
+    }
+    free(found.mu);
+    free(found.z);
+    free(choice);
+    return status;
+}
+
+int spari_spectrum(spari_pencil *p, int n, double complex shift, int how, int *found, double complex *value,
+                   double complex *x) {
+    spectrum a = {.p = p, .n = p->n, .d = spari_zalloc(p->n, sizeof *a.d)};
+    *found = 0;
+    if (how == SPARI_SPECTRUM_CHOICE) {
+        int left = 2 * p->n;
+        how = p->n <= MOST_DENSE || 6 * (n + 1) > left ? SPARI_SPECTRUM_DENSE : SPARI_SPECTRUM_SPARSE;
+    }
+    a.multiplier = spari_zalloc(p->holds, sizeof *a.multiplier);
+    a.room = spari_zalloc(3 * (int64_t)p->n + p->holds, sizeof *a.room);
+    a.at = spari_zalloc(p->entries + p->ties + p->n + p->holds, sizeof *a.at);
+    int status = a.d && a.multiplier && a.room && a.at && !p->full ? SPAR_OK : SPAR_ERR_MEMORY;
+    for (int i = 0; i < p->holds && status == SPAR_OK; i++) {
+        a.multiplier[i] = -1;
+    }
+    if (status == SPAR_OK) {
+        scale_pencil(&a);
+        status = find_holds(&a);
+    }
+    status = status == SPAR_OK ? make_band(&a) : status;
+    status = status == SPAR_OK ? solve_spectrum(&a, n, shift, how, found, value, x) : status;
+    spectrum_free(&a);
+    return status;
+}

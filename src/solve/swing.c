@@ -1,0 +1,292 @@
+/* The equations of small motions about the present state, and the call for their eigenvalues. A state that rests, or
+   turns steadily as one, is seen from a frame that turns with it, where the equations have constant coefficients. Parts
+   that turn otherwise than the others (a rotor on its tower) may do so where they are alike all around their axis: then
+   nothing changes with their angle. */
+#include "swing.h"
+
+#include "../base/quiet.h"
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "../member/body.h"
+#include "../member/edge.h"
+#include "assembly.h"
+#include "fidelity.h"
+#include "modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Angular velocities that differ by less, relative to the larger, are one. */
+static const double one_turn = 1e-4;
+/* Of the largest forces there are, how much may be left over in a state that counts as one of equilibrium; and of the
+   largest stiffness: what rounding in the places makes, and more. */
+static const double equilibrium = 1e-3, equilibrium_noise = 1e-9;
+
+void spari_swing_free(spari_swing *w) {
+    free(w->part);
+    free(w->room);
+    spari_pencil_free(&w->pencil);
+}
+
+/* ---- what belongs together ---- */
+
+/* Whether joints lead from a part to m. */
+static int is_reached(const spari_swing *w, const spar_member *m) {
+    for (const spar_joint *j = w->session->joints; j && m->row && m->row->limb; j = j->next) {
+        for (int side = 0; side < 2; side++) {
+            if (j->member[side] == m && spari_swing_part(w, j->member[1 - side])) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static int add_swing_part(spari_swing *w, const spar_member *m) {
+    SPARI_TRY(spari_modes_need_mass(m));
+    swing_part *p = w->part + w->parts++;
+    *p = (swing_part){.member = m, .size = (int)m->row->unknowns(m)};
+    memcpy(p->own, m->after.v + 3, sizeof p->own);
+    return SPAR_OK;
+}
+
+static int by_creation(const void *a, const void *b) {
+    const spar_member *x = ((const swing_part *)a)->member, *y = ((const swing_part *)b)->member;
+    for (const spar_member *m = x->next; m; m = m->next) {
+        if (m == y) {
+            return -1;
+        }
+    }
+    return x != y;
+}
+
+static int gather_swing(spari_swing *w, const spar_member *first) {
+    spar_session *s = w->session;
+    w->part = spari_zalloc(s->member_count, sizeof *w->part);
+    SPARI_REQUIRE(s, w->part, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    if (first) {
+        SPARI_TRY(add_swing_part(w, first));
+    }
+    for (int more = 1; more;) {
+        more = 0;
+        for (const spar_member *m = s->members; m; m = m->next) {
+            int wanted = first ? is_reached(w, m) : m->committed && m->row->solved && m->row->linearise;
+            if (wanted && !spari_swing_part(w, m)) {
+                SPARI_TRY(add_swing_part(w, m));
+                more = 1;
+            }
+        }
+    }
+    qsort(w->part, (size_t)w->parts, sizeof *w->part, by_creation);
+    int64_t most = 0;
+    for (int i = 0; i < w->parts; i++) {
+        const spar_member *m = w->part[i].member;
+        int64_t room = 2 * (int64_t)w->part[i].size + 6 * m->body->unique + 12 * m->nodes;
+        w->part[i].at = w->size;
+        w->size += w->part[i].size;
+        most = room > most ? room : most;
+    }
+    w->room = spari_zalloc(most, sizeof *w->room);
+    SPARI_REQUIRE(s, w->room, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    return SPAR_OK;
+}
+
+/* ---- the frame ---- */
+
+static double apart_by(const double a[3], const double b[3]) {
+    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return spari_norm(d);
+}
+
+/* x := what a turn of vectors with s makes of it */
+static void turn_vectors(int n, const double s[3], const double *x, double *y) {
+    for (int i = 0; i < n; i += 3) {
+        spari_cross(s, x + i, y + i);
+    }
+}
+
+/* A part that turns with s against the frame must be alike all around: its matrices X have X T = T X, T the turning of
+   all vectors with s. Asked of one vector without any symmetry. */
+static int check_alike(const spari_swing *w, const swing_part *p, int64_t first) {
+    double s[3] = {p->own[0] - w->w[0], p->own[1] - w->w[1], p->own[2] - w->w[2]};
+    if (spari_norm(s) <= one_turn * fmax(spari_norm(p->own), spari_norm(w->w))) {
+        return SPAR_OK;
+    }
+    double *x = spari_zalloc(5 * (int64_t)w->size, sizeof *x), *turned = x + w->size, *y = turned + w->size,
+           *z = y + w->size, *last = z + w->size;
+    SPARI_REQUIRE(w->session, x, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    int alike = p->size % 3 == 0, kinds = p->member->body->C ? 3 : 2; /* weight alone may have a direction */
+    for (int i = 0; i < p->size; i++) {
+        x[p->at + i] = sin(1 + 12.9898 * i);
+    }
+    for (int kind = 0; kind < kinds && alike; kind++) {
+        double change = 0, size = 0;
+        memset(y, 0, 3 * (size_t)w->size * sizeof *y);
+        turn_vectors(p->size, s, x + p->at, turned + p->at);
+        spari_pencil_times(&w->pencil, first, kind == 2, kind == 1, kind == 0, turned, y);
+        spari_pencil_times(&w->pencil, first, kind == 2, kind == 1, kind == 0, x, z);
+        turn_vectors(p->size, s, z + p->at, last + p->at);
+        for (int i = p->at; i < p->at + p->size; i++) {
+            change = fmax(change, fabs(y[i] - last[i]));
+            size = fmax(size, fabs(z[i]));
+        }
+        alike = change <= 1e-6 * spari_norm(s) * size;
+    }
+    free(x);
+    SPARI_REQUIRE(w->session, alike, SPAR_ERR_UNSUPPORTED,
+                  "'%s' turns otherwise than what it is tied to, and is not alike all around its axis: the equations "
+                  "of small motions change with time, and have no eigenvalues",
+                  p->member->name);
+    return SPAR_OK;
+}
+
+static int fill_swing(spari_swing *w) {
+    spar_session *s = w->session;
+    int holds = 0;
+    spari_pencil_free(&w->pencil);
+    SPARI_REQUIRE(s, spari_pencil_create(&w->pencil, w->size) == SPAR_OK, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    for (int i = 0; i < w->parts; i++) {
+        const swing_part *p = w->part + i;
+        int64_t first = w->pencil.entries;
+        w->pencil.base = p->at;
+        int status = p->member->row->linearise(p->member, w->w, &w->pencil);
+        SPARI_REQUIRE(s, status != SPAR_ERR_UNSUPPORTED, status,
+                      "'%s' is linear in the frame of its root, which turns otherwise than what it is tied to",
+                      p->member->name);
+        SPARI_REQUIRE(s, status == SPAR_OK, status, "'%s': no memory for eigenvalues", p->member->name);
+        SPARI_TRY(check_alike(w, p, first));
+    }
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        SPARI_TRY(spari_swing_add_joint(w, j, &holds));
+    }
+    w->pencil.holds = holds;
+    SPARI_REQUIRE(s, !w->pencil.full, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    return SPAR_OK;
+}
+
+/* The frame of all where they turn as one; else, or where the ground is not alike all around that, the one that rests.
+ */
+static int find_frame(spari_swing *w) {
+    int alike = 1;
+    for (int i = 1; i < w->parts; i++) {
+        const double *a = w->part[0].own, *b = w->part[i].own;
+        alike = alike && apart_by(a, b) <= one_turn * fmax(spari_norm(a), spari_norm(b));
+    }
+    if (alike && w->parts > 0 && spari_norm(w->part[0].own) > 0) {
+        memcpy(w->w, w->part[0].own, sizeof w->w);
+        int status = fill_swing(w);
+        if (status != SPAR_ERR_UNSUPPORTED) {
+            return status;
+        }
+    }
+    memset(w->w, 0, sizeof w->w);
+    return fill_swing(w);
+}
+
+static int check_swing(const spari_swing *w) {
+    const spari_pencil *p = &w->pencil;
+    double most = 0, size = 0;
+    for (int i = 0; i < w->size; i++) {
+        most = fmax(most, fabs(p->left[i]));
+    }
+    for (int64_t i = 0; i < p->entries; i++) {
+        size += fabs(p->entry[i].k) + fabs(p->entry[i].c) + fabs(p->entry[i].m);
+    }
+    SPARI_REQUIRE(w->session, isfinite(size) && isfinite(most), SPAR_ERR_NUMERIC,
+                  "'%s': stiffness in the present state is beyond the range of numbers; look at loads and sections, or "
+                  "at their units",
+                  w->part[0].member->name);
+    SPARI_REQUIRE(w->session, most <= equilibrium * p->scale + equilibrium_noise * p->noise, SPAR_ERR_STATE,
+                  "'%s' is in no equilibrium, at rest or turning steadily: forces of %.3g are left over beside forces "
+                  "of %.3g; solve statically first",
+                  w->part[0].member->name, most, p->scale);
+    return SPAR_OK;
+}
+
+int spari_swing_create(spari_swing *w, spar_session *s, const spar_member *first) {
+    *w = (spari_swing){.session = s};
+    SPARI_TRY(gather_swing(w, first));
+    if (w->parts == 0) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(find_frame(w));
+    return check_swing(w);
+}
+
+/* ---- answers ---- */
+
+int spari_swing_solve(spari_swing *w, int n, double complex shift, double complex *value, double complex *x) {
+    int found = 0, status = spari_spectrum(&w->pencil, n, shift, SPARI_SPECTRUM_CHOICE, &found, value, x);
+    const char *name = w->part[0].member->name;
+    SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "'%s': no memory for %d eigenvalues", name, n);
+    SPARI_REQUIRE(w->session, status == SPAR_OK, status,
+                  "'%s': stiffness, damping and mass are singular together: something can move where there is none of "
+                  "them",
+                  name);
+    SPARI_REQUIRE(w->session, found >= n, SPAR_ERR_NUMERIC,
+                  "'%s': %d of %d eigenvalues; the others have no mass, or have not converged: ask for fewer, or give "
+                  "a shift nearer to them",
+                  name, found, n);
+    return SPAR_OK;
+}
+
+void spari_swing_shape(const spari_swing *w, const swing_part *p, const double complex *x, double *nodes) {
+    const spar_member *m = p->member;
+    double *part = w->room, *room = part + p->size, *motion = room + 6 * m->body->unique;
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < p->size; i++) {
+            part[i] = side ? cimag(x[p->at + i]) : creal(x[p->at + i]);
+        }
+        m->row->shape(m, part, room, motion);
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            nodes[2 * i + side] = motion[i];
+        }
+    }
+}
+
+static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, double *eigenvalue, double *shapes,
+                          double frame[3]) {
+    spar_session *s = m->session;
+    spari_swing w;
+    int status = spari_swing_create(&w, s, m);
+    if (status == SPAR_OK && n > w.size) {
+        status = spari_fail(s, SPAR_ERR_ARGUMENT, "'%s': %lld eigenvalues; there are %d unknowns", m->name,
+                            (long long)n, w.size);
+    }
+    if (status == SPAR_OK && n > 0) {
+        double complex *value = spari_zalloc(n, sizeof *value), *x = spari_zalloc(n * w.size, sizeof *x);
+        status = value && x ? spari_swing_solve(&w, (int)n, shift, value, x)
+                            : spari_fail(s, SPAR_ERR_MEMORY, "'%s': no memory for eigenvalues", m->name);
+        for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
+            eigenvalue[2 * k] = creal(value[k]);
+            eigenvalue[2 * k + 1] = cimag(value[k]);
+            if (shapes) {
+                spari_swing_shape(&w, spari_swing_part(&w, m), x + w.size * k, shapes + 12 * m->nodes * k);
+            }
+        }
+        free(value);
+        free(x);
+    }
+    if (status == SPAR_OK && frame) {
+        memcpy(frame, w.w, sizeof w.w);
+    }
+    spari_swing_free(&w);
+    return status;
+}
+
+int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const double shift[2], double *eigenvalue,
+                                  double *shapes, double frame[3]) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_here(member, __func__, SPARI_ALL_AWAY));
+    spar_session *s = member->session;
+    SPARI_TRY(spari_named(s, __func__, spari_modes_need_mass(member)));
+    SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld eigenvalues", __func__, member->name, (long long)n);
+    SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': eigenvalue is NULL", __func__, member->name);
+    if (shift) {
+        SPARI_TRY(spari_need_finite(s, __func__, member->name, "shift", 2, shift));
+    }
+    double complex at = shift ? CMPLX(shift[0], fabs(shift[1])) : 0;
+    SPARI_TRY(spari_named(s, __func__, spari_joints_place(s)));
+    return spari_named(s, __func__, eigenvalues_of(member, n, at, eigenvalue, shapes, frame));
+}

@@ -1,0 +1,257 @@
+/* Joints in the equations of small motions: springs, dampers, the turning of their loads, and what they hold. */
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "../member/body.h"
+#include "fidelity.h"
+#include "limb.h"
+#include "swing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A joint's node as its part's unknowns move it: columns that are not zero. */
+typedef struct swing_side {
+    const swing_part *part; /* NULL: it moves as it is told */
+    int count, *column;     /* of all unknowns */
+    double (*S)[6];
+} swing_side;
+
+/* One side's columns; room for the part's unknowns. */
+static void find_columns(const spari_swing *w, const spar_joint *j, int side, swing_side *of) {
+    const spar_member *m = of->part->member;
+    int held = spari_member_held(m), own = m->row->limb == &spari_limb_nodes && !m->row->whole;
+    double *unit = w->room, *work = unit + of->part->size, *nodes = work + 6 * (int64_t)m->body->unique;
+    int first = own ? 6 * j->unique[side] - held : 0, end = own ? first + 6 : of->part->size;
+    memset(unit, 0, (size_t)of->part->size * sizeof *unit);
+    of->count = 0;
+    for (int c = first < 0 ? 0 : first; c < end; c++) {
+        double *S = of->S[of->count], size = 0;
+        if (own) {
+            memset(S, 0, 6 * sizeof *S);
+            S[c - first] = 1;
+        } else {
+            unit[c] = 1;
+            m->row->shape(m, unit, work, nodes);
+            unit[c] = 0;
+            memcpy(S, nodes + 6 * j->seat[side], 6 * sizeof *S);
+        }
+        for (int k = 0; k < 6; k++) {
+            size = fmax(size, fabs(S[k]));
+        }
+        if (size > 0) {
+            of->column[of->count++] = of->part->at + c;
+        }
+    }
+}
+
+/* How the rates of the nodes [12] change with their motion: V = d v / d x, seen from the frame (turn.h), v those of
+ * now. */
+static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swing_side of[2], double v[12],
+                           double V[12][12]) {
+    memset(V, 0, 144 * sizeof V[0][0]);
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        memset(v + 6 * side, 0, 6 * sizeof *v);
+        if (m) {
+            memcpy(v + 6 * side, m->after.v + 6 * j->seat[side], 6 * sizeof *v);
+        }
+        for (int half = 0; half < 2 && of[side].part; half++) {
+            double turn[3], W[3][3];
+            for (int k = 0; k < 3; k++) {
+                turn[k] = half ? w->w[k] - of[side].part->own[k] : w->w[k];
+            }
+            spari_skew(turn, *W);
+            for (int i = 0; i < 9; i++) {
+                V[6 * side + 3 * half + i / 3][6 * side + 3 * half + i % 3] = W[i / 3][i % 3];
+            }
+        }
+    }
+}
+
+typedef struct swing_joint {
+    double K[12][12], C[12][12], B[6][12], f[12];
+    int given;
+} swing_joint;
+
+/* K, C += B^T (k B + d R), B^T d B over the motions that are free */
+static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
+    for (int pq = 0; pq < 36; pq++) {
+        int p = pq / 6, q = pq % 6, off = (of->given >> p & 1) || (of->given >> q & 1);
+        double k = off ? 0 : j->stiffness[pq], d = off ? 0 : j->damping[pq];
+        for (int i = 0; i < 144 && (k != 0 || d != 0); i++) {
+            int r = i / 12, c = i % 12;
+            of->K[r][c] += of->B[p][r] * (k * of->B[q][c] + d * R[q][c]);
+            of->C[r][c] += d * of->B[p][r] * of->B[q][c];
+        }
+    }
+}
+
+static void linearise_joint(const spari_swing *w, const spar_joint *j, const swing_side side[2], swing_joint *of) {
+    spari_place place[2];
+    spari_relative at = j->after;
+    double v[12], V[12][12], R[6][12], turning[12][12] = {{0}};
+    *of = (swing_joint){.given = spari_joint_given(j)};
+    spari_joint_places(j, place);
+    rates_of_nodes(w, j, side, v, V);
+    spari_tie_motion(&j->tie, &place[0], &place[1], at.z, of->B);
+    spari_joint_count_turns(j, j->after.z, at.z);
+    spari_joint_spring(j, at.z, at.rate, 1, at.load);
+    spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, turning);
+    spari_tie_forces(of->B, at.load, of->f);
+    for (int i = 0; i < 144; i++) {
+        of->K[i / 12][i % 12] = -turning[i / 12][i % 12];
+    }
+    if (j->sprung && !spari_joint_is_slack(j, &at)) {
+        spari_tie_rates(&j->tie, &place[0], &place[1], v, R);
+        for (int i = 0; i < 72; i++) {
+            for (int k = 0; k < 12; k++) {
+                R[i / 12][i % 12] += of->B[i / 12][k] * V[k][i % 12];
+            }
+        }
+        add_spring(j, R, of);
+    }
+}
+
+/* |A T - T A| of a 12 x 12 matrix, T the turning of vectors with s; what that is small against. */
+static double change_by_turning(double A[12][12], const double s[3], double *size) {
+    double W[3][3], change = 0;
+    spari_skew(s, *W);
+    for (int i = 0; i < 12; i++) {
+        for (int k = 0; k < 12; k++) {
+            double sum = 0;
+            for (int l = 0; l < 3; l++) {
+                sum += A[i][k - k % 3 + l] * W[l][k % 3] - W[i % 3][l] * A[i - i % 3 + l][k];
+            }
+            change = fmax(change, fabs(sum));
+            *size = fmax(*size, fabs(A[i][k]));
+        }
+    }
+    return change;
+}
+
+/* The projection onto what is held, B^T (B B^T)^-1 B of the rows that are given: by Gram and Schmidt. */
+static void held_directions(const swing_joint *of, double P[12][12]) {
+    double row[6][12] = {{0}};
+    int count = 0;
+    memset(P, 0, 144 * sizeof P[0][0]);
+    for (int k = 0; k < 6; k++) {
+        double *x = row[count], size = 0, left = 0;
+        for (int i = 0; i < 12 && (of->given >> k & 1); i++) {
+            x[i] = of->B[k][i];
+            size += x[i] * x[i];
+        }
+        for (int l = 0; l < 2 * count && size > 0; l++) {
+            const double *y = row[l % count];
+            double along = 0;
+            for (int i = 0; i < 12; i++) {
+                along += x[i] * y[i];
+            }
+            for (int i = 0; i < 12; i++) {
+                x[i] -= along * y[i];
+            }
+        }
+        for (int i = 0; i < 12 && size > 0; i++) {
+            left += x[i] * x[i];
+        }
+        for (int i = 0; i < 12 && left > 1e-18 * size; i++) {
+            x[i] /= sqrt(left);
+        }
+        count += left > 1e-18 * size;
+    }
+    for (int i = 0; i < 144 * count; i++) {
+        P[i / 12 % 12][i % 12] += row[i / 144][i / 12 % 12] * row[i / 144][i % 12];
+    }
+}
+
+/* A joint's axes go with b: where that turns otherwise than the frame, the joint must be alike all around. */
+static int check_around(const spari_swing *w, const spar_joint *j, const swing_side side[2], swing_joint *of) {
+    double s[3], P[12][12], size[3] = {0}, most = spari_norm(w->w);
+    for (int k = 0; k < 3; k++) {
+        double b = side[1].part   ? side[1].part->own[k]
+                   : j->member[1] ? j->member[1]->after.v[6 * j->seat[1] + 3 + k]
+                                  : 0;
+        s[k] = b - w->w[k];
+    }
+    if (!(spari_norm(s) > 1e-4 * most) || !(spari_norm(s) > 0)) {
+        return SPAR_OK;
+    }
+    held_directions(of, P);
+    double turn = spari_norm(s), of_K = change_by_turning(of->K, s, size), of_C = change_by_turning(of->C, s, size + 1);
+    double of_P = change_by_turning(P, s, size + 2);
+    const double alike = 1e-6;
+    int round = of_K <= alike * turn * size[0] && of_C <= alike * turn * size[1] && of_P <= alike * turn * size[2];
+    SPARI_REQUIRE(w->session, round, SPAR_ERR_UNSUPPORTED,
+                  "joint '%s' is not alike all around the axis about which its sides turn: the equations of small "
+                  "motions change with time, and have no eigenvalues",
+                  j->name);
+    return SPAR_OK;
+}
+
+/* S_a^T X S_b of two sides, and what is held */
+static void put_joint(spari_swing *w, const swing_side side[2], const swing_joint *of, int *holds) {
+    for (int ab = 0; ab < 4; ab++) {
+        const swing_side *a = side + ab / 2, *b = side + ab % 2;
+        for (int64_t rc = 0; rc < (int64_t)a->count * b->count; rc++) {
+            const double *S = a->S[rc / b->count], *T = b->S[rc % b->count];
+            spari_pencil_entry e = {a->column[rc / b->count], b->column[rc % b->count], 0, 0, 0};
+            for (int i = 0; i < 36; i++) {
+                double f = S[i / 6] * T[i % 6];
+                e.k += f * of->K[6 * (ab / 2) + i / 6][6 * (ab % 2) + i % 6];
+                e.c += f * of->C[6 * (ab / 2) + i / 6][6 * (ab % 2) + i % 6];
+            }
+            spari_pencil_put(&w->pencil, e);
+        }
+    }
+    for (int n = 0; n < 2; n++) {
+        for (int c = 0; c < side[n].count; c++) {
+            double *left = w->pencil.left + side[n].column[c], row[6] = {0};
+            for (int i = 0; i < 6; i++) {
+                *left -= side[n].S[c][i] * of->f[6 * n + i];
+                for (int k = 0; k < 6; k++) {
+                    row[k] += side[n].S[c][i] * of->B[k][6 * n + i];
+                }
+            }
+            for (int k = 0, at = *holds; k < 6; at += of->given >> k & 1, k++) {
+                if (of->given >> k & 1) {
+                    spari_pencil_hold_at(&w->pencil, (spari_pencil_hold){at, side[n].column[c], row[k]});
+                }
+            }
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        *holds += of->given >> k & 1;
+    }
+}
+
+int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
+    swing_side side[2] = {{.part = spari_swing_part(w, j->member[0])}, {.part = spari_swing_part(w, j->member[1])}};
+    int status = SPAR_OK;
+    if (!side[0].part && !side[1].part) {
+        return SPAR_OK;
+    }
+    for (int n = 0; n < 2 && status == SPAR_OK; n++) {
+        int size = side[n].part ? side[n].part->size : 0;
+        side[n].column = spari_zalloc(size, sizeof *side[n].column);
+        side[n].S = spari_zalloc(size + 1, sizeof *side[n].S); /* one is tried behind the last */
+        status = side[n].column && side[n].S ? SPAR_OK : SPAR_ERR_MEMORY;
+        if (size > 0 && status == SPAR_OK) {
+            find_columns(w, j, n, side + n);
+        }
+    }
+    if (status == SPAR_OK) {
+        swing_joint of;
+        linearise_joint(w, j, side, &of);
+        status = check_around(w, j, side, &of);
+        if (status == SPAR_OK) {
+            put_joint(w, side, &of, holds);
+        }
+    } else {
+        status = spari_fail(w->session, status, "joint '%s': no memory for eigenvalues", j->name);
+    }
+    for (int n = 0; n < 2; n++) {
+        free(side[n].column);
+        free(side[n].S);
+    }
+    return status;
+}
