@@ -1150,18 +1150,18 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, joints with
    their springs, solvers, the fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with
    the same bits. Collective.
-     path: in, rank 0's; on the other ranks it must be given and is not used. Ranks that see rank 0's file write and read
-           their own parts of it, all at the same time; if any does not, all goes through rank 0, piece by piece, to the
-           same bytes. No rank has more in memory than what is its own, twice
+     path: in, rank 0's; on the other ranks it must be given and is not used. Ranks that see rank 0's file write and
+           read their own parts of it, all at the same time; if any does not, all goes through rank 0, piece by piece,
+           to the same bytes. No rank has more in memory than what is its own, twice
    save: the file is written under path.new, flushed and renamed: there is always a whole one, and what a killed process
    has left at path.new goes with the next save. Where path is a symbolic link, all this happens where it leads, and the
    link stays; a file with several hard links is replaced under this name only; mode and owner stay as far as the system
    allows. What is no file (a pipe, a device, a folder) is SPAR_ERR_IO and stays; so is a file that another process is
    writing. load: into a session with the same members, committed, the same joints, and the same fluids, mapped, by
    name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them
-   by their reference places, to 1e-9 of the member's length. What the host sets (gravity, integrator, tolerances) it sets as before. A file that is cut
-   off or damaged or cannot be read: SPAR_ERR_IO; one of another session: SPAR_ERR_ARGUMENT; the session is then as it
-   was. */
+   by their reference places, to 1e-9 of the member's length. What the host sets (gravity, integrator, tolerances) it
+   sets as before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of another session:
+   SPAR_ERR_ARGUMENT; the session is then as it was. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 

@@ -29,7 +29,7 @@ static int read_polar(const spar_case *c, const case_line *line, spar_polar **po
     }
     double *x = status == SPAR_OK ? calloc(8 * (size_t)n, sizeof *x) : NULL, *column[4] = {NULL};
     status = status == SPAR_OK && !x ? case_no_memory(c) : status;
-    for (int64_t i = 0; status == SPAR_OK && i < n; i++) {
+    for (int64_t i = 0; x && status == SPAR_OK && i < n; i++) {
         const case_line *row = table.block->line + i;
         status = row->n + 1 == width
                      ? case_numbers(&table, row, 0, width, x + 4 * (n + i))

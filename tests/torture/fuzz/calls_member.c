@@ -182,6 +182,7 @@ void do_spar_member_set_added_mass(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = chance(c, 10) ? 0 : m->kind == KIND_BEAM ? arg_count(c, 1, 3) : arg_count(c, 1, 1), room = length(n);
     double *eta = arg_rising(c, room, 0, 1), *M = arg_mass(c, room, 1);
+    c->wild |= n > 0; /* the fluid has no such mass: extrapolated over unequal steps the difference may grow */
     RUN(c, spar_member_set_added_mass(m->m, n, eta, M));
 }
 
@@ -196,6 +197,7 @@ void do_spar_member_learn_added_mass(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = chance(c, 10) ? 0 : m->kind == KIND_BEAM ? arg_count(c, 1, 3) : arg_count(c, 1, 1), room = length(n);
     double *eta = arg_rising(c, room, 0, 1);
+    c->wild |= n > 0;
     RUN(c, spar_member_learn_added_mass(m->m, n, eta));
 }
 
