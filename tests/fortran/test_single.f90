@@ -7,7 +7,7 @@ module host_double
   private
   public :: run, kept
   integer, parameter :: k = c_double
-  real(c_double), allocatable :: kept(:)
+  real(c_float), allocatable :: kept(:)
   type(spar_fluid) :: cloth
 
 contains
@@ -22,7 +22,7 @@ module host_single
   private
   public :: run, kept
   integer, parameter :: k = c_float
-  real(c_double), allocatable :: kept(:)
+  real(c_float), allocatable :: kept(:)
   type(spar_fluid) :: cloth
 
 contains
@@ -31,7 +31,7 @@ contains
 end module host_single
 
 program test_single
-  use, intrinsic :: iso_c_binding, only: c_double, c_int64_t
+  use, intrinsic :: iso_c_binding, only: c_int32_t
   use host_double, only: run_double => run, double => kept
   use host_single, only: run_single => run, single => kept
   implicit none
@@ -42,7 +42,7 @@ program test_single
   if (size(double) /= size(single) .or. size(double) < 800) error stop 'test_single: the hosts keep different things'
   wrong = 0
   do i = 1, size(double)
-    if (transfer(double(i), 0_c_int64_t) == transfer(single(i), 0_c_int64_t)) cycle
+    if (transfer(double(i), 0_c_int32_t) == transfer(single(i), 0_c_int32_t)) cycle
     wrong = wrong + 1
     if (wrong <= 10) write (*, '(a,i0,2es24.16)') 'wrong: number ', i, double(i), single(i)
   end do
