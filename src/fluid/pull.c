@@ -164,7 +164,7 @@ static void emit(const spari_nodes *s, int64_t first, const states *t, int row, 
         return;
     }
     int count = spari_tile_count(s, first);
-    for (int k = row; k < row + 3 && t->n == 2; k++) {
+    for (int k = row; k < row + 3 && t->n == 2 && t->buf[1]; k++) {
         for (int i = 0; i < count; i++) {
             t->buf[0][k][i] = t->share[0] * t->buf[0][k][i] + t->share[1] * t->buf[1][k][i];
         }
@@ -442,7 +442,7 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
         fill_one(fluid, 0, SPARI_UPTO_PLACE, fluid->field[0]);
         fill_one(fluid, 1, SPARI_UPTO_PLACE, fluid->field[1]);
     }
-    for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
+    for (int64_t first = 0; s && t.buf[1] && first < s->n; first += SPARI_TILE) {
         for (int i = 0; i < t.n; i++) {
             double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_PLACE, t.buf[i]);
             least = fmin(least, met);

@@ -336,14 +336,11 @@ static int read_index(spar_session *s, reading *l) {
     return SPAR_OK;
 }
 
-static int grow_records(void **records, int64_t count, size_t size) {
-    if (count >= 8 && (count & (count - 1)) != 0) { /* room for as many as the next power of two */
-        return 1;
-    }
+/* The records with room for one more, for as many as the next power of two; NULL: no memory, and they stay. */
+static void *grow_records(void *records, int64_t count, size_t size) {
+    int full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);
     int64_t room = count < 8 ? 8 : 2 * count;
-    void *more = count > 0 && count < 8 ? *records : realloc(*records, (size_t)room * size);
-    *records = more ? more : *records;
-    return more != NULL;
+    return full ? realloc(records, (size_t)room * size) : records;
 }
 
 static const spar_member *member_at(const spar_session *s, int64_t k) {
@@ -364,15 +361,16 @@ static const spari_assembly *assembly_at(const spar_session *s, int64_t k) {
 
 static int note_solver(spar_session *s, reading *l, int assembly) {
     int64_t k = spari_image_get_int(&l->index);
-    solver_record r = {assembly, 0, spari_image_get_int(&l->index), spari_image_get_int(&l->index)};
+    int64_t at = spari_image_get_int(&l->index), count = spari_image_get_int(&l->index);
     if (l->index.failed || !(assembly ? assembly_at(s, k) != NULL : member_at(s, k) != NULL)) {
         return spari_saved_broken(s);
     }
-    r.index = (int)k;
-    if (!grow_records((void **)&l->solvers, l->solver_count, sizeof r)) {
+    solver_record *more = grow_records(l->solvers, l->solver_count, sizeof *more);
+    if (!more) {
         return spari_saved_no_memory(s);
     }
-    l->solvers[l->solver_count++] = r;
+    l->solvers = more;
+    l->solvers[l->solver_count++] = (solver_record){assembly, (int)k, at, count};
     return SPAR_OK;
 }
 
@@ -389,9 +387,11 @@ static int note_fluid(spar_session *s, reading *l, int rank) {
         return spari_saved_broken(s);
     }
     r.member = (int)k;
-    if (!grow_records((void **)&l->fluids, l->fluid_count, sizeof r)) {
+    fluid_record *more = grow_records(l->fluids, l->fluid_count, sizeof *more);
+    if (!more) {
         return spari_saved_no_memory(s);
     }
+    l->fluids = more;
     l->fluids[l->fluid_count++] = r;
     return SPAR_OK;
 }
