@@ -106,11 +106,14 @@ module spar
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
   integer, parameter, public :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
-      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
+      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128
+  integer, parameter, public :: SPAR_SHEAR_POWER = 0, SPAR_SHEAR_LOG = 1, SPAR_SHEAR_LINEAR = 2
   integer, parameter, public :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
-  integer, parameter, public :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer, parameter, public :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4, &
+      SPAR_AERO_FLAG_TOWER = 8
   integer, parameter, public :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
-      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
+      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_SHEAR = 6, &
+      SPAR_AERO_ROW_TOWER = 7, SPAR_AERO_ROW_COUNT = 8
   ! } written by cmake/make-bindings.sh
 
   type :: spar_session
@@ -491,6 +494,10 @@ module spar
     generic :: set_rotor => aero_set_rotor, aero_set_rotor_single_1, aero_set_rotor_single_2, aero_set_rotor_single_3
     procedure :: set_turn => aero_set_turn
     procedure :: set_blades => aero_set_blades
+    procedure, private :: aero_set_shear, aero_set_shear_single_1, aero_set_shear_single_2, aero_set_shear_single_3
+    generic :: set_shear => aero_set_shear, aero_set_shear_single_1, aero_set_shear_single_2, aero_set_shear_single_3
+    procedure, private :: aero_set_tower, aero_set_tower_single_1, aero_set_tower_single_2, aero_set_tower_single_3
+    generic :: set_tower => aero_set_tower, aero_set_tower_single_1, aero_set_tower_single_2, aero_set_tower_single_3
     procedure :: set_effects => aero_set_effects
     procedure, private :: aero_solve, aero_solve_single_1, aero_solve_single_2, aero_solve_single_3
     generic :: solve => aero_solve, aero_solve_single_1, aero_solve_single_2, aero_solve_single_3
@@ -3492,6 +3499,25 @@ contains
 
     call finish(spar_aero_set_blades(self%handle, to_c(total)), self%session, stat, errmsg)
   end subroutine aero_set_blades
+
+  subroutine aero_set_shear(self, law, ground, up, height, parameter, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer, intent(in) :: law
+    real(c_double), intent(in) :: ground(3), up(3), height, parameter
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_shear(self%handle, to_c(law), ground, up, height, parameter), self%session, stat, errmsg)
+  end subroutine aero_set_shear
+
+  subroutine aero_set_tower(self, base, top, base_radius, top_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: base(3), top(3), base_radius, top_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_aero_set_tower(self%handle, base, top, base_radius, top_radius), self%session, stat, errmsg)
+  end subroutine aero_set_tower
 
   subroutine aero_set_effects(self, effects, stat, errmsg)
     class(spar_aero), intent(inout) :: self
@@ -6752,6 +6778,87 @@ contains
     call aero_set_rotor(self, hub=real(hub, c_double), axis=real(axis, c_double), hub_radius=real(hub_radius, &
         c_double), tip_radius=real(tip_radius, c_double), stat=stat, errmsg=errmsg)
   end subroutine aero_set_rotor_single_3
+
+  subroutine aero_set_shear_single_1(self, law, ground, up, height, parameter, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer, intent(in) :: law
+    real(c_double), intent(in) :: ground(3)
+    real(c_double), intent(in) :: up(3)
+    real(c_float), intent(in) :: height
+    real(c_float), intent(in) :: parameter
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_shear(self, law=law, ground=ground, up=up, height=real(height, c_double), parameter=real(parameter, &
+        c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_shear_single_1
+
+  subroutine aero_set_shear_single_2(self, law, ground, up, height, parameter, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer, intent(in) :: law
+    real(c_float), intent(in) :: ground(3)
+    real(c_float), intent(in) :: up(3)
+    real(c_double), intent(in) :: height
+    real(c_double), intent(in) :: parameter
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_shear(self, law=law, ground=real(ground, c_double), up=real(up, c_double), height=height, &
+        parameter=parameter, stat=stat, errmsg=errmsg)
+  end subroutine aero_set_shear_single_2
+
+  subroutine aero_set_shear_single_3(self, law, ground, up, height, parameter, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    integer, intent(in) :: law
+    real(c_float), intent(in) :: ground(3)
+    real(c_float), intent(in) :: up(3)
+    real(c_float), intent(in) :: height
+    real(c_float), intent(in) :: parameter
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_shear(self, law=law, ground=real(ground, c_double), up=real(up, c_double), height=real(height, &
+        c_double), parameter=real(parameter, c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_shear_single_3
+
+  subroutine aero_set_tower_single_1(self, base, top, base_radius, top_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_double), intent(in) :: base(3)
+    real(c_double), intent(in) :: top(3)
+    real(c_float), intent(in) :: base_radius
+    real(c_float), intent(in) :: top_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_tower(self, base=base, top=top, base_radius=real(base_radius, c_double), &
+        top_radius=real(top_radius, c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_tower_single_1
+
+  subroutine aero_set_tower_single_2(self, base, top, base_radius, top_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: base(3)
+    real(c_float), intent(in) :: top(3)
+    real(c_double), intent(in) :: base_radius
+    real(c_double), intent(in) :: top_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_tower(self, base=real(base, c_double), top=real(top, c_double), base_radius=base_radius, &
+        top_radius=top_radius, stat=stat, errmsg=errmsg)
+  end subroutine aero_set_tower_single_2
+
+  subroutine aero_set_tower_single_3(self, base, top, base_radius, top_radius, stat, errmsg)
+    class(spar_aero), intent(inout) :: self
+    real(c_float), intent(in) :: base(3)
+    real(c_float), intent(in) :: top(3)
+    real(c_float), intent(in) :: base_radius
+    real(c_float), intent(in) :: top_radius
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call aero_set_tower(self, base=real(base, c_double), top=real(top, c_double), base_radius=real(base_radius, &
+        c_double), top_radius=real(top_radius, c_double), stat=stat, errmsg=errmsg)
+  end subroutine aero_set_tower_single_3
 
   subroutine aero_solve_single_1(self, density, inflow, theta, stat, errmsg)
     class(spar_aero), intent(inout) :: self

@@ -1313,6 +1313,23 @@ module spar_calls
       integer(c_int) :: status
     end function spar_aero_set_blades
 
+    function spar_aero_set_shear(aero, law, ground, up, height, parameter) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), value :: law
+      real(c_double), intent(in), optional :: ground(3), up(3)
+      real(c_double), value :: height, parameter
+      integer(c_int) :: status
+    end function spar_aero_set_shear
+
+    function spar_aero_set_tower(aero, base, top, base_radius, top_radius) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      real(c_double), intent(in), optional :: base(3), top(3)
+      real(c_double), value :: base_radius, top_radius
+      integer(c_int) :: status
+    end function spar_aero_set_tower
+
     function spar_aero_set_effects(aero, effects) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: aero
@@ -1461,9 +1478,12 @@ module spar_c
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
-      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32
+      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128
+  integer(c_int), parameter :: SPAR_SHEAR_POWER = 0, SPAR_SHEAR_LOG = 1, SPAR_SHEAR_LINEAR = 2
   integer(c_int), parameter :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
-  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4
+  integer(c_int), parameter :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4, &
+      SPAR_AERO_FLAG_TOWER = 8
   integer(c_int), parameter :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
-      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_COUNT = 6
+      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_SHEAR = 6, &
+      SPAR_AERO_ROW_TOWER = 7, SPAR_AERO_ROW_COUNT = 8
 end module spar_c

@@ -157,8 +157,8 @@ static void sum_loads(const scene *c, const double root[3], double length, doubl
    short, the blade just begins to bend: 2 %. Without induction, and without a hub, there are no losses to leave out. */
 static void test_rotor(void **state) {
     (void)state;
-    static const int bit[] = {SPAR_AERO_INDUCTION, SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS,
-                              SPAR_AERO_SWIRL,     SPAR_AERO_DRAG,     SPAR_AERO_MOMENT};
+    static const int bit[] = {SPAR_AERO_INDUCTION, SPAR_AERO_TIP_LOSS, SPAR_AERO_HUB_LOSS, SPAR_AERO_SWIRL,
+                              SPAR_AERO_DRAG,      SPAR_AERO_MOMENT,   SPAR_AERO_SHEAR,    SPAR_AERO_TOWER};
     nrel5mw data;
     nrel5mw_rotor rotor;
     scene c = {.s = scene_session()};
@@ -178,7 +178,10 @@ static void test_rotor(void **state) {
         memcpy(c.wind[i], (double[3]){8, -omega[0] * (1.5 + 61.5 * i / (ROOM - 1)), 0}, sizeof c.wind[i]);
     }
     nrel5mw_root(&data, &rotor, 0, 0, root, q);
-    int effects = 2 * SPAR_AERO_MOMENT - 1;
+    int effects = 2 * SPAR_AERO_TOWER - 1;
+    const double ground[3] = {0, 0, -90}, base[3] = {0, 0, -90}, top[3] = {8, 0, 200};
+    OK(c.s, spar_aero_set_shear(c.aero, SPAR_SHEAR_POWER, ground, (double[3]){0, 0, 1}, 90, 0.2));
+    OK(c.s, spar_aero_set_tower(c.aero, base, top, 3, 2));
     OK(c.s, spar_aero_set_effects(c.aero, effects));
     OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
                                      table[0]));

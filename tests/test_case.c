@@ -710,7 +710,9 @@ static void air_by_hand(spar_session *s, spar_member *wing, by_hand *h) {
         OK(s, spar_aero_set_section(h->aero, i, wing_chord[i], twist[i], polar));
     }
     spar_polar_destroy(&polar);
-    OK(s, spar_aero_set_effects(h->aero, SPAR_AERO_DRAG));
+    OK(s, spar_aero_set_shear(h->aero, SPAR_SHEAR_LOG, (double[3]){0, 0, -9}, (double[3]){0, 0, 2}, 10, .03));
+    OK(s, spar_aero_set_tower(h->aero, (double[3]){1, 3, -9}, (double[3]){1, 3, 5}, .7, .5));
+    OK(s, spar_aero_set_effects(h->aero, SPAR_AERO_DRAG | SPAR_AERO_SHEAR | SPAR_AERO_TOWER));
 }
 
 static spar_case *air_by_text(spar_session *s) {
@@ -722,7 +724,8 @@ static spar_case *air_by_text(spar_session *s) {
     (void)snprintf(text, sizeof text,
                    "%s[aero air]\nblades wing\nsection -1 1 .05 test_case_polar.txt\n"
                    "section 0 .8 0 test_case_polar.txt 0.1 0.02\nsection 1 .5 -.05 test_case_polar.txt\n"
-                   "density 1.2\nwind 0 30 -3\neffects drag\n",
+                   "density 1.2\nwind 0 30 -3\nshear log 0 0 -9 0 0 2 10 .03\ntower 1 3 -9 1 3 5 .7 .5\n"
+                   "effects drag shear tower\n",
                    wing_text);
     spar_case *c = read_text(s, NULL, text);
     assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
@@ -806,6 +809,9 @@ static void test_aero_mistakes(void **state) {
         {"[aero a]\nblades wing\naerodyn none.dat\n", "line 10: spar_fluid_read_aerodyn: "},
         {"[aero a]\nblades wing\nstations 3 0 1\nsection 0 1 0 p\n", "line 10: stations is about AeroDyn's files"},
         {"[aero a]\nblades wing\nsection 0 1 0 p\naerodyn p\n", "line 8: [aero a] wants blades"},
+        {"[aero a]\nblades wing\naerodyn \"" SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat\"\n"
+         "stations 3 0 4\nshear exp 0 0 0 0 0 1 90 .2\n",
+         "line 12: "},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         char text[1024];

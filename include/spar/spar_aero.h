@@ -29,15 +29,20 @@ enum {
     SPAR_AERO_HUB_LOSS = 4,  /* Prandtl's factor of the hub; none where hub_radius is 0 */
     SPAR_AERO_SWIRL = 8,     /* tangential induction */
     SPAR_AERO_DRAG = 16,     /* drag forces. Drag never takes part in the inductions (as AeroDyn's default). */
-    SPAR_AERO_MOMENT = 32    /* pitching moments */
+    SPAR_AERO_MOMENT = 32,   /* pitching moments */
+    SPAR_AERO_SHEAR = 64,    /* wind by height; needs spar_aero_set_shear */
+    SPAR_AERO_TOWER = 128    /* the wind gives way to the tower; needs spar_aero_set_tower */
 };
+/* Laws of the wind over height. */
+enum { SPAR_SHEAR_POWER = 0, SPAR_SHEAR_LOG = 1, SPAR_SHEAR_LINEAR = 2 };
 /* Interpolation between the rows of a polar. */
 enum { SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2 };
 /* Flags of a section in the last solve. */
 enum {
     SPAR_AERO_FLAG_END = 1, /* at the radius of tip or hub, where the loss factor is 0: axial induction 1, no swirl */
-    SPAR_AERO_FLAG_NO_ROOT = 2,     /* no inflow angle balances the momentum: solved without induction */
-    SPAR_AERO_FLAG_BEYOND_POLAR = 4 /* angle of attack outside the rows of the polar: the nearer end is used */
+    SPAR_AERO_FLAG_NO_ROOT = 2,      /* no inflow angle balances the momentum: solved without induction */
+    SPAR_AERO_FLAG_BEYOND_POLAR = 4, /* angle of attack outside the rows of the polar: the nearer end is used */
+    SPAR_AERO_FLAG_TOWER = 8         /* inside the tower: what it does to the wind is less than at its surface */
 };
 
 /* A polar, a table of coefficients. One over the full turn has the same coefficients in its first and last row and goes
@@ -117,11 +122,38 @@ SPAR_API int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const dou
 SPAR_API int spar_aero_set_turn(spar_aero *aero, int turn);
 /* Blades of the whole rotor, for the solidity, where other ranks hold some of them; default: those given to create. */
 SPAR_API int spar_aero_set_blades(spar_aero *aero, int total);
-/* SPAR_AERO_* or-ed. Default: drag; moments where a polar has any; all of momentum theory once the rotor is set. */
+/* Wind shear: the inflow given to spar_aero_solve is that at a reference height, and each section meets, where it is
+   now, the inflow times
+     SPAR_SHEAR_POWER   (z / height)^parameter, 0 for z <= 0
+     SPAR_SHEAR_LOG     ln(z / parameter) / ln(height / parameter), 0 for z <= parameter
+     SPAR_SHEAR_LINEAR  1 + parameter (z - height), no less than 0
+   at its height z. It is on from the first call on, unless spar_aero_set_effects was called; replaces what was set.
+     law: in, SPAR_SHEAR_*
+     ground[3]: in, m, a point of height 0
+     up[3]: in, where heights are measured along, any length but 0
+     height: in, m, > 0, of the reference
+     parameter: in, the exponent, >= 0; the roughness length, m, > 0 and less than height; the slope, 1/m
+   On a rank without blades it does nothing. */
+SPAR_API int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const double up[3], double height,
+                                 double parameter);
+/* Tower shadow: what a round tower does to the wind before it, beside it and, less truly, behind it, by potential flow.
+   The wind across the tower (the inflow, after shear) changes at distance rho from its axis by (R / rho)^2 times itself
+   mirrored across that direction: none is left on the surface right before the tower, twice as much beside it. R is
+   linear between the ends and that of the base below. Towards and above the top the change is less by the factor (1 + t
+   / sqrt(t^2 + rho^2)) / 2, t the distance below the top, as of a line of dipoles that ends there. The wake is not
+   there: behind the tower a rotor that turns there needs one of the host's. It is on from the first call on, unless
+   spar_aero_set_effects was called; a later call moves the tower.
+     base[3], top[3]: in, m, of its axis, at different places
+     base_radius, top_radius: in, m, > 0
+   On a rank without blades it does nothing. */
+SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[3], double base_radius,
+                                 double top_radius);
+/* SPAR_AERO_* or-ed. Default: drag; moments where a polar has any; all of momentum theory once the rotor is set; shear
+   and tower once these are. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
 /* Pulls the motion at theta, finds the loads in the wind, and pushes them.
      density: in, kg/m^3
-     inflow[blades][n][3]: in, m/s, global axes, undisturbed by the rotor
+     inflow[blades][n][3]: in, m/s, global axes, undisturbed by the rotor; with shear that at its reference height
      theta: in, as of spar_fluid_pull_motion
    Loads per length are linear between the sections and nothing lies beyond the first and the last; each interval (as
    long as its ends are apart in the reference configuration) gives its ends the consistent shares L/6 (2 f1 + f2), L/6
@@ -159,7 +191,9 @@ enum {
     SPAR_AERO_ROW_SWIRL = 3,
     SPAR_AERO_ROW_DRAG = 4,
     SPAR_AERO_ROW_MOMENT = 5,
-    SPAR_AERO_ROW_COUNT = 6
+    SPAR_AERO_ROW_SHEAR = 6,
+    SPAR_AERO_ROW_TOWER = 7,
+    SPAR_AERO_ROW_COUNT = 8
 };
 /* Name of a row, "tip loss"; static storage; "" for what is no row. */
 SPAR_API const char *spar_aero_effect_name(int row);

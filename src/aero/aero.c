@@ -8,8 +8,9 @@
 #include <string.h>
 
 /* What a solve without momentum theory of its own asking has. */
-enum { SPARI_AERO_ALL = 2 * SPAR_AERO_MOMENT - 1 };
+enum { SPARI_AERO_ALL = 2 * SPAR_AERO_TOWER - 1 };
 static const int momentum_effects = SPAR_AERO_INDUCTION | SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS | SPAR_AERO_SWIRL;
+static const int wind_effects = SPAR_AERO_SHEAR | SPAR_AERO_TOWER;
 
 static int64_t count(const spar_aero *aero) {
     return aero->blades * aero->n;
@@ -24,8 +25,9 @@ static void aero_free(spar_aero *aero) {
     if (aero->solver) {
         gsl_root_fsolver_free(aero->solver);
     }
-    void *all[] = {aero->fluid, aero->section, aero->accel, aero->place,   aero->length, aero->loss_radius, aero->x,
-                   aero->v,     aero->q,       aero->omega, aero->element, aero->force,  aero->moment};
+    void *all[] = {aero->fluid,  aero->section, aero->accel, aero->place, aero->length,  aero->loss_radius,
+                   aero->x,      aero->v,       aero->q,     aero->omega, aero->element, aero->force,
+                   aero->moment, aero->wind,    aero->met,   aero->inside};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }
@@ -163,6 +165,8 @@ static int implied_effects(const spar_aero *aero) {
         return aero->rotor.effects;
     }
     int effects = SPAR_AERO_DRAG | (aero->rotor_given ? momentum_effects : 0);
+    effects |= aero->wind && aero->wind->has_shear ? SPAR_AERO_SHEAR : 0;
+    effects |= aero->wind && aero->wind->has_tower ? SPAR_AERO_TOWER : 0;
     for (int64_t i = 0; i < aero->n; i++) {
         if (aero->section[i].table && spari_table_has_moment(aero->section[i].table)) {
             effects |= SPAR_AERO_MOMENT;
@@ -181,6 +185,10 @@ static int have(double **x, int64_t n) {
 static int adopt(spar_aero *aero, int effects, const char *caller) {
     int64_t all = count(aero);
     int whole = !(effects & SPAR_AERO_MOMENT) || have(&aero->moment, 3 * all);
+    if (effects & wind_effects) {
+        aero->inside = aero->inside ? aero->inside : spari_zalloc(all, sizeof *aero->inside);
+        whole = whole && have(&aero->met, 3 * all) && aero->inside;
+    }
     whole = whole && (!aero->rotor_given || have(&aero->omega, 3 * all));
     if ((effects & SPAR_AERO_INDUCTION) && !aero->solver) {
         aero->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
@@ -257,6 +265,89 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
     return status;
 }
 
+/* Place for the description of the wind. */
+static int have_wind(spar_aero *aero, const char *caller) {
+    aero->wind = aero->wind ? aero->wind : spari_zalloc(1, sizeof *aero->wind);
+    SPARI_REQUIRE(aero->session, aero->wind, SPAR_ERR_MEMORY, "%s: no memory for the wind", caller);
+    return SPAR_OK;
+}
+
+/* What is described now is in force, or all is as of old. */
+static int adopt_wind(spar_aero *aero, const spari_wind *old, const char *caller) {
+    int status = adopt(aero, implied_effects(aero), caller);
+    if (status != SPAR_OK) {
+        *aero->wind = *old;
+    }
+    return status;
+}
+
+/* What a law of shear is given: in range, with texts that say what that is. */
+static int check_shear(const spar_aero *aero, int law, double height, double parameter, const char *call) {
+    SPARI_REQUIRE(aero->session, law >= SPAR_SHEAR_POWER && law <= SPAR_SHEAR_LINEAR, SPAR_ERR_ARGUMENT,
+                  "%s: no law %d; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
+    SPARI_REQUIRE(aero->session, isfinite(height) && height > 0.0, SPAR_ERR_ARGUMENT,
+                  "%s: the reference height is %g; give one > 0 above the ground", call, height);
+    SPARI_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT, "%s: the parameter is not finite", call);
+    SPARI_REQUIRE(aero->session, law != SPAR_SHEAR_POWER || parameter >= 0.0, SPAR_ERR_ARGUMENT,
+                  "%s: exponent %g; give one >= 0", call, parameter);
+    SPARI_REQUIRE(aero->session, law != SPAR_SHEAR_LOG || (parameter > 0.0 && parameter < height), SPAR_ERR_ARGUMENT,
+                  "%s: roughness length %g, reference height %g; give 0 < roughness length < height", call, parameter,
+                  height);
+    return SPAR_OK;
+}
+
+/* The direction of v and its length, which must be one. */
+static int find_direction(const spar_aero *aero, const double v[3], double unit[3], double *length, const char *what,
+                          const char *call) {
+    *length = spari_first_nonfinite(v, 3) < 0 ? hypot(hypot(v[0], v[1]), v[2]) : NAN;
+    SPARI_REQUIRE(aero->session, isfinite(*length) && *length > 0.0, SPAR_ERR_ARGUMENT,
+                  "%s: %s has length %g; give a finite one, not 0", call, what, *length);
+    for (int i = 0; i < 3; i++) {
+        unit[i] = v[i] / *length;
+    }
+    return SPAR_OK;
+}
+
+int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const double up[3], double height,
+                        double parameter) {
+    SPARI_QUIET;
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, ground && up, SPAR_ERR_ARGUMENT, "%s: ground or up is NULL", __func__);
+    SPARI_REQUIRE(aero->session, spari_first_nonfinite(ground, 3) < 0, SPAR_ERR_ARGUMENT,
+                  "%s: the point on the ground has an entry that is not finite", __func__);
+    spari_shear made = {.law = law, .height = height, .parameter = parameter};
+    double length;
+    SPARI_TRY(find_direction(aero, up, made.up, &length, "the direction up", __func__));
+    SPARI_TRY(check_shear(aero, law, height, parameter, __func__));
+    memcpy(made.ground, ground, sizeof made.ground);
+    SPARI_TRY(have_wind(aero, __func__));
+    spari_wind old = *aero->wind;
+    aero->wind->shear = made;
+    aero->wind->has_shear = 1;
+    return adopt_wind(aero, &old, __func__);
+}
+
+int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[3], double base_radius,
+                        double top_radius) {
+    SPARI_QUIET;
+    REQUIRE_HANDLE(aero);
+    SPARI_REQUIRE(aero->session, base && top, SPAR_ERR_ARGUMENT, "%s: base or top is NULL", __func__);
+    SPARI_REQUIRE(aero->session, spari_first_nonfinite(base, 3) < 0 && spari_first_nonfinite(top, 3) < 0,
+                  SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite", __func__);
+    double axis[3] = {top[0] - base[0], top[1] - base[1], top[2] - base[2]};
+    spari_tower made = {.base_radius = base_radius, .top_radius = top_radius};
+    SPARI_TRY(find_direction(aero, axis, made.up, &made.length, "the way from base to top", __func__));
+    SPARI_REQUIRE(aero->session, isfinite(base_radius) && base_radius > 0.0 && isfinite(top_radius) && top_radius > 0.0,
+                  SPAR_ERR_ARGUMENT, "%s: radii %g at the base, %g at the top; give lengths > 0", __func__, base_radius,
+                  top_radius);
+    memcpy(made.top, top, sizeof made.top);
+    SPARI_TRY(have_wind(aero, __func__));
+    spari_wind old = *aero->wind;
+    aero->wind->tower = made;
+    aero->wind->has_tower = 1;
+    return adopt_wind(aero, &old, __func__);
+}
+
 int spar_aero_set_turn(spar_aero *aero, int turn) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
@@ -328,6 +419,10 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
     SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
     SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
                   "%s: induction is asked for but the rotor is not described; call spar_aero_set_rotor", call);
+    SPARI_REQUIRE(session, (aero->wind && aero->wind->has_shear) || !(aero->rotor.effects & SPAR_AERO_SHEAR),
+                  SPAR_ERR_STATE, "%s: shear is asked for but not described; call spar_aero_set_shear", call);
+    SPARI_REQUIRE(session, (aero->wind && aero->wind->has_tower) || !(aero->rotor.effects & SPAR_AERO_TOWER),
+                  SPAR_ERR_STATE, "%s: a tower is asked for but not described; call spar_aero_set_tower", call);
     SPARI_TRY(check_described(aero, call));
     int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
     if (bad >= 0) {
@@ -377,11 +472,27 @@ static int check_loads(const spar_aero *aero, const double *load, const char *wh
     return SPAR_OK;
 }
 
+/* The wind at the sections, where shear or a tower change it. */
+static const double *meet_wind(spar_aero *aero, const double *inflow) {
+    for (int64_t k = 0; k < count(aero); k++) {
+        aero->inside[k] =
+            spari_wind_meet(aero->wind, aero->rotor.effects, aero->x + 3 * k, inflow + 3 * k, aero->met + 3 * k);
+    }
+    return aero->met;
+}
+
+static void flag_inside(spar_aero *aero) {
+    for (int64_t k = 0; k < count(aero); k++) {
+        aero->element[k].flags |= aero->inside[k];
+    }
+}
+
 static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     SPARI_TRY(check_solve(aero, density, inflow, theta, call));
     aero->solved = 0;
     SPARI_TRY(pull_centres(aero, theta));
-    int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0;
+    int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0, changed = (aero->rotor.effects & wind_effects) != 0;
+    inflow = changed ? meet_wind(aero, inflow) : inflow;
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;
@@ -394,6 +505,9 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
         if (moments) {
             lump(aero, b, 3, aero->moment);
         }
+    }
+    if (changed) {
+        flag_inside(aero);
     }
     SPARI_TRY(check_loads(aero, aero->force, "a force", call));
     SPARI_TRY(moments ? check_loads(aero, aero->moment, "a moment", call) : SPAR_OK);

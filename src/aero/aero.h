@@ -3,6 +3,7 @@
 #define SPARI_AERO_H
 
 #include "element.h"
+#include "wind.h"
 
 #include <spar/spar_aero.h>
 
@@ -23,6 +24,9 @@ struct spar_aero {
     double *omega;          /* NULL: no rotor */
     spari_element *element; /* [blades][n] */
     double *force, *moment; /* moment: NULL before there is one to push */
+    spari_wind *wind;       /* NULL: neither shear nor tower described so far */
+    double *met;            /* [blades][n][3] wind with these; NULL: not in force so far */
+    int *inside;            /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
     spari_rotor used;       /* in the last solve; rotor_used: it was given then */
     int rotor_used;
 };

@@ -22,6 +22,8 @@ static const aero_row rows[SPAR_AERO_ROW_COUNT] = {
     {"swirl", SPAR_AERO_SWIRL, SPAR_AERO_INDUCTION},
     {"drag", SPAR_AERO_DRAG, 0},
     {"pitching moments", SPAR_AERO_MOMENT, 0},
+    {"wind shear", SPAR_AERO_SHEAR, 0},
+    {"tower shadow", SPAR_AERO_TOWER, 0},
 };
 
 const char *spar_aero_effect_name(int r) {

@@ -118,10 +118,10 @@ typedef struct setting {
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
     int unaudited, account, guess;
-    int reproducible;      /* if GIVEN */
-    int aero;              /* blades with sections */
-    int aero_effects;      /* if GIVEN */
-    int rotor, no_hub, cm; /* described */
+    int reproducible;                    /* if GIVEN */
+    int aero;                            /* blades with sections */
+    int aero_effects;                    /* if GIVEN */
+    int rotor, no_hub, cm, shear, tower; /* described */
 } setting;
 
 typedef struct scene {
@@ -235,7 +235,8 @@ static void make_fluid(scene *s) {
 
 static void make_aero(scene *s) {
     enum { ROWS = 73 };
-    static const double hub[3] = {0, 0, 0}, axis[3] = {1, 0, 0};
+    static const double hub[3] = {0, 0, 0}, axis[3] = {1, 0, 0}, ground[3] = {5, 0, -90}, sky[3] = {0, 0, 1},
+                        top[3] = {5, 0, 0};
     double alpha[ROWS], cl[ROWS], cd[ROWS], cm[ROWS], xi[SECTIONS] = {0}, offset[SECTIONS][3] = {{0}};
     for (int i = 0; i < ROWS; i++) {
         alpha[i] = 3.14159265358979 * (i - 36) / 36.0;
@@ -260,6 +261,12 @@ static void make_aero(scene *s) {
     }
     if (s->is.rotor) {
         MUST(spar_aero_set_rotor(s->aero, hub, axis, s->is.no_hub ? 0 : 1.5, 63));
+    }
+    if (s->is.shear) {
+        MUST(spar_aero_set_shear(s->aero, SPAR_SHEAR_POWER, ground, sky, 90, 0.2));
+    }
+    if (s->is.tower) {
+        MUST(spar_aero_set_tower(s->aero, ground, top, 3, 2));
     }
     s->force = room(3 * BLADES * SECTIONS); /* the wind */
     for (int k = 0; k < BLADES * SECTIONS; k++) {
@@ -472,6 +479,18 @@ static const effect effects[] = {
      {.aero = 1, .cm = 1},
      {.aero = 1, .cm = 1, .aero_effects = GIVEN | SPAR_AERO_DRAG},
      {.aero = 1}},
+    {"wind shear",
+     "spari_wind_meet pow",
+     0,
+     {.aero = 1, .shear = 1},
+     {.aero = 1, .shear = 1, .aero_effects = GIVEN | SPAR_AERO_DRAG},
+     {0}},
+    {"tower shadow",
+     "spari_wind_meet",
+     0,
+     {.aero = 1, .tower = 1},
+     {.aero = 1, .tower = 1, .aero_effects = GIVEN | SPAR_AERO_DRAG},
+     {0}},
 };
 
 static void run(const char *mode, const effect *e, const char *state, const setting *is) {

@@ -193,6 +193,8 @@ program test_bindings
   call refused(spar_fluid_read_aerodyn(none, n=0_c_int64_t), 'spar_fluid_read_aerodyn')
   call refused(spar_aero_read_aerodyn(none), 'spar_aero_read_aerodyn')
   call refused(spar_aero_set_turn(none, 0_c_int), 'spar_aero_set_turn')
+  call refused(spar_aero_set_shear(none, 0_c_int, height=0.0_c_double, parameter=0.0_c_double), 'spar_aero_set_shear')
+  call refused(spar_aero_set_tower(none, base_radius=0.0_c_double, top_radius=0.0_c_double), 'spar_aero_set_tower')
   call refused(spar_aero_set_blades(none, 0_c_int), 'spar_aero_set_blades')
   call refused(spar_aero_set_effects(none, 0_c_int), 'spar_aero_set_effects')
   call refused(spar_aero_solve(none, 0.0_c_double, theta=0.0_c_double), 'spar_aero_solve')

@@ -64,7 +64,9 @@
      section* xi chord twist POLAR [y z]      instead; POLAR: a file of rows alpha cl cd [cm], rad
      rotor x y z  ax ay az  hub_radius tip_radius     a point of the shaft, its direction, the blades' ends
      turn 1|-1                  total n, blades of the whole rotor
-     effects none|induction|tip_loss|hub_loss|swirl|drag|moment ...
+     shear power|log|linear  x y z  ux uy uz  height parameter   ground, up, where the wind is that given, the law's own
+     tower x y z  x y z  base_radius top_radius       its base, its top
+     effects none|induction|tip_loss|hub_loss|swirl|drag|moment|shear|tower ...
      density rho                wind x y z
    [output], [output HOST]: what spar_case_output writes; the second is for one adapter and replaces the first
      folder DIR                 of the pictures, made if it is not there; default: the working folder

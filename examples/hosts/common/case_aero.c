@@ -175,8 +175,26 @@ static int set_rotor(const spar_case *c, const case_block *block, spar_aero *aer
     return SPAR_OK;
 }
 
+static int change_wind(const spar_case *c, const case_block *block, spar_aero *aero) {
+    static const char *const laws[] = {"power", "log", "linear", NULL}; /* SPAR_SHEAR_* */
+    const case_line *line;
+    int law;
+    double x[8];
+    if ((line = case_find(block, "shear"))) {
+        CASE_TRY(case_choice(&c->text, line, 1, laws, &law));
+        CASE_TRY(case_numbers(&c->text, line, 2, 8, x));
+        DO(c, line->number, spar_aero_set_shear(aero, law, x, x + 3, x[6], x[7]));
+    }
+    if ((line = case_find(block, "tower"))) {
+        CASE_TRY(case_numbers(&c->text, line, 1, 8, x));
+        DO(c, line->number, spar_aero_set_tower(aero, x, x + 3, x[6], x[7]));
+    }
+    return SPAR_OK;
+}
+
 static int choose_effects(const spar_case *c, const case_block *block, spar_aero *aero) {
-    static const char *const names[] = {"induction", "tip_loss", "hub_loss", "swirl", "drag", "moment", "none", NULL};
+    static const char *const names[] = {"induction", "tip_loss", "hub_loss", "swirl", "drag",
+                                        "moment",    "shear",    "tower",    "none",  NULL};
     const case_line *line = case_find(block, "effects");
     int effects = 0, which;
     for (int i = 1; line && i <= line->n; i++) {
@@ -221,6 +239,7 @@ static int make_air(const spar_case *c, const case_block *block, case_air *air) 
     for (int64_t at = 0, i = 0; status == SPAR_OK && (line = case_next(block, "section", &at)); i++) {
         status = set_section(c, line, i, air->aero);
     }
+    status = status == SPAR_OK ? change_wind(c, block, air->aero) : status;
     status = status == SPAR_OK ? choose_effects(c, block, air->aero) : status;
     status = status == SPAR_OK ? set_wind(c, block, air) : status;
     free_files(&f);

@@ -41,9 +41,9 @@ static const known_key output_keys[] = {
     {"watch", 2, 2, 1},  {"save", 1, 2, 0},  {NULL, 0, 0, 0},
 };
 static const known_key aero_keys[] = {
-    {"blades", 1, 16, 0}, {"aerodyn", 1, 2, 0}, {"axes", 4, 4, 0},    {"stations", 3, 3, 0},
-    {"section", 4, 6, 1}, {"rotor", 8, 8, 0},   {"turn", 1, 1, 0},    {"total", 1, 1, 0},
-    {"effects", 1, 7, 0}, {"wind", 3, 3, 0},    {"density", 1, 1, 0}, {NULL, 0, 0, 0},
+    {"blades", 1, 16, 0}, {"aerodyn", 1, 2, 0}, {"axes", 4, 4, 0},    {"stations", 3, 3, 0}, {"section", 4, 6, 1},
+    {"rotor", 8, 8, 0},   {"turn", 1, 1, 0},    {"total", 1, 1, 0},   {"effects", 1, 9, 0},  {"shear", 9, 9, 0},
+    {"tower", 8, 8, 0},   {"wind", 3, 3, 0},    {"density", 1, 1, 0}, {NULL, 0, 0, 0},
 };
 static const known_key no_keys[] = {{NULL, 0, 0, 0}};
 

@@ -178,6 +178,22 @@ void do_spar_aero_set_turn(call *c) {
     RUN(c, spar_aero_set_turn(a->a, turn));
 }
 
+void do_spar_aero_set_shear(call *c) {
+    live_aero *a = arg_aero(c);
+    int law = odd(c) ? arg_int(c, -1, 3) : below(c, 3);
+    text(c, ", %d", law);
+    double *ground = arg_reals(c, 3, -3, 3), *up = arg_reals(c, 3, -1, 1), height = arg_real(c, 1, 20),
+           parameter = arg_real(c, 0, 0.5);
+    RUN(c, spar_aero_set_shear(a->a, law, ground, up, height, parameter));
+}
+
+void do_spar_aero_set_tower(call *c) {
+    live_aero *a = arg_aero(c);
+    double *base = arg_reals(c, 3, -3, 3), *top = arg_reals(c, 3, -3, 3), wide = arg_real(c, 0.1, 0.5),
+           narrow = arg_real(c, 0.1, 0.5);
+    RUN(c, spar_aero_set_tower(a->a, base, top, wide, narrow));
+}
+
 void do_spar_aero_set_blades(call *c) {
     live_aero *a = arg_aero(c);
     int total = arg_int(c, 3, 5);
@@ -186,7 +202,7 @@ void do_spar_aero_set_blades(call *c) {
 
 void do_spar_aero_set_effects(call *c) {
     live_aero *a = arg_aero(c);
-    int effects = arg_flags(c, 63);
+    int effects = arg_flags(c, 255);
     RUN(c, spar_aero_set_effects(a->a, effects));
 }
 

@@ -198,6 +198,8 @@ enum {
     CALL(spar_aero_read_aerodyn, 20, FUZZ_CHANGES)                                                                     \
     CALL(spar_aero_set_rotor, 50, FUZZ_CHANGES)                                                                        \
     CALL(spar_aero_set_turn, 25, FUZZ_CHANGES)                                                                         \
+    CALL(spar_aero_set_shear, 25, FUZZ_CHANGES)                                                                        \
+    CALL(spar_aero_set_tower, 25, FUZZ_CHANGES)                                                                        \
     CALL(spar_aero_set_blades, 25, FUZZ_CHANGES)                                                                       \
     CALL(spar_aero_set_effects, 30, FUZZ_CHANGES)                                                                      \
     CALL(spar_aero_solve, 150, FUZZ_PUSH)                                                                              \

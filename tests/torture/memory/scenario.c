@@ -801,7 +801,8 @@ static int blow(spar_session *s, double t, double dt, int iteration, void *conte
 /* One blade of a rotor, by blade elements; the fluid lives on rank 0. */
 static void act_aero(void) {
     enum { N = 5 };
-    static const double pi = 3.14159265358979323846, hub[3], axis[3] = {0, 1, 0};
+    static const double pi = 3.14159265358979323846, hub[3], axis[3] = {0, 1, 0}, ground[3] = {0, 9, -90},
+                        up[3] = {0, 0, 1};
     double alpha[7], cl[7], cd[7], cm[7], xi[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power,
         table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     int flags[N];
@@ -836,7 +837,9 @@ static void act_aero(void) {
         CALL(spar_aero_set_rotor, w.aero, hub, axis, 0.5, 11);
         CALL(spar_aero_set_turn, w.aero, 1);
         CALL(spar_aero_set_blades, w.aero, 3);
-        CALL(spar_aero_set_effects, w.aero, 2 * SPAR_AERO_MOMENT - 1);
+        CALL(spar_aero_set_shear, w.aero, SPAR_SHEAR_POWER, ground, up, 90, 0.2);
+        CALL(spar_aero_set_tower, w.aero, ground, hub, 3, 2);
+        CALL(spar_aero_set_effects, w.aero, 2 * SPAR_AERO_TOWER - 1);
         CALL(spar_aero_solve, w.aero, 1.225, w.inflow[0], 1);
         CALL(spar_aero_get_rotor, w.aero, &thrust, &torque, &power);
         note(&thrust, sizeof thrust);
