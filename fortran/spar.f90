@@ -75,7 +75,7 @@ module spar
   integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
   integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
-      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256
+      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512
   integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
@@ -99,7 +99,7 @@ module spar
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
       SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
-      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_COUNT = 12
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_COUNT = 13
   integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
@@ -222,6 +222,8 @@ module spar
     generic :: set_nodes => member_set_nodes, member_set_nodes_single_1
     procedure, private :: member_set_sections, member_set_sections_single_1
     generic :: set_sections => member_set_sections, member_set_sections_single_1
+    procedure, private :: member_set_masses, member_set_masses_single_1
+    generic :: set_masses => member_set_masses, member_set_masses_single_1
     procedure :: set_quadrature => member_set_quadrature
     procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_damping, member_set_damping_single_1
@@ -286,6 +288,8 @@ module spar
     procedure :: set_fidelity => member_set_fidelity
     procedure, private :: member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
     generic :: get_added_mass => member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
+    procedure, private :: member_get_masses, member_get_masses_single_1, member_get_masses_single_2
+    generic :: get_masses => member_get_masses, member_get_masses_single_1, member_get_masses_single_2
     procedure, private :: member_learn_added_mass, member_learn_added_mass_single_1
     generic :: learn_added_mass => member_learn_added_mass, member_learn_added_mass_single_1
     procedure, private :: member_get_learned_added_mass, member_get_learned_added_mass_single_1, &
@@ -1189,6 +1193,31 @@ contains
         status = spar_member_get_added_mass(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_added_mass
+
+  ! n: bodies; eta and mass are filled as far as they reach
+  subroutine member_get_masses(self, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(mass, 3, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_masses', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_beam_get_masses(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_beam_get_masses(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(mass)) &
+        status = spar_beam_get_masses(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_masses
 
   subroutine member_learn_added_mass(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -2474,6 +2503,21 @@ contains
     call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), self%session, &
         stat, errmsg)
   end subroutine member_set_sections
+
+  subroutine member_set_masses(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_masses', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_masses(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, errmsg)
+  end subroutine member_set_masses
 
   subroutine member_set_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -4141,6 +4185,40 @@ contains
     call take(c_mass, mass)
   end subroutine member_get_added_mass_single_2
 
+  subroutine member_get_masses_single_1(self, n, eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(mass)) allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, &
+        c_int64_t)), source=untouched)
+    call member_get_masses(self, n=n, eta=c_eta, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_eta, eta)
+    call take(c_mass, mass)
+  end subroutine member_get_masses_single_1
+
+  subroutine member_get_masses_single_2(self, n, no_eta, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mass(:,:,:)
+
+    allocate (c_mass(ubound(mass, 1, c_int64_t), ubound(mass, 2, c_int64_t), ubound(mass, 3, c_int64_t)), &
+        source=untouched)
+    if (present(no_eta)) return
+    call member_get_masses(self, n=n, mass=c_mass, stat=stat, errmsg=errmsg)
+    call take(c_mass, mass)
+  end subroutine member_get_masses_single_2
+
   subroutine member_learn_added_mass_single_1(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: eta(:)
@@ -5224,6 +5302,16 @@ contains
     call member_set_sections(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), mass=c_mass, &
         stat=stat, errmsg=errmsg)
   end subroutine member_set_sections_single_1
+
+  subroutine member_set_masses_single_1(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_masses(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_masses_single_1
 
   subroutine member_set_damping_single_1(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self

@@ -28,7 +28,7 @@ static double guess; /* of the piston's added mass, kg, and of as much spread al
 /* Rank `me` of `ranks` gets its share of the nodes. */
 static void create(scene *c, int me, int ranks, int scheme) {
     static const double q[4] = {1, 0, 0, 0}, where[3] = {0, 5, 0}, centre[3] = {0, 0, 0}, J[3] = {1, 1, 1};
-    double K[36], M[36], mass[36], added[36], along[36], gravity[3] = {0, 0, -2}, eta[1] = {0};
+    double K[36], M[36], mass[36], added[36], along[36], gravity[3] = {0, 0, -2}, eta[1] = {0}, tip[1] = {1};
     int carriers = ranks > 1 ? ranks - 1 : 1;
     memset(c, 0, sizeof *c);
     if (ranks > 1) {
@@ -47,6 +47,8 @@ static void create(scene *c, int me, int ranks, int scheme) {
     scene_diagonal(added, guess, guess, guess, 0, 0, 0);
     scene_diagonal(along, guess / 10, guess / 10, guess / 10, 0, 0, 0);
     OK(s, spar_member_set_added_mass(c->beam, guess > 0, eta, along));
+    scene_diagonal(mass, 0.5, 0.5, 0.5, 0.02, 0.01, 0.01);
+    OK(s, spar_beam_set_masses(c->beam, guess > 0, tip, mass));
     OK(s, spar_member_learn_added_mass(c->beam, learns, eta));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
@@ -155,9 +157,10 @@ static void same_as_serial(void **state) {
 static void guess_over_ranks(void **state) {
     (void)state;
     static const double x[3] = {0, 9, 0}, q[4] = {1, 0, 0, 0}, c[3] = {0, 0, 0}, J[3] = {1, 1, 1};
-    double mass[36];
+    double mass[36], along[36], mass_of_beam[36];
     spar_member *body;
     scene all, alone;
+    scene_diagonal(mass_of_beam, 1, 1, 1, 0.02, 0.01, 0.01);
     guess = 5;
     create(&all, rank, size, SPAR_COUPLING_IQN_ILS);
     create(&alone, 0, 1, SPAR_COUPLING_IQN_ILS);
@@ -181,6 +184,12 @@ static void guess_over_ranks(void **state) {
         OK(all.session, spar_member_set_added_mass(body, 1, NULL, mass));
         OK(all.session, spar_member_commit(body));
     }
+    const double tip = 1;
+    scene_diagonal(along, 1e4, 1e4, 1e4, 1e3, 1e3, 1e3);
+    spar_member *laden = scene_beam(all.session, "laden", 1, 4, 2, along, mass_of_beam);
+    scene_diagonal(mass, 1 + (rank == size - 1), 1 + (rank == size - 1), 1 + (rank == size - 1), 0, 0, 0);
+    OK(all.session, spar_beam_set_masses(laden, 1, &tip, mass));
+    assert_int_equal(spar_member_commit(laden), size > 1 ? SPAR_ERR_COMM : SPAR_OK);
     spar_session_destroy(&all.session);
 }
 

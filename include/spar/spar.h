@@ -373,7 +373,8 @@ enum {
     SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
     SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
     SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
-    SPAR_EFFECT_DEFAULT = 256        /* all that is on where nothing is set; or-ed with what is wanted besides */
+    SPAR_EFFECT_DEFAULT = 256,       /* all that is on where nothing is set; or-ed with what is wanted besides */
+    SPAR_EFFECT_MASSES = 512         /* bodies of spar_beam_set_masses */
 };
 
 /* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
@@ -429,6 +430,21 @@ SPAR_API int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, 
      mass[n][36]: in, per length, kg/m, kg, kg m, of the form of a rigid section, NULL: massless */
 SPAR_API int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
                                     const double *mass);
+/* Rigid bodies, or points of mass, that sit on a beam and go with its line and its sections: a nacelle, an engine, a
+   float, an instrument. Their inertia, gyroscopic terms and weight are the beam's, in all that is made of these: steps,
+   statics on turning roots, modes, energies, reactions; every fidelity that has mass has them. Replaces what was set
+   before. Local, before commit.
+     n: in, 0 to 10000, 0: none any more
+     eta[n]: in, in [0,1], in any order; several may be at one place
+     mass[n][36]: in, about the line at eta and in the section's axes there: m I, m c~ and J as of a rigid body with its
+           centre of mass at c; any other form is refused
+   A body belongs to the place of the line and not to a node: between nodes it moves as the field between them does, and
+   where its weight or inertia is large an end of an element there takes the kink that it makes in the section forces.
+   SPAR_ERR_STATE at commit: the sections have no mass. */
+SPAR_API int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const double *mass);
+/* n: out, how many there are, NULL: not wanted; capacity: in, of the arrays; eta[capacity], mass[capacity][36]: out, 0
+   behind the last, NULL: not wanted. Local. */
+SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass);
 /* Integration along an element. Default: sections if there are more than two stations, else Gauss with as many points
    as nodes. Commit refuses a rule too coarse for the element. Local.
      rule: in, SPAR_QUADRATURE_GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points` Gauss points in
@@ -1206,7 +1222,8 @@ SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, s
 
 /* Rows of the report of effects. */
 enum {
-    SPAR_ROW_INERTIA = 0, /* size: its nodal forces relative to the largest of all terms; the next three likewise */
+    SPAR_ROW_INERTIA = 0, /* size: its nodal forces relative to the largest of all terms, roots of the sums of squares
+                             over nodes, the present state and the trial's steps; the next three likewise */
     SPAR_ROW_GYROSCOPIC = 1,
     SPAR_ROW_GRAVITY = 2,
     SPAR_ROW_DAMPING = 3,
@@ -1218,12 +1235,13 @@ enum {
     SPAR_ROW_PREDICTOR = 9,      /* size: |predicted - final| / |final| loads of the last step; without: order 0 */
     SPAR_ROW_ITERATION = 10,     /* size: added mass over mass, as the coupling sees it; without: explicit */
     SPAR_ROW_HALF_STEP = 11,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
-    SPAR_ROW_COUNT = 12
+    SPAR_ROW_MASSES = 12,        /* bodies on beams; size as of gravity: their weight and inertia */
+    SPAR_ROW_COUNT = 13
 };
 /* Columns of the same. */
 enum {
     SPAR_COLUMN_IN_FORCE = 0, /* 1; 0: the scene has it not, and the rest of the row is 0 */
-    SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, from the present state */
+    SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, over the trial: a scene at rest may be about to move */
     SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it (a log
                                  is told why, at SPAR_LOG_INFO) */
     SPAR_COLUMN_REACTION = 3, /* the same of the roots' reactions */
@@ -1233,8 +1251,8 @@ enum {
 };
 /* Name of a row, "gravity"; static storage; "" for what is no row. */
 SPAR_API const char *spar_effect_name(int row);
-/* What each effect is worth in the scene as it stands: sizes from the present state; errors and savings from trials,
-   with the effect and without it, all members at once.
+/* What each effect is worth in the scene as it stands: sizes, errors and savings from trials, with the effect and
+   without it, all members at once.
      dt: in, s
      steps: in, of dt in each trial, a multiple of 8
      before, solve, context: in, as of spar_session_try; solve NULL: under the present loads, rows of the fluid not in

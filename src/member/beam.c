@@ -24,6 +24,8 @@ void spari_beam_free(spari_beam *beam) {
     free(beam->section_eta);
     free(beam->stiffness);
     free(beam->mass);
+    free(beam->lump_eta);
+    free(beam->lump);
     free(beam);
 }
 
@@ -504,21 +506,28 @@ static void reference_frame(const spar_member *member, const framing *f, const d
     spari_quat_matrix(q, R);
 }
 
-/* Point i of element e. */
-static void fill_point(const spar_member *member, spari_body *b, int e, int i, double xi, double w, const double R[9],
-                       const double *gll, const double *bary, const double *mu) {
-    const spari_beam *beam = member->beam;
-    int P = b->per_element, k = b->first[e] + i, slot = b->slot[e] + i;
+/* Where point i of element e is; the line's Jacobian there. */
+static double fill_place(const spar_member *member, spari_body *b, int e, int i, double xi, const double *gll,
+                         const double *bary) {
+    int P = b->per_element, k = b->first[e] + i;
     line_point p;
-    double eta = 0.5 * (1 + spari_member_xi(member, e, xi)), section[36], turned[36];
     line_at(P, gll, bary, member->xr + 3 * (int64_t)e * P, xi, &p);
     spari_lagrange(P, gll, bary, xi, b->phi + (int64_t)k * P, b->dphi + (int64_t)k * P);
     for (int l = 0; l < P; l++) {
         b->dphi[(int64_t)k * P + l] /= p.jacobian;
     }
-    b->weight[slot] = w * p.jacobian;
-    spari_slot_put(b->tangent, 3, slot, p.t);
+    spari_slot_put(b->tangent, 3, b->slot[e] + i, p.t);
     memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
+    return p.jacobian;
+}
+
+/* Point i of element e. */
+static void fill_point(const spar_member *member, spari_body *b, int e, int i, double xi, double w, const double R[9],
+                       const double *gll, const double *bary, const double *mu) {
+    const spari_beam *beam = member->beam;
+    int slot = b->slot[e] + i;
+    double eta = 0.5 * (1 + spari_member_xi(member, e, xi)), section[36], turned[36];
+    b->weight[slot] = w * fill_place(member, b, e, i, xi, gll, bary);
     b->length += b->weight[slot];
     spari_beam_section_at(beam, beam->stiffness, eta, section);
     spari_beam_turn_section(R, section, turned);
@@ -538,6 +547,29 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
         spari_beam_section_at(beam, beam->mass, eta, section);
         spari_mass_place(R, section, mass);
         spari_slot_put(b->mass, 10, slot, mass);
+    }
+}
+
+/* Whether the bodies that sit on a beam are points of it. */
+static int shows_lumps(const spar_member *member, int massive) {
+    return massive && member->beam->lump_count > 0 && (member->effects & SPAR_EFFECT_MASSES);
+}
+
+/* What sits on element e, as points behind its `at` others: of weight 1, without stiffness. */
+static void fill_lumps(const spar_member *member, const framing *f, const double *x, int e, int at, spari_body *b) {
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
+    spari_gll(b->per_element, gll, NULL, bary);
+    for (int64_t k = 0; k < member->beam->lump_count; k++) {
+        double xi, R[9], mass[10];
+        if (spari_lump_element(member, k, &xi) != e) {
+            continue;
+        }
+        (void)fill_place(member, b, e, at, xi, gll, bary);
+        b->weight[b->slot[e] + at] = 1;
+        reference_frame(member, f, gll, bary, x, e, xi, R);
+        spari_mass_place(R, member->beam->lump + 36 * k, mass);
+        spari_slot_put(b->mass, 10, b->slot[e] + at, mass);
+        at++;
     }
 }
 
@@ -579,6 +611,9 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
             reference_frame(member, &f, gll, bary, x, e, xi[i], R);
             fill_point(member, b, e, i, xi[i], w[i], R, gll, bary, mu);
         }
+        if (b->first[e + 1] - b->first[e] > n) {
+            fill_lumps(member, &f, x, e, n, b);
+        }
     }
     free(xi);
     free(w);
@@ -594,6 +629,9 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
     spari_body *b = NULL;
     if (status == SPAR_OK) {
         massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
+        for (int e = 0; e < member->elements && shows_lumps(member, massive); e++) {
+            points[e] += spari_lumps_of(member, e);
+        }
         b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
         status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
         if (b) {

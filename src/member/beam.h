@@ -11,6 +11,8 @@ struct spari_beam {
     double *eta, *xyz, *twist; /* axis points */
     double *node_x, *node_q;   /* nodes given instead */
     double *section_eta, *stiffness, *mass;
+    int64_t lump_count; /* bodies that sit on it: eta and 6x6 mass of each */
+    double *lump_eta, *lump;
     int rule, points; /* rule -1: chosen by what the sections are */
     double mu[6];
     int damped;
@@ -22,6 +24,15 @@ int spari_beam_place_nodes(spar_member *member);
    damping, NULL: none. */
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);
 void spari_beam_free(spari_beam *beam);
+/* Body k of those that sit on a beam: its element, and where on it. */
+int spari_lump_element(const spar_member *member, int64_t k, double *xi);
+/* How many of them sit on element e. */
+int spari_lumps_of(const spar_member *member, int e);
+/* Their weight in the sums over its body's points: 1, or 0 to leave them out of these. */
+void spari_lumps_weigh(const spar_member *member, double weight);
+/* Whether a beam can have those it has been given; at commit. */
+int spari_lumps_check(const spar_member *member);
+enum { SPARI_LUMPS = 10000 }; /* at most */
 /* The quadrature rule in force. */
 int spari_beam_rule(const spari_beam *beam);
 

@@ -218,6 +218,7 @@ static int check_complete(spar_member *m) {
                       "member '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
+        SPARI_TRY(spari_lumps_check(m));
     }
     SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
                   "member '%s': the clock has started; commit members before the first step", m->name);
@@ -227,7 +228,7 @@ static int check_complete(spar_member *m) {
 /* What is in force: what was asked for, or is implied, as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT;
+                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES;
     int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
@@ -235,6 +236,7 @@ int spari_member_effects(const spar_member *m) {
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
+    possible |= solved && massive && m->beam && m->beam->lump_count > 0 ? SPAR_EFFECT_MASSES : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }

@@ -1,9 +1,10 @@
-/* What an effect is worth: its size in the present state, and trials with it and without. */
+/* What an effect is worth: its size in a run, and trials with it and without. */
 #include "../base/quiet.h"
 #include "trial.h"
 
 #include "../math/rotation.h"
 #include "../member/applied.h"
+#include "../member/beam.h"
 #include "../member/body.h"
 #include "../member/joint.h"
 
@@ -56,7 +57,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
 /* ---- sizes ---- */
 
 /* Terms of the balance of forces */
-enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, LOADS, TERMS };
+enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, LOADS, TERMS };
 
 /* Sum of the squares of nodal forces r [n][6], moments by the length. */
 static double squares(const double *r, int64_t n, double length) {
@@ -72,6 +73,19 @@ static void minus(double *r, const double *from, int64_t n) {
     for (int64_t i = 0; i < 6 * n; i++) {
         r[i] -= from[i];
     }
+}
+
+/* Forces of the bodies that sit on a beam: with them less without. r, less: work of [6 n] each. */
+static double lump_squares(const spar_member *m, const double *q, const double *v, const double *a, double *r,
+                           double *less, double length) {
+    int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0;
+    const double *rate = inertia ? v : NULL, *acceleration = inertia ? a : NULL;
+    spari_body_exact_residual(m->body, q, rate, acceleration, 1, r, NULL);
+    spari_lumps_weigh(m, 0);
+    spari_body_exact_residual(m->body, q, rate, acceleration, 1, less, NULL);
+    spari_lumps_weigh(m, 1);
+    minus(r, less, m->body->unique);
+    return squares(r, m->body->unique, length);
 }
 
 /* Adds the squares of a member's terms at t^n. */
@@ -105,6 +119,9 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
         spari_body_residual(b, q, v, none, 0, r, NULL);
         minus(rest, r, n);
         sum[INERTIA] += squares(rest, n, length);
+    }
+    if (m->effects & SPAR_EFFECT_MASSES) {
+        sum[MASSES] += lump_squares(m, q, v, a, r, rest, length);
     }
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
         loads[i] = m->dead[i] + m->load_pushed[i];
@@ -145,27 +162,40 @@ static double fastest_turn(const spar_session *s) {
     return most;
 }
 
-static int find_sizes(spar_session *s, double dt, double size[SPAR_ROW_COUNT]) {
-    double sum[TERMS] = {0}, leading = 0;
-    for (spar_member *m = s->members; m; m = m->next) {
+/* What a run has shown so far: sums of the terms' squares, the largest turn, the fastest one. */
+typedef struct sizes {
+    double sum[TERMS], turn, rate;
+} sizes;
+
+static int add_state(spar_session *s, void *to) {
+    sizes *so_far = to;
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         if (m->body) {
-            SPARI_TRY(member_terms(m, sum));
-            size[SPAR_ROW_LARGE_ROTATION] = fmax(size[SPAR_ROW_LARGE_ROTATION], largest_turn(m));
+            status = member_terms(m, so_far->sum);
+            so_far->turn = fmax(so_far->turn, largest_turn(m));
         }
     }
+    so_far->rate = fmax(so_far->rate, fastest_turn(s));
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+}
+
+/* Terms of the whole run, by the largest of them. */
+static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) {
+    double leading = 0;
     for (int k = 0; k < TERMS; k++) {
-        leading = fmax(leading, sum[k]);
+        leading = fmax(leading, of->sum[k]);
     }
     static const int row[] = {[INERTIA] = SPAR_ROW_INERTIA,
                               [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC,
                               [GRAVITY] = SPAR_ROW_GRAVITY,
-                              [DAMPING] = SPAR_ROW_DAMPING};
-    for (int k = INERTIA; k <= DAMPING; k++) {
-        size[row[k]] = leading > 0 ? sqrt(sum[k] / leading) : 0;
+                              [DAMPING] = SPAR_ROW_DAMPING,
+                              [MASSES] = SPAR_ROW_MASSES};
+    for (int k = INERTIA; k <= MASSES; k++) {
+        size[row[k]] = leading > 0 ? sqrt(of->sum[k] / leading) : 0;
     }
-    double angle = fastest_turn(s) * dt;
-    size[SPAR_ROW_HALF_STEP] = angle * angle / 8;
-    return SPAR_OK;
+    size[SPAR_ROW_LARGE_ROTATION] = of->turn;
+    size[SPAR_ROW_HALF_STEP] = of->rate * dt * of->rate * dt / 8;
 }
 
 /* ---- rows ---- */
@@ -189,6 +219,7 @@ static const row rows[SPAR_ROW_COUNT] = {
     {"predictor", 0, 0},
     {"iteration", 0, 0},
     {"half step", 0, SPARI_MUTE_HALF_STEP},
+    {"bodies on beams", SPAR_EFFECT_MASSES, 0},
 };
 
 const char *spar_effect_name(int r) {
@@ -306,11 +337,15 @@ static int asked_anywhere(spar_session *s, int *asked) {
 
 static int fill_rows(spar_session *s, const char *call, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
     double size[SPAR_ROW_COUNT] = {0};
+    sizes seen = {{0}, 0, 0};
+    spari_run watched = *run;
     spari_wish wish;
     spari_record base;
-    SPARI_TRY(spari_comm_agree(s->comm, find_sizes(s, run->dt, size), s->message, sizeof s->message));
+    watched.watch = add_state, watched.watcher = &seen;
+    SPARI_TRY(add_state(s, &seen));
     SPARI_TRY(spari_wish_create(s, &wish));
-    (void)spari_trial_run(s, run, &wish, &base);
+    (void)spari_trial_run(s, &watched, &wish, &base);
+    find_sizes(&seen, run->dt, size);
     int status = base.own, asked = base.asked;
     spari_wish_free(&wish);
     size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];

@@ -403,6 +403,7 @@ static int march(spar_session *s, const spari_run *run, const sight *w, spari_re
     for (int64_t i = 1; i <= run->steps; i++) {
         SPARI_TRY(prepare_step(s, run));
         SPARI_TRY(step_once(s, run, r));
+        SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
         if (i * SPARI_SAMPLES % run->steps == 0) {
             int64_t k = i * SPARI_SAMPLES / run->steps - 1;

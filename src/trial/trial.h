@@ -19,6 +19,9 @@ typedef struct spari_run {
     spar_before_step before;
     spar_fluid_solver solve;
     void *context;
+    int (*watch)(spar_session *session,
+                 void *watcher); /* NULL, or called after each step: a status that all agree on */
+    void *watcher;
     int timed; /* whether the time of the fluid's solutions is wanted */
 } spari_run;
 

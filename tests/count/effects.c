@@ -117,7 +117,7 @@ typedef struct setting {
     int poses, accelerations;    /* pulled */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
-    int unaudited, account, guess;
+    int unaudited, account, guess, laden;
     int reproducible;                    /* if GIVEN */
     int aero;                            /* blades with sections */
     int aero_effects;                    /* if GIVEN */
@@ -193,6 +193,9 @@ static void make_beam(scene *s) {
     }
     if (s->is.guess) {
         MUST(spar_member_set_added_mass(*b, 1, eta, mass));
+    }
+    if (s->is.laden) {
+        MUST(spar_beam_set_masses(*b, 1, eta + 1, mass));
     }
     s->described = heap;
     MUST(spar_member_commit(*b));
@@ -409,6 +412,7 @@ static const effect effects[] = {
      {.effects = ALL & ~SPAR_EFFECT_LARGE_ROTATION},
      {0}},
     {"work account", "spari_work_step", NEVER, {.account = 1}, {0}, {0}},
+    {"bodies on beams", "", NEVER, {.laden = 1}, {.laden = 1, .effects = ALL}, {0}},
     {"known added mass", "spari_added_times", NEVER, {.guess = 1}, {0}, {0}},
     {"fluid moment",
      "",

@@ -286,14 +286,15 @@ static int set_fidelity(const spar_case *c, const case_line *line, spar_member *
     return case_told(c, line->number, spar_member_set_fidelity(beam, kind, modes));
 }
 
-/* A guess of what the fluid adds to a beam, by its stations. */
-static int set_added_mass(const spar_case *c, const case_block *block, spar_member *beam) {
+/* Masses of a beam by their eta: a guess of what the fluid adds to it, or bodies that sit on it. */
+static int set_masses(const spar_case *c, const case_block *block, const char *key,
+                      int (*set)(spar_member *, int64_t, const double *, const double *), spar_member *beam) {
     rows r = {0};
-    int status = read_rows(&c->text, block, "added_mass", 1, &r), form = r.width - 1;
+    int status = read_rows(&c->text, block, key, 1, &r), form = r.width - 1;
     if (status == SPAR_OK && r.n > 0 && form != 6 && form != 21 && form != 36) {
-        status =
-            case_fail(&c->text, r.line, SPAR_ERR_ARGUMENT,
-                      "a row of added_mass has %d numbers; give eta and 6, 21 or 36 of the mass per length", r.width);
+        status = case_fail(&c->text, r.line, SPAR_ERR_ARGUMENT,
+                           "a row of %s has %d numbers; give eta and 6, 21 or 36 of the mass%s", key, r.width,
+                           set == spar_member_set_added_mass ? " per length" : "");
     }
     double *all = status == SPAR_OK && r.n > 0 ? calloc(37 * (size_t)r.n, sizeof *all) : NULL;
     if (status == SPAR_OK && r.n > 0) {
@@ -302,8 +303,7 @@ static int set_added_mass(const spar_case *c, const case_block *block, spar_memb
         for (int64_t i = 0; all && i < r.n; i++) {
             case_unfold(form, r.x + i * r.width + 1, all + r.n + 36 * i);
         }
-        status =
-            status == SPAR_OK ? case_told(c, r.line, spar_member_set_added_mass(beam, r.n, eta, all + r.n)) : status;
+        status = status == SPAR_OK ? case_told(c, r.line, set(beam, r.n, eta, all + r.n)) : status;
     }
     free(all);
     free(r.x);
@@ -331,7 +331,8 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
         CASE_TRY(case_numbers(&c->text, line, 1, 6, mu));
         DO(c, line->number, spar_beam_set_damping(*beam, mu));
     }
-    CASE_TRY(set_added_mass(c, block, *beam));
+    CASE_TRY(set_masses(c, block, "added_mass", spar_member_set_added_mass, *beam));
+    CASE_TRY(set_masses(c, block, "body", spar_beam_set_masses, *beam));
     line = case_find(block, "fidelity");
     return line ? set_fidelity(c, line, *beam) : SPAR_OK;
 }

@@ -173,9 +173,23 @@ void do_spar_member_set_external(call *c) {
 
 void do_spar_member_set_effects(call *c) {
     live_member *m = arg_member(c, -1);
-    int effects = arg_flags(c, 511);
+    int effects = arg_flags(c, 1023);
     c->wild |= !(effects & SPAR_EFFECT_INERTIA); /* nothing may hold it */
     RUN(c, spar_member_set_effects(m->m, effects));
+}
+
+void do_spar_beam_set_masses(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t n = chance(c, 10) ? 0 : arg_count(c, 1, 3), room = length(n);
+    double *eta = arg_rising(c, room, 0, 1), *M = arg_mass(c, room, 1);
+    RUN(c, spar_beam_set_masses(m->m, n, eta, M));
+}
+
+void do_spar_beam_get_masses(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);
+    double *eta = OUT_OR_NULL(c, length(capacity)), *M = OUT_OR_NULL(c, 36 * length(capacity));
+    RUN(c, spar_beam_get_masses(m->m, n, capacity, eta, M));
 }
 
 void do_spar_member_set_added_mass(call *c) {

@@ -449,10 +449,11 @@ static void act_fidelities(void) {
                  {SPAR_FIDELITY_PRESCRIBED, 0, SPAR_ROOT_DRIVEN, 1, 3}};
     static const char *const name[4] = {"rigid", "linear", "modal", "prescribed"};
     host h = {.fluids = 4, .members = 4};
-    double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3], guess[72] = {0},
+    double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3], guess[72] = {0}, body[72] = {0},
            eta[2] = {0, 1};
     int64_t stations;
     guess[7] = guess[14] = guess[36 + 7] = 0.1;
+    body[0] = body[7] = body[14] = body[36] = body[43] = body[50] = 0.1;
     spar_session *s = h.session = begin_session();
     CALL(spar_session_set_coupling, s, SPAR_COUPLING_AITKEN, 1e-9, 1e-7, 40);
     for (int k = 0; k < 4; k++) {
@@ -463,6 +464,8 @@ static void act_fidelities(void) {
         if (k != 3) {
             CALL(spar_member_set_added_mass, m, 2, eta, guess);
             CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
+            CALL(spar_beam_set_masses, m, 2, eta, body);
+            CALL(spar_beam_get_masses, m, &stations, 2, NULL, body);
             CALL(spar_member_learn_added_mass, m, 2, eta);
             CALL(spar_member_get_learned_added_mass, m, NULL, NULL, &stations, 2, NULL, guess);
         }

@@ -1,0 +1,91 @@
+/* Bodies that sit on a beam: what the host says of them, and where on the elements they are. Each becomes a point of
+   the body without stiffness (beam.c), so that inertia, weight and whatever is made of them have it like any other. */
+#include "../base/quiet.h"
+#include "beam.h"
+#include "edge.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int spari_lump_element(const spar_member *member, int64_t k, double *xi) {
+    double along = member->beam->lump_eta[k] * member->elements;
+    int e = (int)ceil(along - 1e-9) - 1; /* a joint belongs to the element before it */
+    e = e < 0 ? 0 : e > member->elements - 1 ? member->elements - 1 : e;
+    *xi = fmin(fmax(2 * (along - e) - 1, -1), 1);
+    return e;
+}
+
+int spari_lumps_of(const spar_member *member, int e) {
+    int n = 0;
+    for (int64_t k = 0; k < member->beam->lump_count; k++) {
+        double xi;
+        n += spari_lump_element(member, k, &xi) == e;
+    }
+    return n;
+}
+
+void spari_lumps_weigh(const spar_member *member, double weight) {
+    spari_body *b = member->body;
+    for (int e = 0; e < b->elements; e++) {
+        int n = b->first[e + 1] - b->first[e], lumps = spari_lumps_of(member, e);
+        for (int k = n - lumps; k < n; k++) {
+            b->weight[b->slot[e] + k] = weight;
+        }
+    }
+}
+
+int spari_lumps_check(const spar_member *member) {
+    SPARI_REQUIRE(member->session, member->beam->lump_count == 0 || member->external || member->beam->mass,
+                  SPAR_ERR_STATE,
+                  "member '%s' has bodies on it, and sections without mass; give its sections mass, if only a little",
+                  member->name);
+    return SPAR_OK;
+}
+
+static int check_lumps(const spar_member *beam, const char *call, int64_t n, const double *eta, const double *mass) {
+    SPARI_REQUIRE(beam->session, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld bodies; give 0 (none any more) to %d", call, beam->name, (long long)n, SPARI_LUMPS);
+    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "eta", n, eta));
+    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mass", 36 * n, mass));
+    for (int64_t i = 0; i < n; i++) {
+        double m, c[3], J[6];
+        SPARI_REQUIRE(beam->session, eta[i] >= 0 && eta[i] <= 1, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': body %lld is at eta %g; eta runs from 0 to 1", call, beam->name, (long long)i, eta[i]);
+        const char *wrong = spari_mass_split(mass + 36 * i, &m, c, J);
+        SPARI_REQUIRE(beam->session, !wrong, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': the mass of body %lld is not that of a rigid body: %s", call, beam->name, (long long)i,
+                      wrong);
+    }
+    return SPAR_OK;
+}
+
+int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const double *mass) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_beam(beam, __func__));
+    SPARI_TRY(check_lumps(beam, __func__, n, eta, mass));
+    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(mass, 36 * n) : NULL};
+    if (n > 0 && (!copies[0] || !copies[1])) {
+        free(copies[0]), free(copies[1]);
+        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the bodies", __func__, beam->name);
+    }
+    spari_beam *b = beam->beam;
+    free(b->lump_eta), free(b->lump);
+    b->lump_eta = copies[0], b->lump = copies[1];
+    b->lump_count = n;
+    return SPAR_OK;
+}
+
+int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_member(beam, __func__));
+    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
+                  beam->name);
+    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
+    const spari_beam *b = beam->beam;
+    if (n) {
+        *n = b->lump_count;
+    }
+    spari_fill(capacity, eta, b->lump_count, b->lump_eta);
+    spari_fill(36 * capacity, mass, 36 * b->lump_count, b->lump);
+    return SPAR_OK;
+}
