@@ -77,6 +77,12 @@ static int agree_to_load(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
+/* Whether all ranks have got the memory that they asked for; SPAR_OK only where this one has. */
+static int agree_on_memory(spar_session *s, int have) {
+    int status = agree_to_load(s, have ? SPAR_OK : spari_saved_no_memory(s));
+    return have ? status : SPAR_ERR_MEMORY;
+}
+
 static int is_root(const spar_session *s) {
     return spari_comm_rank(s->comm) == 0;
 }
@@ -94,10 +100,7 @@ typedef struct told_file {
     char path[4096];
 } told_file;
 
-/* Whether all ranks see the same file as rank 0. */
-static int share_file(spar_session *s, reading *l) {
-    told_file *told = spari_zalloc(1, sizeof *told);
-    SPARI_TRY(agree_to_load(s, told ? SPAR_OK : spari_saved_no_memory(s)));
+static int tell_file(spar_session *s, reading *l, told_file *told) {
     char *where = is_root(s) ? realpath(l->source.path, NULL) : NULL;
     if (where && strlen(where) < sizeof told->path) {
         memcpy(told->path, where, strlen(where) + 1);
@@ -105,18 +108,25 @@ static int share_file(spar_session *s, reading *l) {
         told->sum = l->source.sum;
     }
     free(where);
-    int status = spari_comm_broadcast(s->comm, told, sizeof *told, s->message, sizeof s->message);
+    SPARI_TRY(spari_comm_broadcast(s->comm, told, sizeof *told, s->message, sizeof s->message));
     double blind[2] = {0, 0};
-    if (status == SPAR_OK && !is_root(s)) {
+    if (!is_root(s)) {
         char why[sizeof l->why];
         int seen = spari_loading_open(&l->source, told->path, why, sizeof why) == SPAR_OK;
         blind[0] = !seen || l->source.count != told->count || l->source.sum != told->sum;
     }
-    free(told);
-    SPARI_TRY(status);
     SPARI_TRY(spari_comm_sum(s->comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
     l->shared = blind[0] == 0;
     return SPAR_OK;
+}
+
+/* Whether all ranks see the same file as rank 0. */
+static int share_file(spar_session *s, reading *l) {
+    told_file *told = spari_zalloc(1, sizeof *told);
+    int status = agree_on_memory(s, told != NULL);
+    status = status == SPAR_OK ? tell_file(s, l, told) : status;
+    free(told);
+    return status;
 }
 
 /* The check sum of the file: a part of it on each rank, or all of it on rank 0. */
@@ -125,7 +135,7 @@ static int check_file_sum(spar_session *s, reading *l) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     double *part = spari_zalloc((int64_t)WORDS * ranks, sizeof *part);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
-    int status = agree_to_load(s, part && first ? SPAR_OK : spari_saved_no_memory(s));
+    int status = agree_on_memory(s, part && first);
     if (status == SPAR_OK) {
         uint64_t own[2] = {0, 0}, sum = 0;
         for (int r = 0; r < ranks; r++) {
@@ -481,7 +491,7 @@ static int find_takers(spar_session *s, reading *l) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     double *has = spari_zalloc(l->keys * ranks + 1, sizeof *has);
     l->taker = spari_zalloc(l->keys, sizeof *l->taker);
-    int status = agree_to_load(s, has && l->taker ? SPAR_OK : spari_saved_no_memory(s));
+    int status = agree_on_memory(s, has && l->taker);
     for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
         const fluid_record *r = l->fluids + i;
         for (const spar_fluid *f = s->fluids; f && has[r->key * ranks + rank] == 0; f = spari_fluid_next(f)) {
@@ -626,7 +636,10 @@ static int load_solvers(spar_session *s, reading *l) {
 
 static int take_fluids(spar_session *s, reading *l) {
     const double **heads = spari_zalloc(l->fluid_count, sizeof *heads);
-    int status = heads ? SPAR_OK : spari_saved_no_memory(s);
+    if (!heads) {
+        return agree_on_memory(s, 0);
+    }
+    int status = SPAR_OK;
     for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = take_fluid(s, l, f, heads);
     }
