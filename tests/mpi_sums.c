@@ -24,6 +24,7 @@ typedef struct scene {
     half half[2];
     spar_fluid *added;
     int piston_here;
+    int parts;           /* pushes of a step, 0: one at its end; every third step has one in any case */
     double pushed_until; /* [s] the second fluid on the beam falls silent: its last loads stay */
 } scene;
 
@@ -96,9 +97,9 @@ static void create(scene *c, const MPI_Comm *comm, int deal, int scheme) {
 }
 
 /* A stiff and viscous medium, and what nearly cancels between neighbours. */
-static int push_half(scene *c, half *h, double t) {
+static int push_at(scene *c, half *h, double t, double theta, int whole) {
     double x[NODES][3], v[NODES][3], f[NODES][3], moment[NODES][3];
-    OK(c->session, spar_fluid_pull_motion(h->fluid, 1, h->n ? x[0] : NULL, h->n ? v[0] : NULL));
+    OK(c->session, spar_fluid_pull_motion(h->fluid, theta, h->n ? x[0] : NULL, h->n ? v[0] : NULL));
     for (int i = 0; i < h->n; i++) {
         int number = h->number[i];
         double large = (number / 2 % 2 ? 1e3 : -1e3) * (1 + 1e-3 * (number % 7)), small = 1e-6 * number;
@@ -107,16 +108,26 @@ static int push_half(scene *c, half *h, double t) {
             moment[i][k] = 0.1 * v[i][(k + 1) % 3];
         }
     }
-    return spar_fluid_push_forces(h->fluid, h->n ? f[0] : NULL, h->n ? moment[0] : NULL);
+    const double *force = h->n ? f[0] : NULL, *about = h->n ? moment[0] : NULL;
+    return whole ? spar_fluid_push_forces(h->fluid, force, about)
+                 : spar_fluid_push_forces_at(h->fluid, theta, force, about);
+}
+
+static void push_half(scene *c, half *h, double t, double dt) {
+    int whole = c->parts == 0 || (int)(t / dt + 0.5) % 3 == 1, parts = whole ? 1 : c->parts;
+    for (int k = 1; k <= parts; k++) {
+        double theta = (double)k / parts;
+        OK(c->session, push_at(c, h, t + theta * dt, theta, whole));
+    }
 }
 
 static int solve(spar_session *s, double t, double dt, int iteration, void *context) {
     scene *c = context;
     double q[7], a[6], piston[3];
     (void)iteration;
-    OK(s, push_half(c, c->half, t + dt));
+    push_half(c, c->half, t, dt);
     if (t < c->pushed_until) {
-        OK(s, push_half(c, c->half + 1, t + dt));
+        push_half(c, c->half + 1, t, dt);
     }
     OK(s, spar_member_get_motion(c->piston, q, NULL, a));
     for (int k = 0; k < 3; k++) {
@@ -148,6 +159,13 @@ static void advance(scene *c, int steps, int *iterations) {
     }
 }
 
+/* Loads at t = 0, odd numbers of them on each node of the line. */
+static void push_first(scene *c) {
+    for (int k = 0; k < 2; k++) {
+        OK(c->session, push_at(c, c->half + k, 0, 1, 1));
+    }
+}
+
 static void same_as_alone(void **state) {
     (void)state;
     const MPI_Comm world = MPI_COMM_WORLD;
@@ -171,7 +189,7 @@ static void same_as_alone(void **state) {
 /* Saved by all ranks but the last, resumed by all, with the nodes elsewhere (so 2 and 3 ranks on 3); one fluid pushes
    no more then, and its loads are those of the file. Expected: the run of
    one process that was not interrupted. */
-static void resume(int scheme) {
+static void resume(int scheme, int parts) {
     const MPI_Comm world = MPI_COMM_WORLD;
     MPI_Comm few;
     int turns[STEPS], in = size == 1 || rank < size - 1;
@@ -181,10 +199,12 @@ static void resume(int scheme) {
     MPI_Comm_split(world, in, rank, &few);
     create(&alone, NULL, IN_TURN, scheme);
     alone.pushed_until = 0.02 * (STEPS / 2) - 0.01;
+    alone.parts = parts;
     advance(&alone, STEPS, turns);
     if (in) {
         scene first;
         create(&first, &few, AT_RANDOM, scheme);
+        first.parts = parts;
         advance(&first, STEPS / 2, turns);
         OK(first.session, spar_session_save(first.session, file));
         spar_session_destroy(&first.session);
@@ -192,6 +212,7 @@ static void resume(int scheme) {
     MPI_Barrier(world);
     create(&all, &world, ONE_EACH, scheme);
     all.pushed_until = alone.pushed_until;
+    all.parts = parts;
     OK(all.session, spar_session_load(all.session, file));
     advance(&all, STEPS - STEPS / 2, turns);
     same_bits(&all, &alone);
@@ -207,26 +228,44 @@ static void resume(int scheme) {
 static void resumed_on_other_ranks(void **state) {
     (void)state;
     for (int scheme = SPAR_COUPLING_EXPLICIT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
-        resume(scheme);
+        resume(scheme, 0);
     }
 }
 
-/* Loads over parts of a step are combined after their sums: on several ranks they are refused, the run goes on. */
+/* Loads over three parts of a step, of which (T13) halves some; what was pushed before the first step and in every
+   third one is of the whole step. The bits of one process; the run is another than that of whole steps, and is resumed.
+ */
 static void parts_of_a_step(void **state) {
     (void)state;
     const MPI_Comm world = MPI_COMM_WORLD;
-    static const double zero[NODES][3];
-    int turns[STEPS];
-    scene all;
-    create(&all, &world, IN_TURN, SPAR_COUPLING_EXPLICIT);
-    OK(all.session, spar_step_begin(all.session, 0.02));
-    for (int k = 0; k < 2; k++) {
-        int status = spar_fluid_push_forces_at(all.half[k].fluid, 0.5, zero[0], NULL);
-        assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_UNSUPPORTED);
+    int turns[2][STEPS];
+    for (int scheme = SPAR_COUPLING_EXPLICIT; scheme <= SPAR_COUPLING_IQN_ILS; scheme += SPAR_COUPLING_IQN_ILS) {
+        scene alone, whole;
+        create(&alone, NULL, IN_TURN, scheme);
+        create(&whole, NULL, IN_TURN, scheme);
+        alone.parts = 3;
+        push_first(&alone);
+        push_first(&whole);
+        advance(&alone, STEPS, turns[0]);
+        advance(&whole, STEPS, turns[1]);
+        double q[2][7 * POINTS];
+        OK(alone.session, spar_member_get_motion(alone.beam, q[0], NULL, NULL));
+        OK(whole.session, spar_member_get_motion(whole.beam, q[1], NULL, NULL));
+        assert_memory_not_equal(q[0], q[1], sizeof q[0]);
+        for (int deal = 0; deal < DEALS; deal++) {
+            scene all;
+            create(&all, &world, deal, scheme);
+            all.parts = 3;
+            push_first(&all);
+            advance(&all, STEPS, turns[1]);
+            assert_memory_equal(turns[0], turns[1], sizeof turns[0]);
+            same_bits(&all, &alone);
+            spar_session_destroy(&all.session);
+        }
+        spar_session_destroy(&alone.session);
+        spar_session_destroy(&whole.session);
+        resume(scheme, 3);
     }
-    OK(all.session, spar_step_reject(all.session));
-    advance(&all, 1, turns);
-    spar_session_destroy(&all.session);
 }
 
 /* In the middle of a run, and off again: the run goes on; switched on by one rank alone it is refused on all. */

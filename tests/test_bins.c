@@ -240,11 +240,57 @@ static void many_numbers(void **state) {
     assert_true(fabs(spari_bins_value(&s) - right) <= 2 * DBL_EPSILON * right);
 }
 
+/* Twice a sum of x, half of twice a sum of y added, half of twice a sum of z taken away: as 2 x + y - z, number by
+   number, in any grouping; and half of twice a sum is the sum. */
+static void halves_of_doubled_sums(void **state) {
+    (void)state;
+    enum { N = 60, GROUPS = 4 };
+    double x[3][N], all[3 * N];
+    unsigned long long seed = 4;
+    for (int turn = 0; turn < 200; turn++) {
+        spari_bins group[GROUPS], together = {0};
+        memset(group, 0, sizeof group);
+        for (int i = 0; i < 3 * N; i++) {
+            x[i / N][i % N] = any_size(&seed, -40, turn % 2 ? 0 : 40);
+            all[i] = x[i / N][i % N] * (i < N ? 2 : i < 2 * N ? 1 : -1);
+        }
+        for (int i = 0; i < 3 * N; i++) {
+            spari_bins one = sum_of(&x[i / N][i % N], 1), same = {0}, *to = group + (i + turn) % GROUPS;
+            const spari_bins was = one;
+            spari_bins_double(&one);
+            spari_bins_merge_half(&same, &one, 1);
+            SAME(same, was);
+            if (i < N) {
+                spari_bins_merge(to, &one);
+            } else {
+                spari_bins_merge_half(to, &one, i < 2 * N ? 1 : -1);
+            }
+        }
+        for (int g = 0; g < GROUPS; g++) {
+            spari_bins_merge(&together, group + (turn % 3 ? g : GROUPS - 1 - g));
+        }
+        double got = spari_bins_value(&together), right = exact(all, 3 * N);
+        assert_true(fabs(got - right) <= 4 * N * (turn % 2 ? 0x1p-64 : 0x1p-24) + DBL_EPSILON * fabs(right));
+        spari_bins other = {0};
+        for (int k = 0; k < 3; k++) {
+            spari_bins part = sum_of(x[k], N);
+            spari_bins_double(&part);
+            if (k == 0) {
+                spari_bins_merge(&other, &part);
+            } else {
+                spari_bins_merge_half(&other, &part, k == 1 ? 1 : -1);
+            }
+        }
+        SAME(other, together);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_number_is_itself), cmocka_unit_test(highest_bins_are_right),
-        cmocka_unit_test(any_order_same_bits),  cmocka_unit_test(exact_within_bins),
-        cmocka_unit_test(large_ones_cancel),    cmocka_unit_test(many_numbers),
+        cmocka_unit_test(one_number_is_itself),   cmocka_unit_test(highest_bins_are_right),
+        cmocka_unit_test(any_order_same_bits),    cmocka_unit_test(exact_within_bins),
+        cmocka_unit_test(large_ones_cancel),      cmocka_unit_test(many_numbers),
+        cmocka_unit_test(halves_of_doubled_sums),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

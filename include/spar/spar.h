@@ -1035,9 +1035,7 @@ SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, cons
    where the line of least squares through them ends, e^n where that of the step before did (T13): of second order in
    dt, and the parts' impulse is kept. Loads that are known at t^{n+1} itself: spar_fluid_push_forces. Not before the
    first step; otherwise as that. theta: in, in (0, 1], rising from push to push; one that does not rise begins anew
-   (the next iteration)
-   SPAR_ERR_UNSUPPORTED: on several ranks with spar_session_set_reproducible: (e - e^n) / 2 would be half of a sum, and
-   sums that are the same in any order are of whole multiples, which cannot be halved. */
+   (the next iteration) */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* The host's model has failed on this rank: there are no loads of this fluid, for the reason given. spar_step_check (or
    the call that runs the step, or the first spar_step_begin) then fails on all ranks unless a good push follows, with

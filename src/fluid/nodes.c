@@ -78,6 +78,7 @@ void spari_taking_free(spari_taking *t) {
     spari_history_free(t->history);
     free(t->load);
     free(t->bins);
+    free(t->end_bins);
     free(t->end);
     free(t->places);
     free(t->sorted);

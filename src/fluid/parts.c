@@ -146,7 +146,9 @@ void spari_parts_accept(spar_fluid *fluid) {
     }
     if (p->theta > 0) {
         double *old = p->end[0];
+        spari_bins *sums = fluid->bins[SPARI_OF_BEGIN];
         p->end[0] = p->end[1], p->end[1] = old;
+        fluid->bins[SPARI_OF_BEGIN] = fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_END] = sums;
     }
     p->ended = p->theta > 0 || (p->ended && !p->plain); /* loads that nobody pushed stay as they were */
     spari_parts_begin(fluid);

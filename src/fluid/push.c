@@ -72,7 +72,7 @@ int spar_fluid_get_forces(const spar_fluid *fluid, double *force) {
 
 static void keep_forces(spar_fluid *fluid, spari_source force) {
     spari_history *h = fluid->history;
-    if (!h || h->n == 0) {
+    if (!h || h->n == 0 || (!force.d && !force.f)) {
         return;
     }
     for (int64_t i = 0; i < 3 * h->n; i++) {
@@ -124,13 +124,19 @@ static int check_source(const spar_fluid *fluid, const char *caller, const char 
     return SPAR_OK;
 }
 
+static void swap_bins(spar_fluid *fluid, int a, int b) {
+    spari_bins *was = fluid->bins[a];
+    fluid->bins[a] = fluid->bins[b], fluid->bins[b] = was;
+}
+
 /* The load of the nodes in load_new from sums that depend on no order. Returns the least |Q|^2. */
 static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment) {
     int finite;
     double least = spari_bin_loads(s, fluid->modal, fluid->consistent, fluid->member->after.q, force, moment,
-                                   fluid->bins[1], &finite);
+                                   fluid->bins[SPARI_OF_NEXT], &finite);
     for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
-        fluid->load_new[i] = finite ? spari_bins_value(fluid->bins[1] + i) : NAN;
+        spari_bins_double(fluid->bins[SPARI_OF_NEXT] + i);
+        fluid->load_new[i] = finite ? 0.5 * spari_bins_value(fluid->bins[SPARI_OF_NEXT] + i) : NAN;
     }
     return least;
 }
@@ -179,9 +185,8 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     double *old = fluid->load;
     fluid->load = fluid->load_new, fluid->load_new = old;
     if (fluid->member->session->reproducible) {
-        spari_bins *was = fluid->bins[0];
-        fluid->bins[0] = fluid->bins[1], fluid->bins[1] = was;
-    } else if (fluid->bins[0]) {
+        swap_bins(fluid, SPARI_OF_PUSHED, SPARI_OF_NEXT);
+    } else if (fluid->bins[SPARI_OF_PUSHED]) {
         spari_fluid_drop_bins(fluid);
     }
     if (audited) {
@@ -272,6 +277,29 @@ int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const floa
     return push_forces(fluid, f, m, __func__);
 }
 
+/* The loads in use, of the mean of the parts and the line's end. slope: 1/2, or 0. */
+static void combine_parts(spar_fluid *fluid, double slope) { /* (T13) */
+    const spari_parts *p = fluid->parts;
+    const double *begin = p->ended ? p->end[0] : fluid->load_accepted;
+    for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
+        fluid->load[i] = p->mean[i] + slope * (p->end[1][i] - begin[i]);
+    }
+}
+
+/* The same, of the sums. What was accepted of loads that were no parts' has even sums: the host has pushed it. */
+static void combine_bins(spar_fluid *fluid, int with_slope) {
+    int begin = fluid->parts->ended ? SPARI_OF_BEGIN : SPARI_OF_ACCEPTED;
+    for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
+        spari_bins *sum = fluid->bins[SPARI_OF_PUSHED] + i;
+        *sum = fluid->bins[SPARI_OF_MEAN][i];
+        if (with_slope) {
+            spari_bins_merge_half(sum, fluid->bins[SPARI_OF_END] + i, 1);
+            spari_bins_merge_half(sum, fluid->bins[begin] + i, -1);
+        }
+        fluid->load[i] = 0.5 * spari_bins_value(sum);
+    }
+}
+
 /* The end of the parts at theta into end[1], the load in use into the fluid; or a refusal, and nothing has changed. */
 static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, const char *caller) {
     spari_parts *p = fluid->parts;
@@ -285,14 +313,16 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     }
     memcpy(p->mean, fluid->load_new, (size_t)n * sizeof *p->mean);
     spari_parts_see(p, theta, 1);
+    swap_bins(fluid, SPARI_OF_MEAN, SPARI_OF_NEXT);
     SPARI_TRY(push_loads(fluid, force, moment, caller));
     memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
-    const double *begin = p->ended ? p->end[0] : fluid->load_accepted;
-    double slope = fluid->member->session->standing ? 0 : 0.5; /* of time that stands there is no end */
-    for (int64_t i = 0; i < n; i++) {                          /* (T13) */
-        fluid->load[i] = p->mean[i] + slope * (p->end[1][i] - begin[i]);
+    int moves = !fluid->member->session->standing; /* of time that stands there is no end */
+    if (fluid->bins[SPARI_OF_PUSHED]) {
+        memcpy(fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_PUSHED], (size_t)n * sizeof(spari_bins));
+        combine_bins(fluid, moves);
+    } else {
+        combine_parts(fluid, moves ? 0.5 : 0);
     }
-    spari_fluid_refill_bins(fluid); /* one rank: the values do not depend on the order of the nodes either */
     spari_parts_keep(p, theta);
     return SPAR_OK;
 }
@@ -311,11 +341,6 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     }
     SPARI_FLUID_REQUIRE(fluid, s->n == 0 || force, SPAR_ERR_ARGUMENT,
                         "the force array is NULL though there are force nodes");
-    SPARI_FLUID_REQUIRE(fluid,
-                        !fluid->member->session->reproducible || spari_comm_size(fluid->member->session->comm) == 1,
-                        SPAR_ERR_UNSUPPORTED,
-                        "loads over parts of a step have no sums over several ranks that are reproducible; push once a "
-                        "step (spar_fluid_push_forces), or switch spar_session_set_reproducible off");
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
     const spari_source f = {.d = force, .layout = layout}, m = {.d = moments ? moment : NULL, .layout = layout};

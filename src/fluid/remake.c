@@ -104,7 +104,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
 static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
-    f->bins[0] = f->bins[1] = f->bins[2] = NULL; /* the values serve */
+    memset(f->bins, 0, sizeof f->bins); /* the values serve */
     f->history = NULL;
     f->taking = NULL;
     if (same_nodes) {

@@ -10,7 +10,8 @@
 #include <string.h>
 
 /* A state: these, then load and load_accepted [nodes][6] if mapped; then their reproducible sums, bit by bit, if it has
-   them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6]; then, if node forces are
+   them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6] and, if it has them, the sums
+   of these; then, if node forces are
    kept, the nodes' places, their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not
    look so far back. */
 enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = SPARI_FLUID_HEAD };
@@ -19,15 +20,19 @@ enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of p
 
 enum { IS_MAPPED = 1, HAS_BINS = 2, /* of S_MAPPED */ BIN_WORDS = sizeof(spari_bins) / sizeof(double) };
 
-/* Words of load and load_accepted, with their sums. */
+/* Words of two nodal loads, with their sums. */
 static int64_t state_pair(const spar_member *m, const double *head) {
-    int64_t pair = head[S_MAPPED] != 0 ? 12 * m->nodes : 0;
-    return head[S_MAPPED] == HAS_BINS ? pair * (1 + BIN_WORDS) : pair;
+    return 12 * m->nodes * (head[S_MAPPED] == HAS_BINS ? 1 + BIN_WORDS : 1);
+}
+
+/* Words before the ends of parts. */
+static int64_t state_ends(const spar_member *m, const double *head) {
+    return S_HEAD + (head[S_MAPPED] != 0 ? state_pair(m, head) : 0);
 }
 
 /* Words of the head and all nodal loads of a state. */
 static int64_t state_loads(const spar_member *m, const double *head) {
-    return S_HEAD + state_pair(m, head) + (head[S_PARTS] != 0 ? 12 * m->nodes : 0);
+    return state_ends(m, head) + (head[S_PARTS] != 0 ? state_pair(m, head) : 0);
 }
 
 static int64_t state_size(const spar_member *m, const double *head) {
@@ -53,6 +58,17 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
     return state_size(fluid->member, head);
 }
 
+/* A pair of nodal loads and their sums, one behind the other; sums[0] NULL: there are none. Returns where it ends. */
+static double *put_load_pair(double *at, int64_t n, const double *const value[2], const spari_bins *const sums[2]) {
+    for (int k = 0; k < 2; k++, at += n) {
+        memcpy(at, value[k], (size_t)n * sizeof *at);
+    }
+    for (int k = 0; k < 2 && sums[0]; k++, at += n * BIN_WORDS) {
+        memcpy(at, sums[k], (size_t)n * sizeof *sums[k]);
+    }
+    return at;
+}
+
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     const spari_parts *p = fluid->parts;
     if (p && p->theta != 0 && p->theta != 1) {
@@ -63,18 +79,14 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     const spari_history *h = fluid->history;
     state_head(fluid, state);
     double *at = state + S_HEAD;
-    size_t loads = 6 * (size_t)fluid->member->nodes;
+    int64_t loads = 6 * fluid->member->nodes;
     if (fluid->load) {
-        memcpy(at, fluid->load, loads * sizeof *at);
-        memcpy(at += loads, fluid->load_accepted, loads * sizeof *at);
-        at += loads;
+        at = put_load_pair(at, loads, (const double *const[]){fluid->load, fluid->load_accepted},
+                           (const spari_bins *const[]){fluid->bins[SPARI_OF_PUSHED], fluid->bins[SPARI_OF_ACCEPTED]});
     }
-    for (int k = 0; k < 3 && state[S_MAPPED] == HAS_BINS; k += 2) {
-        memcpy(at, fluid->bins[k], loads * sizeof *fluid->bins[k]);
-        at += loads * BIN_WORDS;
-    }
-    for (int k = 0; k < 2 && state[S_PARTS] != 0; k++, at += loads) {
-        memcpy(at, p->end[k], loads * sizeof *at);
+    if (p && state[S_PARTS] != 0) {
+        at = put_load_pair(at, loads, (const double *const[]){p->end[0], p->end[1]},
+                           (const spari_bins *const[]){fluid->bins[SPARI_OF_BEGIN], fluid->bins[SPARI_OF_END]});
     }
     if (state[S_KEPT] != 0) {
         size_t n = 3 * (size_t)h->n;
@@ -129,13 +141,15 @@ static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) 
     if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
     }
-    if (fluid->load && fluid->member->session->reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
+    if (fluid->load && (fluid->member->session->reproducible || fluid->bins[0]) &&
+        spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
     }
     t->load = spari_zalloc(n, sizeof *t->load);
     t->bins = fluid->bins[0] ? spari_zalloc(n, sizeof *t->bins) : NULL;
     t->end = fluid->parts ? spari_zalloc(n, sizeof *t->end) : NULL;
-    if (!t->load || (fluid->bins[0] && !t->bins) || (fluid->parts && !t->end)) {
+    t->end_bins = t->bins && t->end ? spari_zalloc(n, sizeof *t->end_bins) : NULL;
+    if (!t->load || (fluid->bins[0] && !t->bins) || (fluid->parts && !t->end) || (t->bins && t->end && !t->end_bins)) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for its loads");
     }
     return SPAR_OK;
@@ -184,16 +198,16 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
 
 /* ---- loads ---- */
 
-/* The sums of a state for load (0) or load_accepted (1), copied: a state need not lie where a whole number may. */
-static void state_bins(const spar_member *m, const double *state, int64_t i, spari_bins *sum) {
-    memcpy(sum, state + S_HEAD + 12 * m->nodes + i * BIN_WORDS, sizeof *sum);
+/* The sums of a pair of loads, copied: a state need not lie where a whole number may. */
+static void bins_of_pair(const spar_member *m, const double *pair, int64_t i, spari_bins *sum) {
+    memcpy(sum, pair + 12 * m->nodes + i * BIN_WORDS, sizeof *sum);
 }
 
 /* Whether the sums have bins that numbers can have. */
-static int are_bins(const spar_member *m, const double *state) {
+static int are_bins(const spar_member *m, const double *pair) {
     spari_bins sum;
-    for (int64_t i = 0; state[S_MAPPED] == HAS_BINS && i < 12 * m->nodes; i++) {
-        state_bins(m, state, i, &sum);
+    for (int64_t i = 0; i < 12 * m->nodes; i++) {
+        bins_of_pair(m, pair, i, &sum);
         if (sum.top < 0 || sum.top > spari_bins_top(DBL_MAX)) {
             return 0;
         }
@@ -208,37 +222,46 @@ static void add_of_state(double *sum, const double *x, int64_t n, int first) {
     }
 }
 
-/* As they were summed then. */
-static void add_bins_of_state(spari_taking *t, const spar_member *m, const double *state) {
-    spari_bins add;
-    for (int64_t i = 0; i < 12 * m->nodes; i++) {
-        if (state[S_MAPPED] == HAS_BINS) {
-            state_bins(m, state, i, &add);
-            spari_bins_merge(t->bins + i, &add);
+/* One of a pair of loads, as it was summed then, if it was. */
+static void add_bins_of_pair(spari_bins *sum, const spar_member *m, const double *pair, int which, int has_bins) {
+    int64_t first = which * 6 * m->nodes;
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        spari_bins add = {0};
+        if (has_bins) {
+            bins_of_pair(m, pair, first + i, &add);
         } else {
-            spari_bins_add(t->bins + i, state[S_HEAD + i]);
+            spari_bins_add(&add, pair[first + i]);
+            spari_bins_double(&add);
         }
+        spari_bins_merge(sum + i, &add);
     }
 }
 
 int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loads) {
     const spar_member *m = fluid->member;
     spari_taking *t = fluid->taking;
+    const double *loads = state + S_HEAD, *ends = state + state_ends(m, state);
     int64_t n = 6 * m->nodes;
-    if (!are_bins(m, state)) {
+    int has_bins = state[S_MAPPED] == HAS_BINS;
+    if (has_bins && (!are_bins(m, loads) || (state[S_PARTS] != 0 && !are_bins(m, ends)))) {
         return 0;
     }
     if (!takes_loads || state[S_MAPPED] == 0) {
         return 1;
     }
-    add_of_state(t->load, state + S_HEAD, 2 * n, t->added == 0);
-    if (t->bins) {
-        add_bins_of_state(t, m, state);
-    }
-    for (int which = 0; which < 2 && t->end; which++) { /* of a state without them, its loads */
-        const double *load = state + S_HEAD + (which == 0 ? n : 0), *ends = state + S_HEAD + state_pair(m, state);
-        int has = (int)state[S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW);
-        add_of_state(t->end + which * n, has ? ends + which * n : load, n, t->added == 0);
+    for (int which = 0; which < 2; which++) {
+        add_of_state(t->load + which * n, loads + which * n, n, t->added == 0);
+        if (t->bins) {
+            add_bins_of_pair(t->bins + which * n, m, loads, which, has_bins);
+        }
+        if (t->end) { /* of a state without them, its loads */
+            int has = (int)state[S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW), from = has ? which : 1 - which;
+            const double *pair = has ? ends : loads;
+            add_of_state(t->end + which * n, pair + from * n, n, t->added == 0);
+            if (t->end_bins) {
+                add_bins_of_pair(t->end_bins + which * n, m, pair, from, has_bins);
+            }
+        }
     }
     t->added++;
     return 1;
@@ -351,6 +374,10 @@ static void load_parts(spar_fluid *fluid) {
     for (int which = 0; which < 2; which++) {
         int64_t n = 6 * fluid->member->nodes;
         memcpy(p->end[which], t->end + which * n, (size_t)n * sizeof *t->end);
+        for (int64_t i = 0; t->end_bins && i < n; i++) {
+            fluid->bins[SPARI_OF_BEGIN + which][i] = t->end_bins[which * n + i];
+            p->end[which][i] = 0.5 * spari_bins_value(t->end_bins + which * n + i);
+        }
     }
 }
 
@@ -362,7 +389,7 @@ static void load_nodal(spar_fluid *fluid) {
         memcpy(value[which], t->load + which * n, (size_t)n * sizeof *t->load);
         for (int64_t i = 0; t->bins && i < n; i++) {
             fluid->bins[2 * which][i] = t->bins[which * n + i];
-            value[which][i] = spari_bins_value(t->bins + which * n + i);
+            value[which][i] = 0.5 * spari_bins_value(t->bins + which * n + i);
         }
     }
 }

@@ -47,12 +47,18 @@ typedef struct spari_taking {
     double *load;                  /* [2][nodes][6]: load and load_accepted, as a sum over the states */
     spari_bins *bins;              /* of the same, where they are kept */
     double *end;                   /* [2][nodes][6]: ends of parts, where there are any */
+    spari_bins *end_bins;          /* of the same, where they are kept */
     int added;                     /* states with loads so far */
     double *places;        /* [n][3] of the force nodes here; NULL: the states have no forces, or there are no nodes */
     const double **sorted; /* [n] of them, by height */
     char *found;           /* [n] */
     spari_history *history;
 } spari_taking;
+
+/* Reproducible sums of a fluid's loads: of load, load_new, load_accepted; of `mean`, end[0] and end[1] of its parts.
+   Each is of twice the loads, so that half a sum of what was pushed is made of whole numbers too: good for 2^28 nodes.
+ */
+enum { SPARI_OF_PUSHED, SPARI_OF_NEXT, SPARI_OF_ACCEPTED, SPARI_OF_MEAN, SPARI_OF_BEGIN, SPARI_OF_END, SPARI_OF_COUNT };
 
 struct spar_fluid {
     spar_member *member;
@@ -77,7 +83,7 @@ struct spar_fluid {
     double *reference; /* of the reference configuration */
     double *work;      /* spari_gather_room */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
-    spari_bins *bins[3];                     /* reproducible sums: what these three are the values of; NULL: not kept */
+    spari_bins *bins[SPARI_OF_COUNT];        /* [nodes][6] reproducible sums; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];
     spari_parts *parts;     /* of loads that come several times in a step; NULL: none ever did */
     spari_history *history; /* NULL: not kept */
@@ -131,11 +137,10 @@ void spari_fluid_series(const double *c, int modes, int offset, int n, double xi
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
 /* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
-/* Reproducible sums for the loads there are; nothing if they are there. SPAR_ERR_MEMORY: none, no message. */
+/* Reproducible sums for the loads there are, and for those of parts; nothing if they are there. SPAR_ERR_MEMORY: as it
+   was, no message. */
 int spari_fluid_make_bins(spar_fluid *fluid);
 void spari_fluid_drop_bins(spar_fluid *fluid);
-/* The loads have changed: their sums, if they are kept, are of these values alone. */
-void spari_fluid_refill_bins(spar_fluid *fluid);
 /* The loads of the last push hold at t^n; they are again those that held at t^n. */
 void spari_fluid_keep_loads(spar_fluid *fluid);
 void spari_fluid_revert_loads(spar_fluid *fluid);

@@ -58,6 +58,20 @@ void spari_bins_merge(spari_bins *into, const spari_bins *from) {
     *into = sum;
 }
 
+void spari_bins_double(spari_bins *sum) {
+    for (int j = 0; j < SPARI_BINS; j++) {
+        sum->part[j] = add_whole(sum->part[j], sum->part[j]);
+    }
+}
+
+void spari_bins_merge_half(spari_bins *into, const spari_bins *from, int sign) {
+    spari_bins half = {.top = from->top};
+    for (int j = 0; j < SPARI_BINS; j++) {
+        half.part[j] = sign * (from->part[j] / 2);
+    }
+    spari_bins_merge(into, &half);
+}
+
 /* 64 bits of |high 2^64 + low|, and in the last of them whether there are more: they are rounded once, by the
    conversion to a double. */
 static double round_whole(int64_t high, uint64_t low, int exponent) {

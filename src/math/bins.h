@@ -43,6 +43,10 @@ void spari_bins_cut(int64_t top, spari_bin_cut *cut);
 void spari_bins_add(spari_bins *sum, double x);
 /* Adds a sum; `from` may be one of no numbers. */
 void spari_bins_merge(spari_bins *into, const spari_bins *from);
+/* A sum becomes twice what it was; its parts are even then. */
+void spari_bins_double(spari_bins *sum);
+/* Adds half of a sum with even parts, or takes it away (sign -1), without rounding. */
+void spari_bins_merge_half(spari_bins *into, const spari_bins *from, int sign);
 /* To the nearest double; infinite where the sum is too large for one. */
 double spari_bins_value(const spari_bins *sum);
 

@@ -114,9 +114,10 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     }
     spari_bins_add(bins + count, pushes);
     SPARI_TRY(spari_comm_sum_bins(s->comm, bins, count + 1, SPAR_OK, s->message, sizeof s->message));
-    for (int64_t i = 0; i <= count; i++) {
-        s->own->pack[i] = spari_bins_value(bins + i);
+    for (int64_t i = 0; i < count; i++) {
+        s->own->pack[i] = 0.5 * spari_bins_value(bins + i);
     }
+    s->own->pack[count] = spari_bins_value(bins + count);
     return SPAR_OK;
 }
 

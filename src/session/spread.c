@@ -34,7 +34,7 @@ struct spari_spread {
                             word for the status behind them; on the core. Elsewhere only what is touched is there. */
     double *loads, *motion;
     int64_t load_count, motion_count;
-    spari_bins *bins; /* of the loads; NULL: never asked for */
+    spari_bins *bins; /* of twice the loads; NULL: never asked for */
     spari_piece *piece;
 };
 
@@ -292,7 +292,7 @@ static void round_own(spari_spread *p, int rank) {
     for (int k = 0; k < p->count; k++) {
         const spread_unit *u = p->unit + k;
         for (int64_t i = u->loads_at; u->owner == rank && i < u->loads_at + u->loads; i++) {
-            p->loads[i] = spari_bins_value(p->bins + i);
+            p->loads[i] = 0.5 * spari_bins_value(p->bins + i);
         }
     }
 }
