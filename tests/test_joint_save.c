@@ -28,6 +28,12 @@ static spar_member *body_at(spar_session *s, const char *name, const double x[3]
     return b;
 }
 
+static void add_rod(scene *c) {
+    static const double from[3] = {1, 6, 0}, to[3] = {0, 7, 0};
+    OK(c->session, spar_line_create(c->session, "rod", c->member[3], 0, from, c->member[2], 0, to, &c->joint[4]));
+    OK(c->session, spar_line_set_spring(c->joint[4], 0, 3, 1, 0));
+}
+
 /* A beam with a flap on a sprung hinge and a weight on a rope, and a rotor on a driven shaft with a sprung mass on its
    arm. way: what of its joints is otherwise. */
 static void create(scene *c, int way) {
@@ -63,8 +69,7 @@ static void create(scene *c, int way) {
     OK(s, spar_joint_create(s, "arm", c->member[3], 0, c->member[2], 0, SPAR_FREE_Z, &c->joint[3]));
     OK(s, spar_joint_set_frame(c->joint[3], end, rest));
     if (way != ONE_LESS) {
-        OK(s, spar_line_create(s, "rod", c->member[3], 0, end, c->member[2], 0, (double[]){0, 7, 0}, &c->joint[4]));
-        OK(s, spar_line_set_spring(c->joint[4], 0, 3, 1, 0));
+        add_rod(c);
     }
 }
 
@@ -209,6 +214,35 @@ static void test_lower_fidelities(void **state) {
 }
 
 /* Joints described otherwise: refused, with the name, and all is as it was. */
+/* A step was solved and given up, then a joint came: the file is that of a session that had it from the beginning. */
+static void test_a_joint_more(void **state) {
+    static const int kinds[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        scene a, b, c;
+        kind = kinds[k];
+        create(&a, AS_IT_IS);
+        create(&b, ONE_LESS);
+        create(&c, AS_IT_IS);
+        begin_step(&b, 0, step);
+        OK(b.session, spar_step_solve(b.session));
+        OK(b.session, spar_step_reject(b.session));
+        add_rod(&b);
+        OK(b.session, spar_session_save(b.session, file));
+        OK(c.session, spar_session_load(c.session, file));
+        run(&a, 0, 3);
+        run(&b, 0, 3);
+        run(&c, 0, 3);
+        same(&a, &b);
+        same(&a, &c);
+        spar_session_destroy(&a.session);
+        spar_session_destroy(&b.session);
+        spar_session_destroy(&c.session);
+    }
+    kind = SPAR_FIDELITY_EXACT;
+    remove(file);
+}
+
 static void test_of_another_session(void **state) {
     (void)state;
     static const char *const said[WAYS] = {[OTHER_NAME] = "joint 'flap' is not where",
@@ -238,8 +272,8 @@ static void test_of_another_session(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_resume), cmocka_unit_test(test_within_a_step),
-                                       cmocka_unit_test(test_after_rest), cmocka_unit_test(test_lower_fidelities),
-                                       cmocka_unit_test(test_of_another_session)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_resume),       cmocka_unit_test(test_within_a_step),
+                                       cmocka_unit_test(test_after_rest),   cmocka_unit_test(test_lower_fidelities),
+                                       cmocka_unit_test(test_a_joint_more), cmocka_unit_test(test_of_another_session)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

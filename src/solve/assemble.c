@@ -208,6 +208,9 @@ static int gather_all(spar_session *s) {
 }
 
 int spari_members_retie(spar_session *s) {
+    if (s->joints_stale) {
+        spari_assemblies_free(s); /* they are of what is made anew */
+    }
     for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
         if (m->committed && m->row->retie) {
             int status = m->row->retie(m);
