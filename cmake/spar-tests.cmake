@@ -95,6 +95,7 @@ if(SPAR_MPI)
     target_link_libraries(${name} PRIVATE ${spar_test_libraries} MPI::MPI_C)
     spar_add_ranks(${name} mpi 60)
   endforeach()
+  include("${PROJECT_SOURCE_DIR}/tests/spread/spread.cmake")
 endif()
 
 if(TARGET spar_fortran)
