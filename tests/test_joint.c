@@ -542,7 +542,7 @@ typedef struct pair {
     spar_session *s;
     spar_member *heavy, *light;
     spar_joint *between;
-    double x, v, a;
+    double x, v, a, next[3]; /* of the light one at t^n; and at t^{n+1} */
     int checked, iterations;
 } pair;
 
@@ -625,6 +625,80 @@ static void test_external(void **state) {
         NEAR(work[SPAR_WORK_FLUID], 0, 1e-7);
         spar_session_destroy(&mine.s);
         spar_session_destroy(&theirs.s);
+    }
+}
+
+/* The host's part of a step that is one call. */
+static int move_light(spar_session *s, double t, double dt, int iteration, void *context) {
+    pair *p = context;
+    double load[6];
+    (void)s, (void)t, (void)iteration;
+    OK(p->s, spar_member_get_loads(p->light, load));
+    double a = load[0] / 2, v = p->v + 0.5 * dt * (p->a + a), x = p->x + dt * p->v + 0.25 * dt * dt * (p->a + a);
+    p->next[0] = x, p->next[1] = v, p->next[2] = a;
+    return spar_member_set_motion(p->light, (double[7]){x, 0, 0, 1}, (double[6]){v}, (double[6]){a});
+}
+
+/* The same where the whole step is one call: the host moves its member in the callback, after the others have been
+   solved for, and the joint's load in the residual is that of this motion: as many iterations as the host's own loop
+   takes, the same answer, and the others where the host's member leaves them. */
+static void test_external_in_one_call(void **state) {
+    (void)state;
+    for (int run = 0; run < 4; run++) {
+        int held = run % 2, scheme = run / 2 ? SPAR_COUPLING_IQN_ILS : SPAR_COUPLING_AITKEN, total = 0;
+        pair loop = couple_pair(1, held, scheme, 1), call = couple_pair(1, held, scheme, 1);
+        for (int i = 0; i < 100; i++) {
+            double q[2][7], z[6], load[6];
+            int iterations;
+            step_pair(&loop, 0.02);
+            OK(call.s, spar_step(call.s, 0.02, move_light, &call, &iterations));
+            call.x = call.next[0], call.v = call.next[1], call.a = call.next[2];
+            total += iterations;
+            NEAR(call.x, loop.x, 1e-15);
+            OK(call.s, spar_member_get_motion(call.light, q[0], NULL, NULL));
+            OK(call.s, spar_member_get_motion(call.heavy, q[1], NULL, NULL));
+            OK(call.s, spar_joint_get_motion(call.between, z, NULL, NULL));
+            OK(call.s, spar_joint_get_load(call.between, load));
+            NEAR(z[0], held ? 0 : q[0][0] - q[1][0], 1e-14);
+            NEAR(load[0], 2 * call.a, 1e-8);
+        }
+        assert_int_equal(total, loop.iterations);
+        spar_session_destroy(&loop.s);
+        spar_session_destroy(&call.s);
+    }
+}
+
+/* A point that the host moves in the callback, and a body of 3 kg on a spring of 30 N/m to it: explicit, the step's one
+   solution is under the place that the callback has given. By the trapezoidal rule from rest, the point at x = 1:
+   a = K (1 - dt^2 a / 4) / m. In equilibrium the body is at the point. */
+static int move_point(spar_session *s, double t, double dt, int iteration, void *context) {
+    (void)s, (void)t, (void)dt, (void)iteration;
+    return spar_member_set_motion(context, (double[7]){1, 0, 0, 1}, (double[6]){0}, (double[6]){0});
+}
+
+static void test_point_in_callback(void **state) {
+    (void)state;
+    const double K = 30, m = 3, dt = 0.1, J[3] = {1, 1, 1}, spring[36] = {30};
+    for (int run = 0; run < 2; run++) {
+        double q[7], a[6];
+        spar_session *s = scene_session();
+        spar_member *point = NULL;
+        OK(s, spar_session_set_integrator(s, 1, 1));
+        OK(s, spar_session_set_coupling(s, SPAR_COUPLING_EXPLICIT, 0, 0, 1));
+        spar_member *body = add_body(s, "body", origin, m, origin, J);
+        OK(s, spar_point_create(s, "point", origin, rest, &point));
+        OK(s, spar_member_commit(point));
+        spar_joint *j = add_joint(s, "between", body, 0, point, 0, SPAR_FREE_X, origin);
+        OK(s, spar_joint_set_spring(j, spring, NULL, NULL));
+        if (run == 0) {
+            OK(s, spar_step(s, dt, move_point, point, NULL));
+        } else {
+            OK(s, spar_session_solve_static(s, 1, move_point, point, NULL));
+        }
+        OK(s, spar_member_get_motion(body, q, NULL, a));
+        NEAR(a[0], run ? 0 : K / (m + 0.25 * K * dt * dt), 1e-9);
+        NEAR(q[0], run ? 1 : 0.25 * dt * dt * a[0], 1e-9);
+        spar_session_destroy(&s);
     }
 }
 
@@ -1020,6 +1094,8 @@ int main(void) {
         cmocka_unit_test(test_nothing_holds),
         cmocka_unit_test(test_driven_root),
         cmocka_unit_test(test_external),
+        cmocka_unit_test(test_external_in_one_call),
+        cmocka_unit_test(test_point_in_callback),
         cmocka_unit_test(test_external_at_rest),
         cmocka_unit_test(test_external_at_rest_in_flow),
         cmocka_unit_test(test_external_unchecked),

@@ -1103,8 +1103,11 @@ SPAR_API int spar_step_accept(spar_session *session);
 /* Back to t^n, as if the step had not begun. */
 SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
-   success; anything else ends the step with SPAR_ERR_USER. The step stays spar_step's: the calls that
-   begin, solve, check, accept and reject one are SPAR_ERR_STATE from here, on the rank that makes them. */
+   success; anything else ends the step with SPAR_ERR_USER. Where it moves an external member or a point that joints
+   tie, the members are solved again before the check, so that joints' loads are those of that motion; pull from the
+   others gives their motion of before, and a fluid on these converges better in the host's own loop (move,
+   spar_step_solve, pull). The step stays spar_step's: the calls that begin, solve, check, accept and reject one are
+   SPAR_ERR_STATE from here, on the rank that makes them. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
 /* The whole step. Accepts, or after a failure of any part rejects and answers that part's status.
      dt: in, s

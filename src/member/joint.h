@@ -89,9 +89,11 @@ void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
 /* The same on all nodes [n][6] of an external member, of any other nothing: what its host solves it with, so that they
    are among the loads that the coupling iterates. */
 void spari_joints_on_external(const spar_member *member, double *load);
-/* Whether joints load external members: what they put on them is that of the motion which the host has just given, so
-   that where time stands the others are solved again. */
-int spari_joints_tie_external(const spar_session *session);
+/* Whether joints tie members whose motion the host may give while it is asked for its loads, external ones and points:
+   what joints put on these and on the others is that of the motion which it has just given, so that the others are
+   solved again. And whether it has given one in the step under way. */
+int spari_joints_tie_given(const spar_session *session);
+int spari_joints_tie_moved(const spar_session *session);
 void spari_joint_free(spar_joint *joint);
 
 #endif

@@ -44,10 +44,24 @@ void spari_joints_on_external(const spar_member *m, double *load) {
     }
 }
 
-int spari_joints_tie_external(const spar_session *s) {
+static int is_given(const spar_member *m) {
+    return m && (m->external || m->kind == SPARI_POINT);
+}
+
+int spari_joints_tie_given(const spar_session *s) {
     int ties = 0;
-    for (const spar_joint *j = s->joints; j; j = j->next) {
-        ties = ties || j->member[0]->external || (j->member[1] && j->member[1]->external);
+    for (const spar_joint *j = s->joints; j && !ties; j = j->next) {
+        ties = is_given(j->member[0]) || is_given(j->member[1]);
+    }
+    return ties;
+}
+
+int spari_joints_tie_moved(const spar_session *s) {
+    int ties = 0;
+    for (const spar_joint *j = s->joints; j && !ties; j = j->next) {
+        for (int side = 0; side < 2; side++) {
+            ties = ties || (is_given(j->member[side]) && j->member[side]->motion_given);
+        }
     }
     return ties;
 }

@@ -162,6 +162,18 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
     return SPAR_OK;
 }
 
+int spari_session_moved(spar_session *s, int *moved) {
+    double some[2] = {0, 0};
+    *moved = 0;
+    if (!spari_joints_tie_given(s)) {
+        return SPAR_OK;
+    }
+    some[0] = spari_joints_tie_moved(s);
+    SPARI_TRY(spari_comm_sum(s->comm, some, 1, SPAR_OK, s->message, sizeof s->message));
+    *moved = some[0] > 0;
+    return SPAR_OK;
+}
+
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
     memcpy(load, s->apart ? spari_spread_loads_of(s, m) : s->own->pack + m->pack_at,
            (size_t)(6 * m->nodes) * sizeof *load);

@@ -11,6 +11,8 @@ int spari_session_pushes(spar_session *session, const char *call);
    collective. pushed: whether any fluid ever pushed loads; may be NULL. */
 int spari_session_exchange_loads(spar_session *session, int *pushed);
 void spari_session_take_loads(const spar_session *session, const spar_member *member, double *load);
+/* Whether the host of any rank has given a member that joints tie its motion, in the step under way. Collective. */
+int spari_session_moved(spar_session *session, int *moved);
 /* Motion and dissipation of the members each rank has solved for, from member->after, to all ranks.
  * Collective. */
 int spari_session_share_motion(spar_session *session, int status);

@@ -360,7 +360,9 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     }
     status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
     SPARI_TRY(spari_enter(s, call, status));
-    if (spari_joints_tie_external(s)) {
+    int moved = 0;
+    SPARI_TRY(spari_session_moved(s, &moved));
+    if (moved) {
         status = solve_all(s, 1, 1);
         SPARI_TRY(status == SPAR_OK ? status : not_solved(s, call, status));
     }

@@ -437,6 +437,15 @@ static int solve_for(spar_session *s, const char *call) {
     return spari_start_solve(s, call);
 }
 
+/* Where the host has given, with its loads, the motion of what joints tie, their loads are to be those of that motion.
+   status: of what this rank's host has done. */
+static int solve_with_given(spar_session *s, const char *call, int status) {
+    int moved = 0;
+    SPARI_TRY(spari_enter(s, call, status));
+    SPARI_TRY(spari_session_moved(s, &moved));
+    return moved ? solve_for(s, call) : SPAR_OK;
+}
+
 static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int done = 0;
     while (!done) {
@@ -445,9 +454,8 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
         if (status == SPAR_ERR_COMM) {
             return status;
         }
-        if (s->standing && spari_joints_tie_external(s)) {
-            SPARI_TRY(spari_enter(s, call, status));
-            SPARI_TRY(spari_start_solve(s, call));
+        if (spari_joints_tie_given(s)) {
+            SPARI_TRY(solve_with_given(s, call, status));
         }
         SPARI_TRY(check_iteration(s, call, status, &done));
     }
