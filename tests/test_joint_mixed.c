@@ -252,10 +252,11 @@ static account keep_account(int kind, int root, double ei, double dt) {
     return most;
 }
 
-/* Bent and twisted by 0.6 rad. On a fixed root the balances close to dt^2, the whole's and each member's: half the
-   step, a quarter (3.9 to 4 seen; 1.8e-5 J at 2 ms). On a root that turns (0.6 rad) there is besides what the stretch
-   takes, 4e-6 J. Moments in a joint at the deformed end do their work on its turn, so a T where its transpose belongs
-   is seen: it is of first order in the bend. */
+/* Bent and twisted by 0.6 rad. On a fixed root the balances close to dt^2: half the step, a quarter (3.9 to 4 seen;
+   1.8e-5 J at 2 ms), each member's but for 5e-6 J that go from one to the other where the weld's ringing is taken down
+   (assembly_calm.c), as stiff motions of the beam ring too that no step resolves. On a root that turns (0.6 rad) there
+   is besides what the stretch takes, 4e-6 J. Moments in a joint at the deformed end do their work on its turn, so a T
+   where its transpose belongs is seen: it is of first order in the bend. */
 static void test_account(void **state) {
     (void)state;
     for (int i = 0; i < KINDS; i++) {
@@ -267,7 +268,7 @@ static void test_account(void **state) {
         NEAR(x[0].whole, 0, 3e-5);
         NEAR(x[0].members, 0, 3e-5);
         NEAR(x[0].whole / x[1].whole, 4, 0.4);
-        NEAR(x[0].members / x[1].members, 4, 0.4);
+        NEAR(x[1].members, 0, 1e-5);
         x[0] = keep_account(kinds[i], SPAR_ROOT_FREE, 30, 0.002);
         assert_true(x[0].bend > 0.5);
         NEAR(x[0].whole, 0, 6e-6);

@@ -347,6 +347,14 @@ static void publish_limb(spari_limb *p, double *rates) {
     memcpy(m->after.v, rates, size);
 }
 
+static int fail_singular(const spari_assembly *a) {
+    return spari_fail(
+        a->session, SPAR_ERR_NUMERIC,
+        "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take "
+        "a smaller dt",
+        a->link[0].joint->name, a->session->time);
+}
+
 /* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
    which are off them by dt^2: with velocities put onto them the accelerations, and so the joints' loads, would be of
    first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
@@ -360,11 +368,8 @@ static int publish_all(spari_assembly *a, double dt) {
     for (int i = 0; i < a->limbs; i++) {
         publish_limb(a->limb + i, a->rates);
     }
-    SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
-                  "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take a "
-                  "smaller dt",
-                  a->link[0].joint->name, a->session->time);
-    return SPAR_OK;
+    singular = singular || spari_tied_calm(a, 1, dt);
+    return singular ? fail_singular(a) : SPAR_OK;
 }
 
 /* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself. */
@@ -461,6 +466,9 @@ int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
         if (status != SPAR_OK) {
             a->factored = 0;
             return status;
+        }
+        if (k < A && spari_tied_calm(a, (double)k / A, dt)) {
+            return fail_singular(a);
         }
         for (int i = 0; i < a->limbs; i++) {
             a->limb[i].row->end(a->limb + i);

@@ -68,6 +68,8 @@ int spari_tied_close(spari_assembly *a, double cv);
 /* Takes out of the accelerations that the substep begins with what it does not resolve, where it is much longer than
    the last; a status and a message. */
 int spari_tied_leap(spari_assembly *a, double dt);
+/* Takes down what rings along the constraints at the end of a substep, the part s of the step dt. 0 or 1. */
+int spari_tied_calm(spari_assembly *a, double s, double dt);
 /* Takes out of the joints' holds what others say already, with a word to the log; the links' B are those of the
    reference. 0, or SPAR_ERR_MEMORY. */
 int spari_tied_drop_redundant(spari_assembly *a);
