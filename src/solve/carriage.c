@@ -132,8 +132,10 @@ int spari_carriage_at(const spari_frame *f, int e) {
 int spari_carriage_finish(spari_frame *f, const spar_member *m) {
     spari_carriage *c = f->carriage;
     int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends;
-    double **rooms[] = {&c->loads, &c->x, &c->heavy, &c->kept, &c->elastic, &c->parts, &c->out, &c->border, &c->room};
-    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends};
+    double **rooms[] = {&c->loads, &c->x,      &c->heavy, &c->kept,  &c->elastic, &c->parts,
+                        &c->out,   &c->border, &c->room,  &c->twice, &c->stiff};
+    const int64_t size = f->S[0] ? f->size : 0;
+    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends, n, size};
     int ok = 1, *at = spari_zalloc(ends, sizeof *at);
     for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
         ok = ok && (*rooms[k] = spari_zalloc(sizes[k], sizeof(double)));
@@ -151,6 +153,9 @@ int spari_carriage_finish(spari_frame *f, const spar_member *m) {
     }
     c->seen = (spari_state){c->block, c->block + 7 * ends, c->block + 13 * ends, c->block + 19 * ends};
     c->force = c->block + 25 * ends;
+    if (size > 0) {
+        memcpy(c->stiff, f->K, (size_t)size * sizeof *c->stiff); /* it stands */
+    }
     return f->S[0] ? find_mean(f, m) : SPAR_OK;
 }
 
@@ -162,7 +167,8 @@ void spari_carriage_free(spari_carriage *c) {
         free(c->push[k]);
         free(c->spin[k]);
     }
-    double *all[] = {c->block, c->kept, c->loads, c->elastic, c->parts, c->x, c->heavy, c->out, c->border, c->room};
+    double *all[] = {c->block, c->kept, c->loads,  c->elastic, c->parts, c->x,
+                     c->heavy, c->out,  c->border, c->room,    c->twice, c->stiff};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }

@@ -50,7 +50,9 @@ typedef struct spari_carriage {
     double *room;                 /* of a tangent of the ends, and three vectors of them */
     double *border;               /* [12][n] rows and columns of the root in the tangent */
     spari_seconds seconds;
-    double turns[3]; /* w */
+    double turns[3]; /* w, */
+    double *stiff;   /* and of it K + S(w, w), as the matrices, */
+    double *twice;   /* and S s_w / 2 [n] */
     int still;       /* the forces are those without inertia, under */
     double factor;   /* so much of loads and gravity */
 } spari_carriage;

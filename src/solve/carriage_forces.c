@@ -22,6 +22,23 @@ static void product_into(spari_frame *f, int k, const double *X, const double *y
     }
 }
 
+/* K + S(w, w) and S s / 2, which stay for the substep. */
+static void combine_stretch(spari_frame *f) {
+    spari_carriage *c = f->carriage;
+    memcpy(c->stiff, f->K, (size_t)f->size * sizeof *c->stiff);
+    memset(c->twice, 0, (size_t)f->n * sizeof *c->twice);
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        double by = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
+        if (by != 0) {
+            cblas_daxpy((int)f->size, by, f->S[k], 1, c->stiff, 1);
+        }
+        for (int l = 0; l <= k && by != 0; l++) {
+            double with = c->turns[spari_frame_pair[l][0]] * c->turns[spari_frame_pair[l][1]];
+            cblas_daxpy(f->n, by * with, f->twice[spari_frame_pair_of(k, l)], 1, c->twice, 1);
+        }
+    }
+}
+
 void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h) {
     spari_carriage *c = f->carriage;
     double alpha[3];
@@ -35,21 +52,7 @@ void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h) {
         c->turns[k] +=
             cblas_ddot(f->n - 6, mean, 1, s->v + 6, 1) + h * (alpha[k] + cblas_ddot(f->n - 6, mean, 1, s->a + 6, 1));
     }
-}
-
-/* S(w, w) y - S s / 2, to the internal forces */
-static void add_stretch(spari_frame *f, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
-    double by[SPARI_TURNS];
-    for (int k = 0; k < SPARI_TURNS; k++) {
-        by[k] = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
-        if (by[k] != 0) {
-            spari_frame_add_times(f, f->S[k], s->y, by[k], c->elastic);
-        }
-        for (int l = 0; l <= k; l++) {
-            cblas_daxpy(f->n, -by[k] * by[l], f->twice[spari_frame_pair_of(k, l)], 1, c->elastic, 1);
-        }
-    }
+    combine_stretch(f);
 }
 
 /* E_k y among the parts, and the products of rates with it. */
@@ -108,13 +111,12 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
         gather_euler(f, k, s);
     }
     c->speeds = s->v, c->rates = s->a;
+    const int stretched = f->S[0] && !c->still;
     memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
-    spari_frame_add_times(f, f->K, s->y, 1, c->elastic);
+    spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
+    cblas_daxpy(stretched ? f->n : 0, -1, c->twice, 1, c->elastic, 1);
     if (f->D) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
-    }
-    if (f->S[0] && !c->still) {
-        add_stretch(f, s);
     }
     const double *x = spari_frame_nodal(f, s->y, c->x);
     if (x != c->x) {
@@ -486,9 +488,8 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     for (int e = 0; e < f->elements; e++) {
         form_element(f, e, alpha, cm, cv);
         add_rows(f, m, e, f->element);
-        for (int k = 0; k < SPARI_TURNS && f->S[0] && !c->still; k++) {
-            double by = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
-            cblas_daxpy((int)mm, by, f->S[k] + mm * e, 1, f->element, 1);
+        for (int64_t i = 0; i < mm && f->S[0] && !c->still; i++) {
+            f->element[i] += c->stiff[mm * e + i] - f->K[mm * e + i];
         }
         spari_linear_add(f->linear, e, f->element);
     }
