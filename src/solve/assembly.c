@@ -240,6 +240,49 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
     return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max, iterations);
 }
 
+/* Where the last solution has led to. */
+static int guess_onward(void *self, spari_guess stays) {
+    (void)self;
+    return stays == SPARI_KEEP_VELOCITY;
+}
+
+/* Driven joints that jump, in so many parts of their way: from the place of before each from where the last has led. */
+static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
+    static const spari_newton how = {SPARI_LONGEST, guess_onward, begin_tied, iterate_tied, renew_tied, end_tied};
+    tied_step step = {a, s, dt, 0};
+    const char *wrong = NULL;
+    (void)predict(a, SPARI_KEEP_PLACE);
+    for (int part = 1; part <= parts && !wrong; part++) {
+        for (int i = 0; i < a->links; i++) {
+            spari_link *l = a->link + i;
+            for (int k = 0; k < 6; k++) {
+                l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
+            }
+        }
+        wrong = spari_newton_solve(&how, &step, 0, a->session->newton_max, iterations);
+    }
+    return wrong;
+}
+
+/* The last resort; wrong: what went wrong before. */
+static const char *walk_drives(spari_assembly *a, double s, double dt, const char *wrong, int *iterations) {
+    int jumps = 0;
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        l->to = l->drive;
+        for (int k = 0; k < 6; k++) {
+            jumps = jumps || ((l->joint->driven >> k & 1) && fabs(l->to.z[k] - l->begin.z[k]) > 0);
+        }
+    }
+    for (int parts = 8; parts <= 128 && jumps && wrong; parts *= 4) {
+        wrong = walk_drives_in(a, s, dt, parts, iterations);
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].drive = a->link[i].to;
+    }
+    return wrong;
+}
+
 /* The states at the end of a substep. */
 static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
@@ -251,6 +294,7 @@ static int newton_all(spari_assembly *a, double s, double dt) {
         a->violent = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }
+    wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
     SPARI_REQUIRE(a->session, !wrong, SPAR_ERR_NUMERIC,
                   "the members that joint '%s' ties together: Newton %s (%d iterations) in the step from t = %g; "
                   "take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",

@@ -11,7 +11,8 @@ typedef struct spari_link {
     spari_limb *limb[2]; /* NULL: the ground, or a node that moves as it is told */
     int at[2];           /* the six unknowns of its nodes in the system; -1: none */
     int row[6];          /* of the multipliers of what is held; -1: free */
-    spari_driven drive;  /* at the end of the substep */
+    spari_driven drive;  /* at the end of the substep, */
+    spari_driven to;     /* or on the way there: there */
     spari_relative begin;
     spari_place place[2];
     double v[12], a[12], B[6][12];
