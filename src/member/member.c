@@ -138,3 +138,14 @@ void spari_member_gather(const spar_member *m, const double *nodal, double *uniq
         }
     }
 }
+
+void spari_member_even_loads(const spar_member *m, double *load) {
+    int P = m->per_element;
+    memset(load, 0, (size_t)spari_member_held(m) * sizeof *load);
+    for (int64_t e = 1; e < m->elements; e++) {
+        double *left = load + 6 * (e * P - 1), *right = left + 6;
+        for (int k = 0; k < 6; k++) {
+            left[k] = right[k] = 0.5 * (left[k] + right[k]);
+        }
+    }
+}

@@ -151,6 +151,9 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
 }
 /* Loads of the nodes summed onto the unknowns' nodes. */
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
+/* Loads of the nodes [nodes][6] that move what they moved: halved between the two nodes of a joint of elements, without
+   what the root holds. */
+void spari_member_even_loads(const spar_member *m, double *load);
 /* Length of a member: of its body, or of the line through its nodes; 1 where there is none. */
 double spari_member_length(const spar_member *member);
 /* Whether the motion of the root is given, so that it carries the member; else it is one of the unknowns. */

@@ -349,6 +349,10 @@ int spari_coupling_next(spar_session *s) {
     const spari_images images = {c->image, image_loads, s};
     stack(s);
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
+    if (c->weighed && spari_coupling_scheme_of(s->scheme)->columns) {
+        const spari_weighed w = weighed(c);
+        SPARI_TRY(spari_weigh_felt(s, &w, c->x));
+    }
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);

@@ -148,6 +148,42 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
     return spari_comm_sum(spari_spread_core(s), image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
+/* Into off what of loads x - g member m feels, stacked. */
+static int felt_of(const spari_weighed *c, spar_member *m, double unit, const double *x, const double *g, double *off) {
+    int64_t n = 6 * m->nodes;
+    for (int64_t i = 0; i < n; i++) {
+        c->room[i] = (x[i] - g[i]) / (i % 6 < 3 ? 1 : unit);
+    }
+    int status = m->row->felt && !m->assembly ? m->row->felt(m, c->room) : SPAR_OK;
+    for (int64_t i = 0; i < n; i++) {
+        off[i] = c->room[i] * (i % 6 < 3 ? 1 : unit);
+    }
+    return status;
+}
+
+int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *x) {
+    int rank = spari_comm_rank(s->comm), asked = 0, status = SPAR_OK, k = 0;
+    int64_t at = 0;
+    double *off = c->image;
+    memset(off, 0, (size_t)(c->n + 1) * sizeof *off);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        asked = asked || (m->row->felt_here && !m->assembly);
+    }
+    for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
+        if ((!asked || m->owner == rank) && status == SPAR_OK) {
+            status = felt_of(c, m, c->unit[k], x + at, c->g + at, off + at);
+        }
+    }
+    if (status != SPAR_OK) {
+        (void)spari_fail(s, status, "no memory for the loads that modes feel");
+    }
+    SPARI_TRY(asked ? spari_comm_sum(spari_spread_core(s), off, c->n, status, s->message, sizeof s->message) : status);
+    for (int64_t i = 0; i < c->n; i++) {
+        x[i] = c->g[i] + off[i];
+    }
+    return SPAR_OK;
+}
+
 /* Into image [n], what this rank's members answer to the loads that the prediction has missed. 1: there is none. */
 static int answer_miss(spar_session *s, double *image, double *room) {
     int rank = spari_comm_rank(s->comm), singular = 0;

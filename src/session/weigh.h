@@ -29,6 +29,10 @@ int spari_weigh(spar_session *session, const spari_weighed *w, double *residual,
 int spari_weigh_images(spar_session *session, const spari_weighed *w, int64_t count, const double *loads,
                        double *image);
 
+/* x [n], stacked as w->g, keeps of x - g what moves something: loads that move nothing are those that came back. A
+   status. All ranks; a message only where an owner has to be asked (spari_fidelity's felt_here). Takes w->image. */
+int spari_weigh_felt(spar_session *session, const spari_weighed *w, double *x);
+
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:
    what another iteration would move. 0 of members that the library does not solve; infinite where the matrix is
    singular. n: 6 of each node of all members; image [n + 1]: room, and for the ranks' status; room: for 6

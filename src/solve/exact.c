@@ -96,6 +96,11 @@ static void exact_show_more(spar_member *m, const double *x, double *motion) {
     spari_member_from_unique(m, 6, x, motion);
 }
 
+static int exact_felt(spar_member *m, double *load) {
+    spari_member_even_loads(m, load);
+    return SPAR_OK;
+}
+
 static int exact_answer(spar_member *m, const double *load, double *motion) {
     spari_solver *s = m->solution;
     exact_take_more(m, load, s->r);
@@ -241,6 +246,7 @@ const spari_fidelity spari_fidelity_exact = {
     .advance = exact_advance,
     .balance = exact_balance,
     .answer = exact_answer,
+    .felt = exact_felt,
     .accept = exact_accept,
     .effort = exact_effort,
     .rest = exact_rest,

@@ -45,6 +45,12 @@ typedef struct spari_fidelity {
        displacements and small turns, global axes, to first order and over the last substep. 0, or 1: there is no
        answer. NULL: loads move nothing */
     int (*answer)(spar_member *m, const double *load, double *motion);
+    /* load [nodes][6] becomes one that moves the member as it does, without what moves nothing: what the root holds,
+       what cancels between the ends of two elements, what a rigid body or modes leave out. 0 or SPAR_ERR_MEMORY. NULL:
+       all loads move it. Where felt_here it is for the one who finds the motion, else for every rank, without a motion.
+     */
+    int (*felt)(spar_member *m, double *load);
+    int felt_here;
     /* t^{n+1} becomes t^n */
     void (*accept)(spar_member *m);
     /* what all that has taken since the member was made; NULL: nothing to speak of */

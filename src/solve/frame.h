@@ -38,13 +38,14 @@ typedef struct spari_frame_state {
 } spari_frame_state;
 
 typedef struct spari_frame {
-    int nodes;                                      /* unique nodes */
-    int held;                                       /* of the root's six unknowns, the first that stay zero */
-    struct spari_carriage *carriage;                /* joints tie it; NULL: they do not */
-    int elements, block, overlap;                   /* of the matrices */
-    int n;                                          /* unknowns, the root's six first */
-    int64_t size;                                   /* doubles of one matrix: elements * block * block */
-    double *basis;                                  /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
+    int nodes;                       /* unique nodes */
+    int held;                        /* of the root's six unknowns, the first that stay zero */
+    struct spari_carriage *carriage; /* joints tie it; NULL: they do not */
+    int elements, block, overlap;    /* of the matrices */
+    int n;                           /* unknowns, the root's six first */
+    int64_t size;                    /* doubles of one matrix: elements * block * block */
+    double *gram;  /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt has been asked */
+    double *basis; /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
     double *A;                                      /* the guess of the fluid's added mass, likewise */
     double *room_A;                                 /* where that is learned: [block][block + n] of the nodes' blocks */
@@ -73,6 +74,7 @@ int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
 int spari_frame_balance(spari_frame *frame, spar_member *member, double dt);
 /* As the row's. */
 int spari_frame_answer(spari_frame *frame, const spar_member *member, const double *load, double *motion);
+int spari_frame_felt(spari_frame *frame, const spar_member *member, double *load);
 void spari_frame_accept(spari_frame *frame);
 int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
 /* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric

@@ -81,9 +81,10 @@ static void frame_free(void *solution) {
     if (!f) {
         return;
     }
-    double *all[] = {f->basis, f->A,       f->K,         f->M,     f->D,          f->sumK,        f->sumC,
-                     f->sumf,  f->begin.y, f->from.y,    f->to.y,  f->steps.load, f->steps.load0, f->steps.load1,
-                     f->r,     f->dx,      f->increment, f->nodal, f->turned,     f->element,     f->room_A};
+    double *all[] = {f->basis,       f->A,           f->K,       f->M,      f->D,         f->sumK,
+                     f->sumC,        f->sumf,        f->begin.y, f->from.y, f->to.y,      f->steps.load,
+                     f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->nodal,
+                     f->turned,      f->element,     f->room_A,  f->gram};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
@@ -255,6 +256,15 @@ static int frame_answer(spar_member *m, const double *load, double *motion) {
     return spari_frame_answer(m->solution, m, load, motion);
 }
 
+static int frame_felt(spar_member *m, double *load) {
+    spari_frame *f = m->solution;
+    if (!f->basis) {
+        spari_member_even_loads(m, load);
+        return SPAR_OK;
+    }
+    return spari_frame_felt(f, m, load);
+}
+
 static void frame_effort(const spar_member *m, spari_effort *e) {
     const spari_frame *f = m->solution;
     *e = (spari_effort){.iterations = f->solves,
@@ -318,12 +328,13 @@ static void frame_publish(spar_member *m) {
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
     .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
-    .balance = frame_balance, .answer = frame_answer, .accept = frame_accept, .effort = frame_effort,                  \
-    .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole,            \
-    .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape,                \
-    .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state,      \
-    .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of,                       \
-    .publish = frame_publish
+    .balance = frame_balance, .answer = frame_answer, .felt = frame_felt, .accept = frame_accept,                      \
+    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
+    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
+    .shape = frame_shape, .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save,            \
+    .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie,                   \
+    .end_of = frame_end_of, .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
-const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .massive = 1, .takes_modes = 1, .check = modal_check};
+const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,
+                                             .check = modal_check};

@@ -13,6 +13,7 @@
 #include "turn.h"
 
 #include <gsl/gsl_cblas.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -499,6 +500,58 @@ int spari_frame_answer(spari_frame *f, const spar_member *m, const double *load,
     }
     spari_member_from_unique(m, 6, f->turned, motion);
     return 0;
+}
+
+/* The products of the columns that are free, of which none is made of others, factored. */
+static int factor_gram(spari_frame *f) {
+    int n = f->n, singular;
+    if (f->gram) {
+        return SPAR_OK;
+    }
+    if (!(f->gram = spari_zalloc((int64_t)n * n, sizeof *f->gram))) {
+        return SPAR_ERR_MEMORY;
+    }
+    gsl_matrix_view gram = gsl_matrix_view_array(f->gram, (size_t)n, (size_t)n);
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 6 * f->nodes, 1, f->basis, n, f->basis, n, 0,
+                           f->gram, n));
+    for (int k = 0; k < f->held * n; k++) {
+        int i = k / n, j = k % n;
+        f->gram[i * n + j] = f->gram[j * n + i] = i == j;
+    }
+    SPARI_BLAS(singular = gsl_linalg_cholesky_decomp1(&gram.matrix));
+    if (singular) {
+        free(f->gram);
+        f->gram = NULL;
+    }
+    return SPAR_OK;
+}
+
+/* With phi the basis, phi (phi^T phi)^-1 phi^T load: of all loads that do the same to the modes the smallest. */
+int spari_frame_felt(spari_frame *f, const spar_member *m, double *load) {
+    const double *root = f->to.root.q;
+    int n = f->n;
+    SPARI_TRY(factor_gram(f));
+    if (!f->gram) {
+        return SPAR_OK;
+    }
+    spari_member_gather(m, load, f->nodal);
+    turn_loads(f, root + 3, f->nodal, f->dx);
+    memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
+    gsl_matrix_view gram = gsl_matrix_view_array(f->gram, (size_t)n, (size_t)n);
+    gsl_vector_view y = gsl_vector_view_array(f->dx, (size_t)n);
+    SPARI_BLAS((void)gsl_linalg_cholesky_svx(&gram.matrix, &y.vector));
+    SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));
+    for (int64_t i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate(root + 3, f->nodal + i, f->turned + i);
+    }
+    spari_member_from_unique(m, 6, f->turned, load);
+    for (int64_t e = 1; e < m->elements; e++) { /* its ends bear half of it each */
+        double *left = load + 6 * (e * m->per_element - 1);
+        for (int k = 0; k < 12; k++) {
+            left[k] *= 0.5;
+        }
+    }
+    return SPAR_OK;
 }
 
 void spari_frame_accept(spari_frame *f) {

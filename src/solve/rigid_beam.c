@@ -174,6 +174,13 @@ static int rigid_advance(spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+/* Of a node from the root, in the motion after. */
+static void arm_after(const spar_member *m, int64_t node, double arm[3]) {
+    for (int k = 0; k < 3; k++) {
+        arm[k] = m->xr[3 * node + k] + m->after.q[7 * node + k] - m->xr[k] - m->after.q[k];
+    }
+}
+
 /* More force and moment on the root, the latter by the arms as they are turned. */
 static void rigid_take_more(spar_member *m, const double *load, double *sum) {
     double arms[9] = {0};
@@ -181,9 +188,7 @@ static void rigid_take_more(spar_member *m, const double *load, double *sum) {
     sum_on_root(m, load, sum, arms);
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], moment[3];
-        for (int k = 0; k < 3; k++) {
-            arm[k] = m->xr[3 * i + k] + m->after.q[7 * i + k] - m->xr[k] - m->after.q[k];
-        }
+        arm_after(m, i, arm);
         spari_cross(arm, load + 6 * i, moment);
         for (int k = 0; k < 3; k++) {
             sum[3 + k] += moment[k];
@@ -204,6 +209,26 @@ static int rigid_answer(spar_member *m, const double *load, double *motion) {
     }
     rigid_show_more(m, root, motion);
     return 0;
+}
+
+/* The same force and moment on the root, less what that holds, from equal forces and equal moments on all nodes. */
+static int rigid_felt(spar_member *m, double *load) {
+    double sum[6], middle[3] = {0}, moment[3];
+    rigid_take_more(m, load, sum);
+    memset(sum, 0, (size_t)spari_member_held(m) * sizeof *sum);
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double arm[3];
+        arm_after(m, i, arm);
+        for (int k = 0; k < 3; k++) {
+            middle[k] += arm[k] / (double)m->nodes;
+        }
+    }
+    spari_cross(middle, sum, moment);
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        int k = (int)(i % 6);
+        load[i] = (sum[k] - (k < 3 ? 0 : moment[k - 3])) / (double)m->nodes;
+    }
+    return SPAR_OK;
 }
 
 static void rigid_accept(spar_member *m) {
@@ -358,6 +383,8 @@ const spari_fidelity spari_fidelity_rigid = {
     .advance = rigid_advance,
     .balance = rigid_balance,
     .answer = rigid_answer,
+    .felt = rigid_felt,
+    .felt_here = 1,
     .accept = rigid_accept,
     .effort = rigid_effort,
     .rest = spari_carried_rest,
