@@ -228,6 +228,10 @@ module spar
     procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_damping, member_set_damping_single_1
     generic :: set_damping => member_set_damping, member_set_damping_single_1
+    procedure, private :: member_set_mass_damping, member_set_mass_damping_single_1
+    generic :: set_mass_damping => member_set_mass_damping, member_set_mass_damping_single_1
+    procedure, private :: member_get_mass_damping, member_get_mass_damping_single_1
+    generic :: get_mass_damping => member_get_mass_damping, member_get_mass_damping_single_1
     procedure, private :: member_get_damping, member_get_damping_single_1
     generic :: get_damping => member_get_damping, member_get_damping_single_1
     procedure, private :: member_set_placement, member_set_placement_single_1, member_set_placement_single_2
@@ -2549,6 +2553,24 @@ contains
 
     call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_set_damping
+
+  subroutine member_set_mass_damping(self, alpha, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_mass_damping(self%handle, alpha), self%session, stat, errmsg)
+  end subroutine member_set_mass_damping
+
+  subroutine member_get_mass_damping(self, alpha, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_mass_damping(self%handle, alpha), self%session, stat, errmsg)
+  end subroutine member_get_mass_damping
 
   subroutine member_get_damping(self, mu, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -5321,6 +5343,27 @@ contains
 
     call member_set_damping(self, mu=real(mu, c_double), stat=stat, errmsg=errmsg)
   end subroutine member_set_damping_single_1
+
+  subroutine member_set_mass_damping_single_1(self, alpha, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_mass_damping(self, alpha=real(alpha, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_mass_damping_single_1
+
+  subroutine member_get_mass_damping_single_1(self, alpha, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_alpha
+
+    allocate (c_alpha, source=untouched)
+    call member_get_mass_damping(self, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_alpha, alpha)
+  end subroutine member_get_mass_damping_single_1
 
   subroutine member_get_damping_single_1(self, mu, stat, errmsg)
     class(spar_member), intent(in) :: self

@@ -354,6 +354,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_set_damping
 
+    function spar_beam_set_mass_damping(beam, alpha) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), value :: alpha
+      integer(c_int) :: status
+    end function spar_beam_set_mass_damping
+
+    function spar_beam_get_mass_damping(beam, alpha) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(inout), optional :: alpha
+      integer(c_int) :: status
+    end function spar_beam_get_mass_damping
+
     function spar_beam_get_damping(beam, mu) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: beam

@@ -49,6 +49,7 @@ static void create(scene *c, int me, int ranks, int scheme) {
     OK(s, spar_member_set_added_mass(c->beam, guess > 0, eta, along));
     scene_diagonal(mass, 0.5, 0.5, 0.5, 0.02, 0.01, 0.01);
     OK(s, spar_beam_set_masses(c->beam, guess > 0, tip, mass));
+    OK(s, spar_beam_set_mass_damping(c->beam, guess > 0 ? 0.3 : 0));
     OK(s, spar_member_learn_added_mass(c->beam, learns, eta));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);

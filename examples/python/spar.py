@@ -88,6 +88,8 @@ call spar_beam_get_masses int beam|member|value| n|int64_t|out| capacity|int64_t
 call spar_beam_set_quadrature int beam|member|value| rule|int|value| points|int|value|
 call spar_beam_get_quadrature int beam|member|value| rule|int|out| points|int|out|
 call spar_beam_set_damping int beam|member|value| mu|double|in|[6]
+call spar_beam_set_mass_damping int beam|member|value| alpha|double|value|
+call spar_beam_get_mass_damping int beam|member|value| alpha|double|out|
 call spar_beam_get_damping int beam|member|value| mu|double|out|[6]
 call spar_beam_read_beamdyn int beam|member|value| primary_path|char|in|[] blade_path|char|in|[]
 call spar_member_set_placement int member|member|value| x|double|in|[3] q|double|in|[4]

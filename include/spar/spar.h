@@ -368,7 +368,7 @@ enum {
     SPAR_EFFECT_INERTIA = 1,         /* off: each step is a static equilibrium */
     SPAR_EFFECT_GYROSCOPIC = 2,      /* forces quadratic in the angular velocity */
     SPAR_EFFECT_GRAVITY = 4,         /* weight */
-    SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping */
+    SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping, spar_beam_set_mass_damping */
     SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference configuration */
     SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
     SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
@@ -457,6 +457,16 @@ SPAR_API int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *p
 /* Stiffness-proportional damping: stress = C (strain + mu strain rate), per strain component in the order of the
    stiffness. mu[6]: in, s, >= 0. Local. */
 SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
+/* Mass-proportional damping, the other half of Rayleigh's: mass times alpha times the velocity that the root sees, with
+   its own motion and turn taken off, so that a blade that turns as a whole is not braked. A mode at omega at rest has
+   alpha / (2 omega) of critical damping, and what spar_beam_set_damping gives it besides. As an outer force it takes
+   part in the root's reaction. The root is to be fixed or driven (SPAR_ERR_UNSUPPORTED at commit); of a rigid or
+   prescribed beam, which does not deform, and of one with INERTIA off it does nothing. Part of SPAR_EFFECT_DAMPING.
+   Local, before commit.
+     alpha: in, 1/s, >= 0; 0 (default): none */
+SPAR_API int spar_beam_set_mass_damping(spar_member *beam, double alpha);
+/* alpha: out, 1/s, NULL: not wanted. Local. */
+SPAR_API int spar_beam_get_mass_damping(const spar_member *beam, double *alpha);
 /* mu[6]: out, s, also those of spar_beam_set_modal_damping; 0: none. Local. */
 SPAR_API int spar_beam_get_damping(const spar_member *beam, double mu[6]);
 /* Axis, sections and damping of a beam from BeamDyn's files: the primary file's members, key points and twist, the
@@ -716,7 +726,8 @@ SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *fre
    than n were found, the others having no mass or not converging. */
 SPAR_API int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const double shift[2], double *eigenvalue,
                                            double *shapes, double frame[3]);
-/* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's: each
+/* Stiffness-proportional damping that gives two modes their damping ratios, in place of spar_beam_set_damping's and
+   beside spar_beam_set_mass_damping's: each
    mode sets the mu of the strains that hold most of its energy (bending about y with shear z, bending about z with
    shear y, torsion with stretch), the third group gets the geometric mean. Between commit and the first step.
    Collective.

@@ -648,6 +648,21 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
     return SPAR_OK;
 }
 
+int spari_beam_drag(const spar_member *member, spari_body *body) {
+    if (member->beam->drag == 0 || !body->D || !body->mass) {
+        return SPAR_OK;
+    }
+    double *place = spari_zalloc(3 * (int64_t)body->unique, sizeof *place);
+    for (int i = 0; place && i < body->unique; i++) {
+        memcpy(place + 3 * (int64_t)i, spari_member_place(member, i), 3 * sizeof *place);
+    }
+    if (!place || spari_body_set_drag(body, member->beam->drag, place)) {
+        free(place);
+        return no_memory_for(member, "its damping");
+    }
+    return SPAR_OK;
+}
+
 int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) {
     int P = member->per_element;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], back[4];

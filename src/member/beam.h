@@ -16,6 +16,7 @@ struct spari_beam {
     int rule, points; /* rule -1: chosen by what the sections are */
     double mu[6];
     int damped;
+    double drag; /* 1/s, damping by mass */
 };
 
 /* Fills member->xr, qr (placed) from the axis or the nodes given. */
@@ -23,6 +24,8 @@ int spari_beam_place_nodes(spar_member *member);
 /* Builds the body; the description has been checked. massive: with mass, whatever effects are in force; mu: of its
    damping, NULL: none. */
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);
+/* Gives a damped body the beam's damping by mass, if there is any. */
+int spari_beam_drag(const spar_member *member, spari_body *body);
 void spari_beam_free(spari_beam *beam);
 /* Body k of those that sit on a beam: its element, and where on it. */
 int spari_lump_element(const spar_member *member, int64_t k, double *xi);

@@ -32,6 +32,9 @@ typedef struct spari_body {
     double *mass;    /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
     int lanes;       /* points worked on at once at most; 0: what the processor has (tests try all) */
     double gravity[3];
+    double drag; /* 1/s, damping by mass: of the motion seen from the first node as it turns; with D, be it zero */
+    double *node_place; /* [unique][3] reference places, with drag; NULL: none */
+    double *seen;       /* [unique][6] work space likewise */
     int gyroscopic;
     double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
     double
@@ -46,6 +49,11 @@ typedef struct spari_body {
     struct spari_crew *const *crew; /* who works on its elements (base/crew.h); NULL: one thread */
 } spari_body;
 
+/* Gives a body with D damping by mass. place: reference places of its nodes, 3 doubles each, joints once, which it
+   keeps. Returns 0, or 1 when there is no memory: place is the caller's still. */
+int spari_body_set_drag(spari_body *body, double drag, double *place);
+/* Velocities as the first node sees them, out [unique][6]; q NULL: from the reference. */
+void spari_body_see(const spari_body *body, const double *q, const double *v, double *out);
 /* Doubles of work space that an element with so many points takes. */
 int64_t spari_body_scratch(int per_element, int points, int damped);
 /* Sizes the arrays for points[elements] quadrature points; elastic, damped, massive say which properties exist.

@@ -53,6 +53,16 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     return body;
 }
 
+int spari_body_set_drag(spari_body *body, double drag, double *place) {
+    body->seen = spari_zalloc(6 * (int64_t)body->unique, sizeof *body->seen);
+    if (!body->seen) {
+        return 1;
+    }
+    body->drag = drag;
+    body->node_place = place;
+    return 0;
+}
+
 /* Lane i of a block := lane j. */
 static void copy_lane(double *blocks, int rows, int64_t to, int64_t from) {
     for (int i = 0; blocks && i < rows; i++) {
@@ -133,6 +143,8 @@ void spari_body_free(spari_body *body) {
     if (!body) {
         return;
     }
+    free(body->node_place);
+    free(body->seen);
     free(body->first);
     free(body->slot);
     free(body->phi);

@@ -280,6 +280,15 @@ int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
     return SPAR_OK;
 }
 
+int spar_beam_set_mass_damping(spar_member *beam, double alpha) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_beam(beam, __func__));
+    SPARI_REQUIRE(beam->session, isfinite(alpha) && alpha >= 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': alpha is %g; give a number >= 0, 1/s", __func__, beam->name, alpha);
+    beam->beam->drag = alpha;
+    return SPAR_OK;
+}
+
 int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_open(member, __func__));
@@ -362,6 +371,14 @@ int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
     return SPAR_OK;
 }
 
+int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
+    SPARI_TRY(need_a_beam(beam, __func__));
+    if (alpha) {
+        *alpha = beam->beam->drag;
+    }
+    return SPAR_OK;
+}
+
 int spar_member_get_placement(const spar_member *member, double x[3], double q[4]) {
     SPARI_TRY(spari_need_member(member, __func__));
     if (x) {
@@ -437,6 +454,7 @@ uint64_t spari_member_make(const spar_member *m) {
                       b->node_x != NULL, b->node_q != NULL, b->mass != NULL};
         h = spari_hash_bytes(h, more, sizeof more);
         h = spari_hash_bytes(h, b->mu, sizeof b->mu);
+        h = spari_hash_bytes(h, &b->drag, sizeof b->drag);
         h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
         h = b->twist ? spari_hash_bytes(h, b->twist, n * d) : h;
         h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;

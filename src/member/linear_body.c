@@ -41,13 +41,17 @@ double spari_linear_residual(const spari_body *body, const double *q, const doub
                              double *r, double *power) {
     int P = body->per_element, n = 6 * P;
     double *x = body->scratch, scale = 0, damped = 0;
+    if (v && body->drag > 0) { /* strains' rates are those of what the root sees as well */
+        spari_body_see(body, NULL, v, body->seen);
+    }
+    const double *rate = v && body->drag > 0 ? body->seen : v;
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
         r[i] = body->weights ? factor * body->weights[i] : 0;
     }
     for (int e = 0; e < body->elements; e++) {
         int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;
         displacements(P, q + 7 * first, x);
-        const double *in[3] = {x, v ? v + 6 * first : NULL, a ? a + 6 * first : NULL};
+        const double *in[3] = {x, rate ? rate + 6 * first : NULL, a ? a + 6 * first : NULL};
         for (int k = 0; k < 3; k++) {
             if (in[k] && body->linear[k] && (k != 1 || body->D)) {
                 if (k == 1) {

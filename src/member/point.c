@@ -3,6 +3,42 @@
 
 #include "../math/basis.h"
 
+/* Velocity of a node as the first one sees it, which carries all along with its own. */
+static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
+    double arm[3], carried[3];
+    for (int i = 0; i < 3; i++) {
+        arm[i] = body->node_place[3 * node + i] - body->node_place[i] + (q ? q[7 * node + i] - q[i] : 0);
+    }
+    spari_cross(v + 3, arm, carried);
+    for (int i = 0; i < 3; i++) {
+        out[i] = v[6 * node + i] - v[i] - carried[i];
+        out[3 + i] = v[6 * node + 3 + i] - v[3 + i];
+    }
+}
+
+void spari_body_see(const spari_body *body, const double *q, const double *v, double *out) {
+    for (int64_t node = 0; node < body->unique; node++) {
+        see_node(body, node, q, v, out + 6 * node);
+    }
+}
+
+/* Damping by mass is inertia of an acceleration: drag times that velocity. */
+static void add_drag(const spari_body *body, int e, const double *q, const double *v, double *z) {
+    int P = body->per_element;
+    for (int l = 0; l < P; l++) {
+        double *zn = z + ROW * l, seen[6], half[4] = {0}, turned[4];
+        see_node(body, (int64_t)e * (P - 1) + l, q, v, seen);
+        for (int i = 0; i < 3; i++) {
+            zn[UDD + i] += body->drag * seen[i];
+            half[1 + i] = 0.5 * body->drag * seen[3 + i];
+        }
+        spari_quat_mul(half, zn + Q, turned);
+        for (int i = 0; i < 4; i++) {
+            zn[QDD + i] += turned[i];
+        }
+    }
+}
+
 /* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
 void spari_point_gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
     int P = body->per_element;
@@ -32,6 +68,9 @@ void spari_point_gather(const spari_body *body, int e, const double *q, const do
                 }
             }
         }
+    }
+    if (v && a && body->drag > 0) {
+        add_drag(body, e, q, v, z);
     }
 }
 

@@ -61,6 +61,14 @@ static void add_forces(const spari_body *body, int tile, int from, int to, void 
     }
 }
 
+/* Twice drag times the kinetic energy of the motion that the first node sees. */
+static double drag_power(const spari_body *body, const double *q, const double *v) {
+    double energy[4];
+    spari_body_see(body, q, v, body->seen);
+    spari_body_energy(body, q, body->seen, energy);
+    return 2 * body->drag * energy[0];
+}
+
 double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
                                  double factor, double *r, double *power) {
     force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
@@ -73,7 +81,7 @@ double spari_body_exact_residual(const spari_body *body, const double *q, const 
         damped += sum[1];
     }
     if (power) {
-        *power = damped;
+        *power = damped + (v && a && body->drag > 0 ? drag_power(body, q, v) : 0);
     }
     return scale;
 }

@@ -219,6 +219,10 @@ static int check_complete(spar_member *m) {
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
         SPARI_TRY(spari_lumps_check(m));
+        SPARI_REQUIRE(m->session, m->beam->drag == 0 || spari_member_root_is_given(m), SPAR_ERR_UNSUPPORTED,
+                      "member '%s' has damping by mass, which is against the motion of its root, and that is not given "
+                      "(free, pinned, or left to a joint); fix or drive it, or damp with spar_beam_set_damping",
+                      m->name);
     }
     SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
                   "member '%s': the clock has started; commit members before the first step", m->name);
@@ -235,7 +239,7 @@ int spari_member_effects(const spar_member *m) {
     int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
-    possible |= solved && m->beam && m->beam->damped ? SPAR_EFFECT_DAMPING : 0;
+    possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
     possible |= solved && massive && m->beam && m->beam->lump_count > 0 ? SPAR_EFFECT_MASSES : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
@@ -317,9 +321,10 @@ void spari_member_take_back(spar_member *m, const spar_member *aside) {
 }
 
 static int build_body(spar_member *m) {
-    int damped = m->beam && m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
+    int damped = m->beam && (m->beam->damped || m->beam->drag > 0) && (m->effects & SPAR_EFFECT_DAMPING);
     SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, m->row->massive, damped ? m->beam->mu : NULL, &m->body)
                                     : spari_rigid_build(m, &m->body));
+    SPARI_TRY(damped ? spari_beam_drag(m, m->body) : SPAR_OK);
     SPARI_REQUIRE(m->session, !spari_crew_keep(m->session->crew, spari_body_room(m->body)), SPAR_ERR_MEMORY,
                   "no memory for what the threads do of '%s'", m->name);
     m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;

@@ -209,6 +209,9 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
     status = status == SPAR_OK ? spari_beam_build(beam, 0, found, &body) : status;
     if (status == SPAR_OK) {
+        status = spari_beam_drag(beam, body);
+    }
+    if (status == SPAR_OK) {
         body->gyroscopic = beam->body->gyroscopic;
         memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
         if (!(beam->effects & SPAR_EFFECT_LARGE_ROTATION) &&

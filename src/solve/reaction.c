@@ -79,6 +79,12 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
             spari_member_to_unique(m, 6, m->after.v, v);
         }
         spari_member_to_unique(m, 6, m->after.a, a);
+        if (standing && m->body->drag > 0) { /* the root stands: damping by mass is of the velocities as they are */
+            spari_member_to_unique(m, 6, m->after.v, r);
+            for (int64_t i = 0; i < 6 * n; i++) {
+                a[i] += m->body->drag * r[i];
+            }
+        }
         spari_body_residual(m->body, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
         spari_member_from_unique(m, 6, r, sum);
         for (int64_t i = m->per_element; i < m->nodes; i += m->per_element) {

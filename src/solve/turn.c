@@ -47,6 +47,7 @@ double spari_turn_residual(const spari_body *damped, const double *q, const doub
                            double *r) {
     spari_body body = *damped;
     body.D = NULL;
+    body.drag = 0;
     return spari_body_residual(&body, q, v, a, factor, r, NULL);
 }
 
@@ -55,6 +56,7 @@ void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e,
     int n = 6 * damped->per_element;
     spari_body body = *damped;
     body.D = NULL;
+    body.drag = 0;
     spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
     spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);
     if (!turn || body.linear[0]) {
@@ -110,6 +112,13 @@ void spari_turn_pencil(const spari_body *body, const double w[3], const double o
         two[r][c] = 2 * W[r][c];
         less[r][c] = W[r][c] - S[r][c];
         back[r][c] = -S[r][c];
+    }
+    if (body->drag > 0) { /* damping by mass is seen from the frame itself */
+        double still[3][3];
+        for (int i = 0; i < 9; i++) {
+            still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];
+        }
+        add_by_blocks(n, M, 0, still, K);
     }
     add_by_blocks(n, C, 0, W, K);
     add_by_blocks(n, C, 3, back, K);

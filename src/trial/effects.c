@@ -90,7 +90,7 @@ static double lump_squares(const spar_member *m, const double *q, const double *
 
 /* Adds the squares of a member's terms at t^n. */
 static int member_terms(const spar_member *m, double sum[TERMS]) {
-    const spari_body *b = m->body;
+    spari_body plain = *m->body, *b = &plain;
     int64_t n = b->unique;
     double *q = spari_zalloc(37 * n + 6 * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *none = a + 6 * n,
            *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n, length = spari_member_length(m);
@@ -98,14 +98,25 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_member_to_unique(m, 7, m->now.q, q);
     spari_member_to_unique(m, 6, m->now.v, v);
     spari_member_to_unique(m, 6, m->now.a, a);
+    plain.drag = 0; /* its forces have the shape of inertia's, and are damping's */
     spari_body_residual(b, q, NULL, NULL, 0, rest, NULL);
     sum[INTERNAL] += squares(rest, n, length);
     spari_body_residual(b, q, NULL, NULL, 1, r, NULL);
     minus(r, rest, n);
     sum[GRAVITY] += squares(r, n, length);
     if (b->D) {
-        spari_body_residual(b, q, v, NULL, 0, r, NULL);
-        minus(r, rest, n);
+        spari_body_residual(m->body, q, v, m->body->drag > 0 ? none : NULL, 0, r, NULL);
+        if (m->body->drag > 0 && !b->linear[0]) { /* less what is gyroscopic */
+            spari_body_residual(b, q, v, none, 0, loads, NULL);
+            minus(r, loads, n);
+            spari_body_residual(b, q, v, NULL, 0, loads, NULL);
+            minus(loads, rest, n);
+            for (int64_t i = 0; i < 6 * n; i++) {
+                r[i] += loads[i];
+            }
+        } else {
+            minus(r, rest, n);
+        }
         sum[DAMPING] += squares(r, n, length);
     }
     if (m->effects & SPAR_EFFECT_INERTIA) {

@@ -117,7 +117,7 @@ typedef struct setting {
     int poses, accelerations;    /* pulled */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
-    int unaudited, account, guess, laden;
+    int unaudited, account, guess, laden, dragged;
     int reproducible;                    /* if GIVEN */
     int aero;                            /* blades with sections */
     int aero_effects;                    /* if GIVEN */
@@ -193,6 +193,9 @@ static void make_beam(scene *s) {
     }
     if (s->is.guess) {
         MUST(spar_member_set_added_mass(*b, 1, eta, mass));
+    }
+    if (s->is.dragged) {
+        MUST(spar_beam_set_mass_damping(*b, 0.1));
     }
     if (s->is.laden) {
         MUST(spar_beam_set_masses(*b, 1, eta + 1, mass));
@@ -405,6 +408,12 @@ static const effect effects[] = {
      {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING, .damped = 1},
      {.effects = GIVEN | SPAR_EFFECT_INERTIA, .damped = 1},
      {.effects = GIVEN | SPAR_EFFECT_INERTIA}},
+    {"damping by mass",
+     "spari_body_see",
+     NEVER,
+     {.dragged = 1},
+     {.dragged = 1, .effects = ALL & ~SPAR_EFFECT_DAMPING},
+     {0}},
     {"large rotation",
      "accelerated_forces_plain accelerated_forces_avx2",
      TRADE,

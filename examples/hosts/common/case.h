@@ -36,6 +36,7 @@
      damping mu1 .. mu6         modal_damping mode ratio mode ratio
      fidelity exact|linear|rigid|prescribed, or modal n
      line_load* dead|follower eta fx fy fz mx my mz
+     mass_damping alpha         1/s (spar_beam_set_mass_damping)
      body* eta mass             a rigid body that sits on it (spar_beam_set_masses)
      added_mass* eta mass       a guess of the fluid's, per length (spar_member_set_added_mass)
    [rigid NAME]

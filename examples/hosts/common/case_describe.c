@@ -331,6 +331,10 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
         CASE_TRY(case_numbers(&c->text, line, 1, 6, mu));
         DO(c, line->number, spar_beam_set_damping(*beam, mu));
     }
+    if ((line = case_find(block, "mass_damping"))) {
+        CASE_TRY(case_numbers(&c->text, line, 1, 1, mu));
+        DO(c, line->number, spar_beam_set_mass_damping(*beam, mu[0]));
+    }
     CASE_TRY(set_masses(c, block, "added_mass", spar_member_set_added_mass, *beam));
     CASE_TRY(set_masses(c, block, "body", spar_beam_set_masses, *beam));
     line = case_find(block, "fidelity");

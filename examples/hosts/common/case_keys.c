@@ -24,8 +24,8 @@ static const known_key beam_keys[] = {
     {"elements", 1, 1, 0},  {"nodes", 1, 1, 0},     {"quadrature", 2, 2, 0},    {"axis", 4, 5, 1},
     {"axis_file", 1, 1, 0}, {"node", 3, 7, 1},      {"twist_scale", 1, 1, 0},   {"section", 7, 73, 1},
     {"beamdyn", 1, 2, 0},   {"damping", 6, 6, 0},   {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
-    {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1}, {"added_mass", 7, 37, 1},   {"body", 7, 37, 1},
-    {NULL, 0, 0, 0},
+    {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1}, {"added_mass", 7, 37, 1},   {"mass_damping", 1, 1, 0},
+    {"body", 7, 37, 1},     {NULL, 0, 0, 0},
 };
 static const known_key rigid_keys[] = {{"mass", 6, 36, 0}, {"added_mass", 6, 36, 0}, {NULL, 0, 0, 0}};
 static const known_key joint_keys[] = {

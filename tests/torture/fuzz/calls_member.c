@@ -178,6 +178,18 @@ void do_spar_member_set_effects(call *c) {
     RUN(c, spar_member_set_effects(m->m, effects));
 }
 
+void do_spar_beam_set_mass_damping(call *c) {
+    live_member *m = arg_member(c, -1);
+    double alpha = chance(c, 30) ? 0 : arg_real(c, 0, 2);
+    RUN(c, spar_beam_set_mass_damping(m->m, alpha));
+}
+
+void do_spar_beam_get_mass_damping(call *c) {
+    live_member *m = arg_member(c, -1);
+    double *alpha = OUT_OR_NULL(c, 1);
+    RUN(c, spar_beam_get_mass_damping(m->m, alpha));
+}
+
 void do_spar_beam_set_masses(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = chance(c, 10) ? 0 : arg_count(c, 1, 3), room = length(n);

@@ -88,6 +88,8 @@ enum {
     CALL(spar_beam_set_sections, 50, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_quadrature, 40, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_damping, 40, FUZZ_CHANGES)                                                                      \
+    CALL(spar_beam_set_mass_damping, 30, FUZZ_CHANGES)                                                                 \
+    CALL(spar_beam_get_mass_damping, 20, FUZZ_PURE)                                                                    \
     CALL(spar_beam_set_masses, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_beam_get_masses, 20, FUZZ_PURE)                                                                          \
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \

@@ -43,6 +43,7 @@ static void beam(writer *w) {
     part(w, 98, CALL_spar_beam_set_sections);
     part(w, 50, CALL_spar_member_set_fidelity);
     part(w, 30, CALL_spar_beam_set_damping);
+    part(w, 15, CALL_spar_beam_set_mass_damping);
     part(w, 25, CALL_spar_beam_set_masses);
     part(w, 15, CALL_spar_beam_set_quadrature);
     part(w, 20, CALL_spar_member_set_added_mass);

@@ -464,6 +464,8 @@ static void act_fidelities(void) {
         if (k != 3) {
             CALL(spar_member_set_added_mass, m, 2, eta, guess);
             CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
+            CALL(spar_beam_set_mass_damping, m, what[k].root == SPAR_ROOT_FIXED ? 0.1 : 0);
+            CALL(spar_beam_get_mass_damping, m, work);
             CALL(spar_beam_set_masses, m, 2, eta, body);
             CALL(spar_beam_get_masses, m, &stations, 2, NULL, body);
             CALL(spar_member_learn_added_mass, m, 2, eta);
