@@ -326,9 +326,11 @@ typedef struct posted {
 } posted;
 
 static int await(posted *p, char *message, size_t size) {
+    MPI_Status status[POSTED]; /* nobody asks; of MPI_STATUSES_IGNORE MPICH's header lets gcc 12 believe that it is
+                                  written to */
     int n = p->n;
     p->n = 0;
-    TRY_MPI(MPI_Waitall(n, p->request, MPI_STATUSES_IGNORE));
+    TRY_MPI(MPI_Waitall(n, p->request, status));
     return SPAR_OK;
 }
 
