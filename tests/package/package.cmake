@@ -29,6 +29,13 @@ if(SPAR_AWK)
   spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
 endif()
 
+# the same by the debug information, where there are abidiff and gcc's view of the types
+if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  spar_package_test(abi sh "${here}/abi" "$<TARGET_FILE:spar>")
+  spar_package_test(abi_fails sh "${here}/abi_fails" "${CMAKE_C_COMPILER}" "${PROJECT_BINARY_DIR}" "${work}/abi")
+  set_tests_properties(package_abi package_abi_fails PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 # the same symbols with nothing but GSL: no MPI, no OpenBLAS (the short form of tests/configurations)
 if(SPAR_MPI)
   spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
