@@ -5,6 +5,13 @@ set -eu
 source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6
 rm -rf "$work"
 mkdir -p "$work/root"
+# the book goes into spar-doc where it was made
+made=
+if command -v doxygen >/dev/null 2>&1 && [ ! -d "$build/book" ]; then
+    made=$build/book
+    trap 'rm -rf "$made"' EXIT
+    "$source/docs/book" "$build/book" >"$work/book.log" 2>&1 || { tail -n 20 "$work/book.log"; exit 1; }
+fi
 "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
 for package in libspar1 libspar-dev spar-doc; do
     file=$(find "$work" -maxdepth 1 -name "${package}_${release}_*.deb")
@@ -19,6 +26,16 @@ done
 sort "$work"/*.files | uniq -d >"$work/twice"
 [ ! -s "$work/twice" ] || { echo "in two packages:"; cat "$work/twice"; exit 1; }
 [ "$(grep -v /doc/ "$work/libspar1.files" | grep -vE 'lib/libspar\.so\.[0-9.]+$|lib/[a-z0-9_-]+/libspar\.so\.[0-9.]+$')" = "" ]
+if [ -d "$build/book" ]; then
+    for page in index spar_8h spar__aero_8h spar__output_8h spar__mpi_8h; do
+        grep -q "/html/$page\.html$" "$work/spar-doc.files" || { echo "spar-doc has no page $page of the book"; exit 1; }
+    done
+    # every picture and page that the first page leads to is there
+    html=$(dirname "$(find "$work/root" -path '*/html/index.html')")
+    grep -oE '(href|src)="[^":#?]+["#]' "$html/index.html" | sed 's/^[^"]*"//; s/["#]$//' | sort -u | while read -r file; do
+        [ -e "$html/$file" ] || { echo "spar-doc: index.html leads to $file, which is not there"; exit 1; }
+    done
+fi
 dpkg-deb -f "$work"/libspar1_*.deb Depends | grep -q libgsl
 dpkg-deb -f "$work"/libspar-dev_*.deb Depends | grep -q "libspar1 (= $release)"
 sh "$source/tests/package/pkgconfig.sh" "$work/root/usr" "$work/consumer" "$compiler" "$source/tests/package/c/main.c" spar
