@@ -15,7 +15,7 @@ static const int widths[] = {2, 4, 8}; /* those the processor lacks fall back to
 
 /* ---- a scene: a member's nodes in motion and fluid nodes tied to them ---- */
 
-enum { MOST = 6 * SPARI_MAX_NODES };
+enum { MOST = 6 * SPARI_MAX_NODES, WORK = (20 + SPARI_MAX_NODES) * SPARI_ROW + MOST * 28 + 44 };
 
 typedef struct scene {
     int elements, nodes; /* per element */
@@ -320,7 +320,7 @@ static void signs_do_not_matter(void **unused) {
     (void)unused;
     unsigned long long seed = 4;
     static scene s;
-    static double x[2][3][50][3], load[2][MOST][6], work[MOST * 28 + 44];
+    static double x[2][3][50][3], load[2][MOST][6], work[WORK];
     static const int row[] = {SPARI_R_PLACE, SPARI_R_RATE, SPARI_R_ACCEL};
     for (int consistent = 0; consistent < 2; consistent++) {
         scene_start(&s, 2, 9, 50, &seed);
@@ -465,7 +465,7 @@ static void loads_are_the_formula(void **unused) {
     (void)unused;
     unsigned long long seed = 31;
     static scene s;
-    static double want[MOST][6], got[MOST][6], work[MOST * 28 + 44];
+    static double want[MOST][6], got[MOST][6], work[WORK];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 5 ? 1 : 5) {
         for (int n = 0; n <= 300; n += n < 18 ? 1 : 94) {
             int elements = nodes == 1 ? 1 : 1 + n % 3;
@@ -563,7 +563,7 @@ static void reproducible_loads(void **unused) {
     unsigned long long seed = 41;
     static scene s;
     static spari_bins want[MOST][6], got[MOST][6];
-    static double plain[MOST][6], work[MOST * 28 + 44], share[SPARI_MAX_NODES][6];
+    static double plain[MOST][6], work[WORK], share[SPARI_MAX_NODES][6];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 5 ? 1 : 5) {
         for (int n = 0; n <= 600; n += n < 18 ? 1 : 194) {
             int elements = nodes == 1 ? 1 : 1 + n % 3;
@@ -585,7 +585,7 @@ static void reproducible_loads(void **unused) {
                 }
                 for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
                     s.set->lanes = widths[w];
-                    spari_bin_loads(s.set, s.modal, consistent, s.q[0], force, moment, got[0], &finite);
+                    spari_bin_loads(s.set, s.modal, consistent, s.q[0], force, moment, work, got[0], &finite);
                     assert_true(finite);
                     assert_memory_equal(got, want, (size_t)size * sizeof got[0][0]);
                     reorder(&s, &seed);
@@ -614,6 +614,7 @@ static void reproducible_loads_tell(void **unused) {
     unsigned long long seed = 42;
     static scene s;
     static spari_bins load[MOST][6];
+    static double work[WORK];
     int finite;
     scene_start(&s, 2, 4, N, &seed);
     for (int j = 0; j < N; j++) {
@@ -625,12 +626,12 @@ static void reproducible_loads_tell(void **unused) {
             s.set->lanes = widths[k % 3];
             double was = s.force[j][1];
             s.force[j][1] = bad[k];
-            spari_bin_loads(s.set, s.modal, k % 2, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, load[0],
-                            &finite);
+            spari_bin_loads(s.set, s.modal, k % 2, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, work,
+                            load[0], &finite);
             assert_false(finite);
             s.force[j][1] = was;
         }
-        spari_bin_loads(s.set, s.modal, 0, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, load[0],
+        spari_bin_loads(s.set, s.modal, 0, s.q[0], (spari_source){.d = s.force[0]}, (spari_source){0}, work, load[0],
                         &finite);
         assert_true(finite);
     }
@@ -643,7 +644,7 @@ static void force_moment_and_power_are_kept(void **unused) {
     (void)unused;
     unsigned long long seed = 77;
     static scene s;
-    static double load[MOST][6], work[MOST * 28 + 44];
+    static double load[MOST][6], work[WORK];
     for (int nodes = 1; nodes <= SPARI_MAX_NODES; nodes += nodes < 6 ? 1 : 3) {
         for (int kind = 0; kind < 12; kind++) {
             int consistent = kind % 2, elements = nodes == 1 ? 1 : 1 + kind % 5, n = 40 + 150 * (kind % 3);

@@ -40,8 +40,8 @@ void spari_blade_free(spari_blade *blade) {
 /* ---- the primary file ---- */
 
 /* The path in the first word of the line, beside the file. */
-static int read_path(const spari_reader *r, const char *what, char **path) {
-    char word[SPARI_READ_LINE];
+static int read_path(spari_reader *r, const char *what, char **path) {
+    char *word = r->word;
     const char *at = r->line;
     if (!spari_read_word(&at, word) || !word[0]) {
         return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is missing", what);
@@ -50,8 +50,8 @@ static int read_path(const spari_reader *r, const char *what, char **path) {
     return *path ? SPAR_OK : spari_read_no_memory(r);
 }
 
-static int read_flag(const spari_reader *r, const char *what, int *flag) {
-    char word[SPARI_READ_LINE];
+static int read_flag(spari_reader *r, const char *what, int *flag) {
+    char *word = r->word;
     const char *at = r->line;
     (void)spari_read_word(&at, word);
     const char *c = word + (word[0] == '.'); /* Fortran's .true. */
@@ -77,7 +77,7 @@ static int read_columns(spari_reader *r, deck *d) {
 
 /* On to the line of the blade's file, whose key is ADBlFile(1), or, in older files, ADBlFile. */
 static int find_blade(spari_reader *r) {
-    char word[SPARI_READ_LINE];
+    char *word = r->word;
     for (;;) {
         SPARI_TRY(spari_read_line(r, "ADBlFile(1)"));
         const char *at = r->line;
@@ -164,7 +164,7 @@ static int read_data(spari_reader *r, const char *what) {
 /* On to the line with a key. Coordinates, the lines that include files of them (@"...") and the coefficients of
    unsteady aerodynamics stand before the keys and are passed over. */
 static int find_data(spari_reader *r, const char *key, int *interpolation) {
-    char word[SPARI_READ_LINE];
+    char *word = r->word;
     for (;;) {
         SPARI_TRY(read_data(r, key));
         const char *at = r->line;

@@ -2,6 +2,7 @@
 #include "crew.h"
 
 #include "quiet.h"
+#include "room.h"
 #include "status.h"
 
 #include <pthread.h>
@@ -16,13 +17,13 @@ typedef struct hand {
     spari_crew *crew;
     pthread_t thread;
     int worker;
-    double *room;
+    spari_room room;
 } hand;
 
 struct spari_crew {
     int threads;
-    hand *hands; /* [threads]; the first is the caller's and has no thread of its own */
-    int64_t room;
+    hand *hands;  /* [threads]; the first is the caller's and has no thread of its own */
+    int64_t kept; /* doubles of work space that all hands have */
     pthread_mutex_t lock;
     pthread_cond_t begun, ended;
     atomic_long round;  /* counts the runs */
@@ -116,7 +117,7 @@ static void dismiss(spari_crew *c) {
     call_hands(c);
     for (int k = 1; k < c->threads; k++) {
         (void)pthread_join(c->hands[k].thread, NULL);
-        free(c->hands[k].room);
+        spari_room_free(&c->hands[k].room);
     }
     (void)pthread_cond_destroy(&c->ended);
     (void)pthread_cond_destroy(&c->begun);
@@ -189,21 +190,18 @@ void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *cont
 }
 
 int spari_crew_keep(spari_crew *crew, int64_t doubles) {
-    if (!crew || doubles <= crew->room) {
+    if (!crew || doubles <= crew->kept) {
         return 0;
     }
     for (int k = 1; k < crew->threads; k++) {
-        double *room = spari_zalloc(doubles, sizeof *room);
-        if (!room) {
+        if (spari_room_keep(&crew->hands[k].room, doubles)) {
             return 1;
         }
-        free(crew->hands[k].room);
-        crew->hands[k].room = room;
     }
-    crew->room = doubles;
+    crew->kept = doubles;
     return 0;
 }
 
 double *spari_crew_room(const spari_crew *crew, int worker, int64_t doubles) {
-    return crew && doubles <= crew->room ? crew->hands[worker].room : NULL;
+    return crew && doubles <= crew->kept ? spari_room_at(&crew->hands[worker].room, doubles) : NULL;
 }

@@ -209,7 +209,7 @@ int spari_saving_put_part(const char *temporary, int64_t at, int64_t n, const ui
 }
 
 int spari_saving_has_part(const char *temporary, int64_t at, int64_t n, uint64_t sum) {
-    enum { PIECE = 1 << 8 };
+    enum { PIECE = 1 << 7 };
     uint64_t words[PIECE], seen = 0;
     char why[2];
     for (int64_t i = 0; i < n; i += PIECE) {
@@ -345,7 +345,7 @@ int spari_loading_read(spari_loading *source, int64_t at, int64_t n, uint64_t *w
 }
 
 int spari_loading_sum(spari_loading *source, int part, int parts, uint64_t *sum, uint64_t *n, char *why, size_t size) {
-    unsigned char bytes[1 << 11];
+    unsigned char bytes[1 << 10];
     int64_t words = HEAD_WORDS + source->count, each = words / parts, more = words % parts;
     int64_t at = 8 * (part * each + (part < more ? part : more)), end = at + 8 * (each + (part < more));
     *sum = 0, *n = (uint64_t)(end - at);

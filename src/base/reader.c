@@ -68,9 +68,9 @@ int spari_read_word(const char **at, char word[SPARI_READ_LINE]) {
     return any;
 }
 
-int spari_read_numbers(const spari_reader *r, const char *what, int n, double *x) {
+int spari_read_numbers(spari_reader *r, const char *what, int n, double *x) {
     const char *at = r->line;
-    char word[SPARI_READ_LINE];
+    char *word = r->word;
     for (int i = 0; i < n; i++) {
         if (!spari_read_word(&at, word)) {
             return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s: number %d of %d is missing", what, i + 1, n);
@@ -87,7 +87,7 @@ int spari_read_numbers(const spari_reader *r, const char *what, int n, double *x
     return SPAR_OK;
 }
 
-int spari_read_whole(const spari_reader *r, const char *what, int low, int column, int *out) {
+int spari_read_whole(spari_reader *r, const char *what, int low, int column, int *out) {
     enum { MOST_COLUMNS = 8 };
     double x[MOST_COLUMNS] = {0};
     SPARI_TRY(spari_read_numbers(r, what, column + 1, x));
@@ -99,23 +99,21 @@ int spari_read_whole(const spari_reader *r, const char *what, int low, int colum
 }
 
 int spari_read_key(spari_reader *r, const char *key) {
-    char word[SPARI_READ_LINE];
     for (;;) {
         SPARI_TRY(spari_read_line(r, key));
         const char *at = r->line;
-        if (spari_read_word(&at, word) && spari_read_word(&at, word) && strcasecmp(word, key) == 0) {
+        if (spari_read_word(&at, r->word) && spari_read_word(&at, r->word) && strcasecmp(r->word, key) == 0) {
             return SPAR_OK;
         }
     }
 }
 
 int spari_read_filled(spari_reader *r, const char *what) {
-    char word[SPARI_READ_LINE];
     const char *at;
     do {
         SPARI_TRY(spari_read_line(r, what));
         at = r->line;
-    } while (!spari_read_word(&at, word));
+    } while (!spari_read_word(&at, r->word));
     return SPAR_OK;
 }
 

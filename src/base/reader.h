@@ -14,8 +14,8 @@ typedef struct spari_reader {
     const char *call, *subject;  /* the public call, and what it reads for */
     const char *path;
     FILE *file;
-    int number; /* of the line read last */
-    char line[SPARI_READ_LINE];
+    int number;                                        /* of the line read last */
+    char line[SPARI_READ_LINE], word[SPARI_READ_LINE]; /* room for a word of it: much for a small stack */
 } spari_reader;
 
 /* A failure in the line read last. */
@@ -36,9 +36,9 @@ int spari_read_key(spari_reader *r, const char *key);
 /* The next word from *at on (quotes hold it together), into word; 0 at the end of the line. */
 int spari_read_word(const char **at, char word[SPARI_READ_LINE]);
 /* The first n numbers of the line; Fortran's d exponents too. `what` names the fields, the column says which. */
-int spari_read_numbers(const spari_reader *r, const char *what, int n, double *x);
+int spari_read_numbers(spari_reader *r, const char *what, int n, double *x);
 /* The number in a column, from 0, of the line: whole, from low to SPARI_READ_MOST. */
-int spari_read_whole(const spari_reader *r, const char *what, int low, int column, int *out);
+int spari_read_whole(spari_reader *r, const char *what, int low, int column, int *out);
 
 /* A path that the file names: beside it, unless it is a whole one. malloc'd; NULL: no memory. */
 char *spari_read_beside(const spari_reader *r, const char *path);

@@ -49,7 +49,7 @@ static char *message_of(const spar_session *session) {
 
 int(spari_fail)(const spar_session *session, int status, const char *format, ...) {
     /* Formatted aside first: an argument may point into the message that is about to be replaced. */
-    char text[7 * SPARI_MESSAGE_SIZE];
+    static _Thread_local char text[7 * SPARI_MESSAGE_SIZE]; /* much for a small stack */
     va_list arguments;
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) {

@@ -4,6 +4,7 @@
 #define SPARI_SCENE_H
 
 #include "message.h"
+#include "room.h"
 
 typedef struct spari_comm spari_comm; /* comm/comm.h */
 typedef struct spari_own spari_own;   /* session/session.h */
@@ -74,6 +75,7 @@ struct spar_session {
     int audit_off;                                         /* option fluid.audit = on (default) | off */
     int touched;                                           /* option ranks.state = all (default) | touched */
     struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
+    spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
     int coupling_stale;      /* settings of the coupling have changed since it was made */
 
     double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */

@@ -13,6 +13,14 @@
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
 
+/* A function that keeps a frame of its own: put into its caller, both their arrays would lie on the stack for as long
+   as either runs, which is much for a small one. */
+#ifdef __GNUC__
+#define SPARI_APART __attribute__((noinline))
+#else
+#define SPARI_APART
+#endif
+
 /* More entries than any memory holds: a host's count beyond it is a mistake, and below it a count times what an entry
    takes fits 64 bits. */
 #define SPARI_MOST (INT64_C(1) << 40)

@@ -24,11 +24,10 @@ static int prepare_member(spar_fluid *fluid) {
         double **to;
         int64_t size;
     } all[] = {{&fluid->field[0], nodes * SPARI_FIELDS},
-               {&fluid->work, spari_gather_room(nodes)},
                {&fluid->load, 6 * nodes},
                {&fluid->load_new, 6 * nodes},
                {&fluid->load_accepted, 6 * nodes}};
-    int whole = fluid->modal && fluid->reference && q && !spari_crew_keep(m->session->crew, spari_fluid_room(fluid));
+    int whole = fluid->modal && fluid->reference && q && !spari_fluid_keep_room(fluid);
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         *all[i].to = spari_zalloc(all[i].size, sizeof(double));
         whole = whole && *all[i].to;
@@ -55,8 +54,22 @@ static int prepare_member(spar_fluid *fluid) {
 }
 
 int64_t spari_fluid_room(const spar_fluid *fluid) {
-    int64_t share = spari_gather_share(fluid->member->nodes), tile = SPARI_ROWS * SPARI_ROW;
-    return share > tile ? share : tile;
+    const spar_member *m = fluid->member;
+    int64_t gather = spari_gather_room(m->elements, m->per_element);
+    int64_t pull = (fluid->field[1] ? SPARI_PULL_BOTH : SPARI_PULL_ONE) * SPARI_ROW;
+    return gather > pull ? gather : pull;
+}
+
+int spari_fluid_keep_room(const spar_fluid *fluid) {
+    spar_session *s = fluid->member->session;
+    int64_t room = spari_fluid_room(fluid);
+    return spari_room_keep(&s->room, room) || spari_crew_keep(s->crew, room);
+}
+
+double *spari_fluid_work(const spar_fluid *fluid, int worker) {
+    const spar_session *s = fluid->member->session;
+    int64_t room = spari_fluid_room(fluid);
+    return worker == 0 ? spari_room_at(&s->room, room) : spari_crew_room(s->crew, worker, room);
 }
 
 void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out) {
@@ -148,6 +161,11 @@ double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *s) {
     return x;
 }
 
+static int no_memory_to_map(const spar_fluid *fluid, const char *caller, int64_t n, int which) {
+    return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory to map %lld %s nodes", (long long)n,
+                              set_name[which]);
+}
+
 /* Ties one set to the line, into *made; nothing of the fluid changes. */
 static int map_set(const spar_fluid *fluid, int which, const spari_line *line, spari_nodes **made, const char *caller) {
     const spar_member *m = fluid->member;
@@ -159,14 +177,17 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     if (alloc_feet(&f, n) != SPAR_OK || !*made || !(set->pending || again)) {
         free_feet(&f);
         free(again);
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory to map %lld %s nodes", (long long)n,
-                                  set_name[which]);
+        return no_memory_to_map(fluid, caller, n, which);
     }
     const double *x = set->pending ? set->x : again;
     if (set->sections) {
         feet_of_sections(fluid, set, &f);
     } else {
-        spari_line_project(line, m->session->crew, fluid->method, n, x, f.element, f.xi, f.con, f.flags);
+        if (spari_line_project(line, m->session->crew, fluid->method, n, x, f.element, f.xi, f.con, f.flags)) {
+            free_feet(&f);
+            free(again);
+            return no_memory_to_map(fluid, caller, n, which);
+        }
         for (int64_t i = 0; i < 3 * n; i++) {
             f.con[i] = x[i] - f.con[i];
         }

@@ -108,8 +108,8 @@ void spari_fluid_free(spar_fluid *fluid) {
     spari_node_set_clear(&fluid->set[1]);
     spari_history_free(fluid->history);
     spari_taking_free(fluid->taking);
-    double *all[] = {fluid->modal, fluid->field[0], fluid->field[1], fluid->reference,
-                     fluid->work,  fluid->load,     fluid->load_new, fluid->load_accepted};
+    double *all[] = {fluid->modal, fluid->field[0], fluid->field[1],     fluid->reference,
+                     fluid->load,  fluid->load_new, fluid->load_accepted};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }

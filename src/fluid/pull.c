@@ -48,7 +48,7 @@ static void blend_motion(const spar_member *m, int64_t first, double theta, doub
     }
 }
 
-static void fill_blended(const spar_fluid *fluid, double theta, int upto) {
+SPARI_APART static void fill_blended(const spar_fluid *fluid, double theta, int upto) {
     const spar_member *m = fluid->member;
     double q[SPARI_MAX_NODES][7], v[SPARI_MAX_NODES][6], a[SPARI_MAX_NODES][6];
     for (int e = 0; e < m->elements; e++) {
@@ -95,11 +95,13 @@ static int need_second(spar_fluid *fluid, const char *caller) {
     if (fluid->field[1] || !fluid->field[0]) {
         return SPAR_OK;
     }
-    /* with the tile of the second state behind it, which would be much for a small stack */
-    fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS + SPARI_ROWS * SPARI_ROW, sizeof *fluid->field[1]);
-    return fluid->field[1]
-               ? SPAR_OK
-               : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the motion at two times");
+    fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS, sizeof *fluid->field[1]);
+    if (!fluid->field[1] || spari_fluid_keep_room(fluid)) {
+        free(fluid->field[1]);
+        fluid->field[1] = NULL;
+        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the motion at two times");
+    }
+    return SPAR_OK;
 }
 
 /* The first average of two states takes the memory for the second. */
@@ -289,10 +291,12 @@ static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wante
     zero(&w->alpha, s->n, w->layout);
 }
 
-/* NULL where no average has been asked for yet. */
-static double (*second_tile(const spar_fluid *fluid))[SPARI_ROW] {
-    double *field = fluid->field[1];
-    return field ? (double(*)[SPARI_ROW])(field + fluid->member->nodes * SPARI_FIELDS) : NULL;
+/* In a thread's work space. No second where no average has been asked for yet. */
+static states tiles_of(const spar_fluid *fluid, int worker, int n, const double share[2]) {
+    double(*row)[SPARI_ROW] = (double(*)[SPARI_ROW])spari_fluid_work(fluid, worker);
+    states t = {.n = n, .share = {share[0], share[1]}, .buf = {row}, .reference = row + SPARI_ROWS};
+    t.buf[1] = fluid->field[1] ? row + SPARI_PULL_ONE : NULL;
+    return t;
 }
 
 /* Of part of a turn there is no one rotation, so that weighted nodes have none. */
@@ -336,12 +340,7 @@ static void pull_tile(pulling *p, int64_t first, const states *t, double *least)
 
 static void pull_slab(void *context, int64_t slab, int worker) {
     pulling *p = context;
-    double a[SPARI_ROWS][SPARI_ROW], c[SPARI_R_OMEGA][SPARI_ROW];
-    states t = {.n = p->states, .share = {p->share[0], p->share[1]}, .buf = {a, second_tile(p->fluid)}, .reference = c};
-    if (worker > 0) {
-        const spari_crew *crew = p->fluid->member->session->crew;
-        t.buf[1] = (double(*)[SPARI_ROW])spari_crew_room(crew, worker, SPARI_ROWS * SPARI_ROW);
-    }
+    const states t = tiles_of(p->fluid, worker, p->states, p->share);
     int64_t from = slab * SPARI_SLAB, end = from + SPARI_SLAB < p->set->nodes->n ? from + SPARI_SLAB : p->set->nodes->n;
     for (int64_t first = from; first < end; first += SPARI_TILE) {
         pull_tile(p, first, &t, &p->least[worker]);
@@ -432,17 +431,17 @@ static void longest_way(const spari_nodes *s, int64_t first, const states *t, do
 int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     SPARI_QUIET;
     SPARI_FLUID_HANDLE(fluid);
-    double a[SPARI_ROWS][SPARI_ROW], square = 0, least = HUGE_VAL;
+    double square = 0, least = HUGE_VAL;
     const spari_nodes *s;
     int64_t farthest = -1;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, __func__, &s));
     SPARI_TRY(need_second(fluid, __func__));
-    states t = {.n = 2, .buf = {a, second_tile(fluid)}};
     if (s && s->n > 0) {
         fill_one(fluid, 0, SPARI_UPTO_PLACE, fluid->field[0]);
         fill_one(fluid, 1, SPARI_UPTO_PLACE, fluid->field[1]);
     }
-    for (int64_t first = 0; s && t.buf[1] && first < s->n; first += SPARI_TILE) {
+    for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
+        const states t = tiles_of(fluid, 0, 2, (const double[2]){1, 0});
         for (int i = 0; i < t.n; i++) {
             double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_PLACE, t.buf[i]);
             least = fmin(least, met);

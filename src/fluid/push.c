@@ -133,7 +133,7 @@ static void swap_bins(spar_fluid *fluid, int a, int b) {
 static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment) {
     int finite;
     double least = spari_bin_loads(s, fluid->modal, fluid->consistent, fluid->member->after.q, force, moment,
-                                   fluid->bins[SPARI_OF_NEXT], &finite);
+                                   spari_fluid_work(fluid, 0), fluid->bins[SPARI_OF_NEXT], &finite);
     for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
         spari_bins_double(fluid->bins[SPARI_OF_NEXT] + i);
         fluid->load_new[i] = finite ? 0.5 * spari_bins_value(fluid->bins[SPARI_OF_NEXT] + i) : NAN;
@@ -155,7 +155,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
                          audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
                          fluid->field[0]);
         least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,
-                                   fluid->work, fluid->load_new, audit);
+                                   spari_fluid_work(fluid, 0), fluid->load_new, audit);
     }
     if (reproducible) {
         least = bin_loads(fluid, s, force, moment);

@@ -116,7 +116,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
             return no_memory_for_trial(f);
         }
     } else {
-        f->modal = f->reference = f->work = f->field[0] = f->field[1] = NULL;
+        f->modal = f->reference = f->field[0] = f->field[1] = NULL;
         f->set[0] = f->set[1] = (spari_node_set){0}; /* both, before anything can fail: what is shared is not freed */
         for (int which = 0; which < 2; which++) {
             SPARI_TRY(unmap(old, which, &f->set[which]));
@@ -190,7 +190,6 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
     }
     drop_copy(f->modal, old->modal);
     drop_copy(f->reference, old->reference);
-    drop_copy(f->work, old->work);
     for (int k = 0; k < 2; k++) {
         drop_copy(f->field[k], old->field[k]);
     }

@@ -7,6 +7,10 @@
 #include "../transfer/transfer.h"
 #include "fluid.h"
 
+/* Rows of work space of a pull: a tile's motion, what of the reference's poses are made of, and another motion where a
+   time lies between two states. */
+enum { SPARI_PULL_ONE = SPARI_ROWS + SPARI_R_OMEGA, SPARI_PULL_BOTH = SPARI_PULL_ONE + SPARI_ROWS };
+
 /* A set of nodes as the host gave it, until the map ties it to the line, and as it is kept afterwards. */
 typedef struct spari_node_set {
     int pending;  /* given, not mapped yet */
@@ -78,10 +82,8 @@ struct spar_fluid {
 
     /* allocated by the map */
     double *modal;     /* [P][P] */
-    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on, with
-                          room for its tile behind */
+    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on */
     double *reference; /* of the reference configuration */
-    double *work;      /* spari_gather_room */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     spari_bins *bins[SPARI_OF_COUNT];        /* [nodes][6] reproducible sums; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];
@@ -118,6 +120,10 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
 /* Of one state's tile: places and what of velocities and accelerations is there become the part the nodes take. The set
    has weights. */
 void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
+/* Keeps the work space that the fluid's calls need, of all threads. 0, or 1: no memory. */
+int spari_fluid_keep_room(const spar_fluid *fluid);
+/* That of a thread, for one call: doubles of rows of tiles. */
+double *spari_fluid_work(const spar_fluid *fluid, int worker);
 /* NULL: packed. */
 const spari_layout *spari_fluid_layout(const spar_fluid *fluid, int which);
 int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller);

@@ -98,8 +98,8 @@ static int line_distances(const spar_fluid *fluid, double **distance, const char
     int *element = spari_zalloc(n, sizeof *element);
     uint8_t *flags = spari_zalloc(n, sizeof *flags);
     int whole = line && x && foot && xi && element && flags;
+    whole = whole && !spari_line_project(line, m->session->crew, fluid->method, n, x, element, xi, foot, flags);
     if (whole) {
-        spari_line_project(line, m->session->crew, fluid->method, n, x, element, xi, foot, flags);
         for (int64_t j = 0; j < n; j++) {
             double arm[3] = {x[3 * j] - foot[3 * j], x[3 * j + 1] - foot[3 * j + 1], x[3 * j + 2] - foot[3 * j + 2]};
             xi[j] = spari_norm(arm);

@@ -1,6 +1,8 @@
 /* All zeros of a polynomial, real and complex. */
 #include "roots.h"
 
+#include "../base/status.h"
+
 #include <complex.h>
 #include <float.h>
 #include <math.h>
@@ -258,8 +260,8 @@ static int linear_iteration(finder *w, double *s, int *cluster) {
 /* Stage 3 from estimates that passed: the more promising kind first, then the other, K as it was for each. When a real
    iteration hangs at two zeros close together, the quadratic with both of them is tried. Returns how many zeros came
    out. */
-static int stage_three(finder *w, double u, double v, double s, int try_v, int try_s, int s_first, int *failed_v,
-                       int *failed_s) {
+SPARI_APART static int stage_three(finder *w, double u, double v, double s, int try_v, int try_s, int s_first,
+                                   int *failed_v, int *failed_s) {
     double saved[SIZE];
     const double shift_u = w->u, shift_v = w->v;
     memcpy(saved, w->k, sizeof *saved * (size_t)w->n);
@@ -391,7 +393,7 @@ static double lower_bound(const finder *w) {
 
 /* The next one or two zeros of p; 0: none came out of twenty shifts. Each shift is turned by 94 degrees from the last.
  */
-static int search_roots(finder *w) {
+SPARI_APART static int search_roots(finder *w) {
     const double turn_c = -0.069756473744125, turn_s = 0.997564050259824; /* cos, sin of 94 degrees */
     double c = 0.707106781186547524, s = -c, first[SIZE];
     scale_coefficients(w);

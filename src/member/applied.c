@@ -91,7 +91,8 @@ static void pure_times(const double m[3], const double q[4], double c[4]) {
 }
 
 /* g [P][7] += nodal forces and 4-vectors of one line load on element e */
-static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double z[][4], double *g) {
+SPARI_APART static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
+                                    double *g) {
     int P = m->per_element;
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
@@ -210,6 +211,23 @@ static void point_tangent(const double *load, int follows, const double r[4], do
     }
 }
 
+/* How 1/2 Im(g q*) changes with q: -1/4 (s I + w~), (s, w) = g q*. */
+SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_load *line, int follows, int e,
+                                              double z[][4], double factor, double *S) {
+    int P = m->per_element, stride = 6 * P;
+    double g[7 * SPARI_MAX_NODES] = {0};
+    line_forces(m, line, follows, e, z, g);
+    for (int l = 0; l < P; l++) {
+        double c[4], p[4];
+        spari_quat_conj(z[l], c);
+        spari_quat_mul(g + 7 * l + 3, c, p);
+        add_skew(S, stride, 6 * l + 3, 6 * l + 3, 0.25 * factor, p + 1);
+        for (int i = 0; i < 3; i++) {
+            S[stride * (6 * l + 3 + i) + 6 * l + 3 + i] += 0.25 * factor * p[0];
+        }
+    }
+}
+
 /* B [P][7][4 P] -> S: rows and columns of nodal quaternions through dq = E dtheta */
 static void project_nodes(int P, const double *B, double E[][4][3], double factor, double *S) {
     int stride = 6 * P;
@@ -236,10 +254,10 @@ static void project_nodes(int P, const double *B, double E[][4][3], double facto
     }
 }
 
-static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4], double factor,
-                         double *S) {
-    int P = m->per_element, stride = 6 * P;
-    double *B = line->room, g[7 * SPARI_MAX_NODES] = {0}, E[SPARI_MAX_NODES][4][3];
+SPARI_APART static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
+                                     double factor, double *S) {
+    int P = m->per_element;
+    double *B = line->room, E[SPARI_MAX_NODES][4][3];
     memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
@@ -267,17 +285,7 @@ static void line_tangent(const spar_member *m, const line_load *line, int follow
         }
     }
     project_nodes(P, B, E, factor, S);
-    /* change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q* */
-    line_forces(m, line, follows, e, z, g);
-    for (int l = 0; l < P; l++) {
-        double c[4], p[4];
-        spari_quat_conj(z[l], c);
-        spari_quat_mul(g + 7 * l + 3, c, p);
-        add_skew(S, stride, 6 * l + 3, 6 * l + 3, 0.25 * factor, p + 1);
-        for (int i = 0; i < 3; i++) {
-            S[stride * (6 * l + 3 + i) + 6 * l + 3 + i] += 0.25 * factor * p[0];
-        }
-    }
+    turned_forces_tangent(m, line, follows, e, z, factor, S);
 }
 
 void spari_applied_tangent(const spar_member *m, int e, const double *q, double factor, double *S) {

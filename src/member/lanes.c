@@ -1,5 +1,6 @@
 /* Forces and tangents of quadrature points side by side: the kernels for each width of vectors, and which of them
  * serves. */
+#include "../base/status.h"
 #include "../math/basis.h"
 #include "tangent.h"
 

@@ -45,7 +45,6 @@ static void blade_free(blade *b) {
 /* ---- the files ---- */
 
 static int read_primary(spari_reader *r, blade *b) {
-    char word[SPARI_READ_LINE];
     int total = 1;
     SPARI_TRY(spari_read_key(r, "member_total"));
     SPARI_TRY(spari_read_whole(r, "member_total", 1, 0, &b->members));
@@ -78,13 +77,12 @@ static int read_primary(spari_reader *r, blade *b) {
     }
     SPARI_TRY(spari_read_key(r, "BldFile"));
     const char *at = r->line;
-    spari_read_word(&at, word);
-    b->file = spari_read_beside(r, word);
+    spari_read_word(&at, r->word);
+    b->file = spari_read_beside(r, r->word);
     return b->file ? SPAR_OK : spari_read_no_memory(r);
 }
 
 static int read_damping(spari_reader *r, blade *b) {
-    char word[SPARI_READ_LINE];
     int type = 0;
     SPARI_TRY(spari_read_key(r, "damp_type"));
     SPARI_TRY(spari_read_whole(r, "damp_type", 0, 0, &type));
@@ -98,7 +96,7 @@ static int read_damping(spari_reader *r, blade *b) {
     for (;;) {
         SPARI_TRY(spari_read_line(r, "mu1"));
         const char *at = r->line;
-        if (spari_read_word(&at, word) && strcasecmp(word, "mu1") == 0) {
+        if (spari_read_word(&at, r->word) && strcasecmp(r->word, "mu1") == 0) {
             break;
         }
     }

@@ -45,7 +45,8 @@ typedef struct NAME(gradient) {
     L q[4][6], du[3][3], dq[4][3];
 } NAME(gradient);
 
-TARGET static void NAME(strain_gradient)(const NAME(point) * s, const NAME(point_turns) * by, NAME(gradient) * J) {
+TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
+                                                     NAME(gradient) * J) {
     const L *r = s->r, twice[3] = {2.0 * r[1], 2.0 * r[2], 2.0 * r[3]};
     const L xx = twice[0] * r[1], yy = twice[1] * r[2], zz = twice[2] * r[3], xy = twice[0] * r[2],
             xz = twice[0] * r[3], yz = twice[1] * r[3], wx = twice[0] * r[0], wy = twice[1] * r[0],
@@ -65,8 +66,8 @@ TARGET static void NAME(strain_gradient)(const NAME(point) * s, const NAME(point
 }
 
 /* The same of their rates, at fixed rates of the fields. */
-TARGET static void NAME(strain_rate_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
-                                              const NAME(gradient) * J, NAME(gradient) * G) {
+TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
+                                                          const NAME(gradient) * J, NAME(gradient) * G) {
     L ld[4][3], lz[4][3], x[3];
     NAME(spins)(s->d, ld);
     NAME(spins)(s->z, lz);
@@ -135,8 +136,8 @@ HERE void NAME(put_by_slope)(const NAME(gradient) * J, const L *s, L w, int whol
 }
 
 /* A := w J^T (C J + D G), added to what Q answers to Q; G NULL: without the second. */
-TARGET static void NAME(congruence)(const NAME(gradient) * J, const double *C, const double *D,
-                                    const NAME(gradient) * G, const L *weight, int64_t ld, double *A) {
+TARGET SPARI_APART static void NAME(congruence)(const NAME(gradient) * J, const double *C, const double *D,
+                                                const NAME(gradient) * G, const L *weight, int64_t ld, double *A) {
     const L w = *weight;
     for (int j = 0; j < 4; j++) {
         L s[6] = {0};
@@ -172,8 +173,8 @@ HERE void NAME(turned_moment)(const NAME(point) * s, const L (*right)[4], const 
 }
 
 /* Second derivative of s . e(y) at fixed s, added to A. */
-TARGET static void NAME(add_geometric)(const NAME(point) * s, const NAME(point_turns) * by, const L *weight, int whole,
-                                       int64_t ld, double *A) {
+TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const NAME(point_turns) * by, const L *weight,
+                                                   int whole, int64_t ld, double *A) {
     const L w = *weight;
     const L none = {0}, in2 = s->over * s->over, F = NAME(dot)(s->s, s->T) + NAME(dot)(s->s + 3, s->e + 3);
     L right[4][4], rk[4], grad[4], t[3], x[4], y[4];
@@ -270,9 +271,9 @@ HERE void NAME(add_turned_moment)(const NAME(point) * s, const L *mb, L w, int64
 }
 
 /* Inertia against displacements, rates and accelerations. */
-TARGET static void NAME(add_inertia)(const double *mass, int gyroscopic, const NAME(point) * s,
-                                     const NAME(point_turns) * by, const NAME(point_inertia) * n, const L *weight,
-                                     int64_t ld, double *K, double *B, double *M) {
+TARGET SPARI_APART static void NAME(add_inertia)(const double *mass, int gyroscopic, const NAME(point) * s,
+                                                 const NAME(point_turns) * by, const NAME(point_inertia) * n,
+                                                 const L *weight, int64_t ld, double *K, double *B, double *M) {
     const L w = *weight;
     L rdd[4], ldd[4][3], f[3], m[3];
     for (int i = 0; i < 4; i++) {
@@ -300,8 +301,8 @@ TARGET static void NAME(add_inertia)(const double *mass, int gyroscopic, const N
 }
 
 /* The weight alone: its moment about the node turns with the section. */
-TARGET static void NAME(add_weight)(const double *mass, const NAME(point) * s, const NAME(point_turns) * by,
-                                    const NAME(point_inertia) * n, const L *weight, int64_t ld, double *K) {
+TARGET SPARI_APART static void NAME(add_weight)(const double *mass, const NAME(point) * s, const NAME(point_turns) * by,
+                                                const NAME(point_inertia) * n, const L *weight, int64_t ld, double *K) {
     const L w = *weight;
     const L none[3] = {0};
     L mc[3], m[3];
@@ -321,8 +322,9 @@ HERE void NAME(clear_rows)(int rows, int64_t ld, double *A) {
     }
 }
 
-HERE void NAME(elastic_matrices)(const spari_body *body, int64_t slot, const spari_tangent_work *t,
-                                 const NAME(point) * s, const NAME(point_turns) * by, const L *w, int64_t at) {
+TARGET SPARI_APART static void NAME(elastic_matrices)(const spari_body *body, int64_t slot, const spari_tangent_work *t,
+                                                      const NAME(point) * s, const NAME(point_turns) * by, const L *w,
+                                                      int64_t at) {
     const double *C = SPARI_BLOCK(body->C, 36, slot), *D = t->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL;
     NAME(gradient) J, G;
     NAME(strain_gradient)(s, by, &J);
@@ -553,7 +555,8 @@ HERE void NAME(add_columns)(const L *x, double c, const L (*map)[3], L *y) {
 }
 
 /* The pairs (i, j...) from `at` on, or with side 1 (j..., i), against the unknowns of the second: 7 x 6. */
-TARGET static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int i, int j, int side, L (*y)[6]) {
+TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int i, int j, int side,
+                                                L (*y)[6]) {
     L map[3][4][3];
     for (int k = 0; k < 3; k++) {
         NAME(map_of)(t, k, side ? i : j, side, map[k]);
@@ -575,7 +578,8 @@ TARGET static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int
 }
 
 /* The 6 x 6 blocks of n pairs: rows of Q by the map of the first of the pair. */
-TARGET static void NAME(put_blocks)(const spari_tangent_work *t, int i, int j, int side, const L (*y)[6], double *S) {
+TARGET SPARI_APART static void NAME(put_blocks)(const spari_tangent_work *t, int i, int j, int side, const L (*y)[6],
+                                                double *S) {
     double block[6][6][W];
     L map[4][3];
     int n = t->P - j < W ? t->P - j : W;

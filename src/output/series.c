@@ -31,7 +31,7 @@ static void put_text(FILE *file, const char *text) {
 
 /* What the index says so far goes into the new one, but for its foot. 0: it does not end as an index does. */
 static int copy(FILE *from, FILE *to) {
-    char block[1 << 12], end[sizeof foot] = "";
+    char block[1 << 10], end[sizeof foot] = "";
     long length = fseek(from, 0, SEEK_END) == 0 ? ftell(from) : -1, left = length - (long)(sizeof foot - 1);
     if (length == 0) {
         fputs(head, to);

@@ -82,6 +82,7 @@ void spar_session_destroy(spar_session **session) {
         spari_member_free(m);
     }
     spari_threads_free(s);
+    spari_room_free(&s->room);
     spari_comm_destroy(&s->comm);
     spari_coupling_free(&s->own->coupling);
     spari_coupling_free(&s->own->aside);

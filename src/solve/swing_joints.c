@@ -87,7 +87,8 @@ static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
     }
 }
 
-static void linearise_joint(const spari_swing *w, const spar_joint *j, const swing_side side[2], swing_joint *of) {
+SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *j, const swing_side side[2],
+                                        swing_joint *of) {
     spari_place place[2];
     spari_relative at = j->after;
     double v[12], V[12][12], R[6][12], turning[12][12] = {{0}};
@@ -165,7 +166,8 @@ static void held_directions(const swing_joint *of, double P[12][12]) {
 }
 
 /* A joint's axes go with b: where that turns otherwise than the frame, the joint must be alike all around. */
-static int check_around(const spari_swing *w, const spar_joint *j, const swing_side side[2], swing_joint *of) {
+SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, const swing_side side[2],
+                                    swing_joint *of) {
     double s[3], P[12][12], size[3] = {0}, most = spari_norm(w->w);
     for (int k = 0; k < 3; k++) {
         double b = side[1].part   ? side[1].part->own[k]

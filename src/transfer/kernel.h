@@ -424,46 +424,68 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
     }
 }
 
+/* A point's or a rigid body's nodes. */
+TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
+                                                      int what, double (*buf)[SPARI_ROW]) {
+    const carrier m = carrier_of(c);
+    switch (what) {
+    case SPARI_UPTO_PLACE:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE, buf);
+        break;
+    case SPARI_UPTO_RATE:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE, buf);
+        break;
+    case SPARI_UPTO_PLACE | SPARI_POSES:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE | SPARI_POSES, buf);
+        break;
+    case SPARI_UPTO_RATE | SPARI_POSES:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE | SPARI_POSES, buf);
+        break;
+    default:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_ACCEL | SPARI_POSES, buf);
+    }
+    return m.square;
+}
+
+/* One function for each of what is asked, so that none has the room of all on its stack. */
+#define RUN(name, consistent, what)                                                                                    \
+    TARGET SPARI_APART static double NAME(run_##name)(const spari_nodes *s, int64_t first, int count, const double *c, \
+                                                      double(*buf)[SPARI_ROW], int at) {                               \
+        return NAME(run)(s, first, count, c, consistent, what, buf, at);                                               \
+    }
+RUN(places, 0, SPARI_UPTO_PLACE) /* which are the same in both kinds */
+RUN(nodal_rates, 0, SPARI_UPTO_RATE)
+RUN(consistent_rates, 1, SPARI_UPTO_RATE)
+RUN(poses, 0, SPARI_UPTO_PLACE | SPARI_POSES)
+RUN(nodal_rates_poses, 0, SPARI_UPTO_RATE | SPARI_POSES)
+RUN(consistent_rates_poses, 1, SPARI_UPTO_RATE | SPARI_POSES)
+RUN(nodal_all, 0, SPARI_UPTO_ACCEL | SPARI_POSES)
+RUN(consistent_all, 1, SPARI_UPTO_ACCEL | SPARI_POSES)
+#undef RUN
+
 TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
                                   int what, double (*buf)[SPARI_ROW], int at) {
     if (s->per_element == 1) {
-        const carrier m = carrier_of(c);
-        switch (what) {
-        case SPARI_UPTO_PLACE:
-            NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE, buf);
-            break;
-        case SPARI_UPTO_RATE:
-            NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE, buf);
-            break;
-        case SPARI_UPTO_PLACE | SPARI_POSES:
-            NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE | SPARI_POSES, buf);
-            break;
-        case SPARI_UPTO_RATE | SPARI_POSES:
-            NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE | SPARI_POSES, buf);
-            break;
-        default:
-            NAME(carry)(s, first, count, &m, SPARI_UPTO_ACCEL | SPARI_POSES, buf);
-        }
-        return m.square;
+        return NAME(motion_carried)(s, first, count, c, what, buf);
     }
     switch (2 * what + !!consistent) {
     case 2 * SPARI_UPTO_PLACE:
-    case 2 * SPARI_UPTO_PLACE + 1: /* places are the same in both kinds */
-        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_PLACE, buf, at);
+    case 2 * SPARI_UPTO_PLACE + 1:
+        return NAME(run_places)(s, first, count, c, buf, at);
     case 2 * SPARI_UPTO_RATE:
-        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_RATE, buf, at);
+        return NAME(run_nodal_rates)(s, first, count, c, buf, at);
     case 2 * SPARI_UPTO_RATE + 1:
-        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE, buf, at);
+        return NAME(run_consistent_rates)(s, first, count, c, buf, at);
     case 2 * (SPARI_UPTO_PLACE | SPARI_POSES):
     case 2 * (SPARI_UPTO_PLACE | SPARI_POSES) + 1:
-        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_PLACE | SPARI_POSES, buf, at);
+        return NAME(run_poses)(s, first, count, c, buf, at);
     case 2 * (SPARI_UPTO_RATE | SPARI_POSES):
-        return NAME(run)(s, first, count, c, 0, SPARI_UPTO_RATE | SPARI_POSES, buf, at);
+        return NAME(run_nodal_rates_poses)(s, first, count, c, buf, at);
     case 2 * (SPARI_UPTO_RATE | SPARI_POSES) + 1:
-        return NAME(run)(s, first, count, c, 1, SPARI_UPTO_RATE | SPARI_POSES, buf, at);
+        return NAME(run_consistent_rates_poses)(s, first, count, c, buf, at);
     default:
-        return consistent ? NAME(run)(s, first, count, c, 1, SPARI_UPTO_ACCEL | SPARI_POSES, buf, at)
-                          : NAME(run)(s, first, count, c, 0, SPARI_UPTO_ACCEL | SPARI_POSES, buf, at);
+        return consistent ? NAME(run_consistent_all)(s, first, count, c, buf, at)
+                          : NAME(run_nodal_all)(s, first, count, c, buf, at);
     }
 }
 
@@ -669,10 +691,10 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
 }
 
 HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
-                         const int has_moment, double (*f)[SPARI_ROW], int at, const int audited, double *modal,
-                         double *sums, double *tops) {
+                         const int has_moment, double (*f)[SPARI_ROW], int at, const int audited,
+                         double (*work)[SPARI_ROW], double *modal, double *sums, double *tops) {
     static const double huge = HUGE_VAL, zero = 0;
-    double t[SPARI_MAX_NODES][SPARI_ROW], g[4][SPARI_ROW];
+    double(*g)[SPARI_ROW] = work, (*t)[SPARI_ROW] = work + 4;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     const int modes = s->per_element, rows = has_moment ? 6 : 3;
     L least = SPLAT(&huge), in[10][2], add[9], top[3];
@@ -698,49 +720,68 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
     return NAME(least)(least);
 }
 
+/* One function for each of what is asked, so that none has the room of all on its stack. */
+#define GATHER(name, consistent, moment, audited)                                                                      \
+    TARGET SPARI_APART static double NAME(gather_##name)(                                                              \
+        const spari_nodes *s, int64_t first, int count, const double *c, double(*f)[SPARI_ROW], int at,                \
+        double(*work)[SPARI_ROW], double *modal, double *sums, double *tops) {                                         \
+        return NAME(gather)(s, first, count, c, consistent, moment, f, at, audited, work, modal, sums, tops);          \
+    }
+GATHER(nodal, 0, 0, 0)
+GATHER(consistent, 1, 0, 0)
+GATHER(nodal_audited, 0, 0, 1)
+GATHER(consistent_audited, 1, 0, 1)
+GATHER(nodal_moment, 0, 1, 0)
+GATHER(consistent_moment, 1, 1, 0)
+GATHER(nodal_moment_audited, 0, 1, 1)
+GATHER(consistent_moment_audited, 1, 1, 1)
+#undef GATHER
+
+/* A point's or a rigid body's loads. */
+TARGET SPARI_APART static double NAME(loads_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
+                                                     int has_moment, double (*f)[SPARI_ROW], int audited, double *modal,
+                                                     double *sums, double *tops) {
+    const carrier m = carrier_of(c);
+    switch (2 * !!has_moment + !!audited) {
+    case 0:
+        NAME(load_carrier)(s, first, count, &m, 0, f, 0, modal, sums, tops);
+        break;
+    case 1:
+        NAME(load_carrier)(s, first, count, &m, 0, f, 1, modal, sums, tops);
+        break;
+    case 2:
+        NAME(load_carrier)(s, first, count, &m, 1, f, 0, modal, sums, tops);
+        break;
+    default:
+        NAME(load_carrier)(s, first, count, &m, 1, f, 1, modal, sums, tops);
+    }
+    return m.square;
+}
+
 TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
-                                 int has_moment, double (*f)[SPARI_ROW], int at, int audited, double *modal,
-                                 double *sums, double *tops) {
-#define GATHER(consistent, moment, audited)                                                                            \
-    NAME(gather)(s, first, count, c, consistent, moment, f, at, audited, modal, sums, tops)
-#define CARRY(moment, audited) NAME(load_carrier)(s, first, count, &m, moment, f, audited, modal, sums, tops)
+                                 int has_moment, double (*f)[SPARI_ROW], int at, int audited, double (*work)[SPARI_ROW],
+                                 double *modal, double *sums, double *tops) {
     if (s->per_element == 1) {
-        const carrier m = carrier_of(c);
-        switch (2 * !!has_moment + !!audited) {
-        case 0:
-            CARRY(0, 0);
-            break;
-        case 1:
-            CARRY(0, 1);
-            break;
-        case 2:
-            CARRY(1, 0);
-            break;
-        default:
-            CARRY(1, 1);
-        }
-        return m.square;
+        return NAME(loads_carried)(s, first, count, c, has_moment, f, audited, modal, sums, tops);
     }
     switch (4 * !!has_moment + 2 * !!audited + !!consistent) {
     case 0:
-        return GATHER(0, 0, 0);
+        return NAME(gather_nodal)(s, first, count, c, f, at, work, modal, sums, tops);
     case 1:
-        return GATHER(1, 0, 0);
+        return NAME(gather_consistent)(s, first, count, c, f, at, work, modal, sums, tops);
     case 2:
-        return GATHER(0, 0, 1);
+        return NAME(gather_nodal_audited)(s, first, count, c, f, at, work, modal, sums, tops);
     case 3:
-        return GATHER(1, 0, 1);
+        return NAME(gather_consistent_audited)(s, first, count, c, f, at, work, modal, sums, tops);
     case 4:
-        return GATHER(0, 1, 0);
+        return NAME(gather_nodal_moment)(s, first, count, c, f, at, work, modal, sums, tops);
     case 5:
-        return GATHER(1, 1, 0);
+        return NAME(gather_consistent_moment)(s, first, count, c, f, at, work, modal, sums, tops);
     case 6:
-        return GATHER(0, 1, 1);
+        return NAME(gather_nodal_moment_audited)(s, first, count, c, f, at, work, modal, sums, tops);
     default:
-        return GATHER(1, 1, 1);
+        return NAME(gather_consistent_moment_audited)(s, first, count, c, f, at, work, modal, sums, tops);
     }
-#undef GATHER
-#undef CARRY
 }
 
 #include "kernel_bins.h"

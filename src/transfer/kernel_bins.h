@@ -135,9 +135,10 @@ HERE void NAME(share_rows)(int count, const double *phi, const double *const *f,
 
 /* A run of nodes of one element, from storage place `first`, their loads in the rows f at `at`: adds to load [P][6]. */
 TARGET static int NAME(bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q,
-                             int consistent, int has_moment, double (*f)[SPARI_ROW], int at, double *least,
-                             spari_bin_cut *cut, spari_bins *load) {
-    double own[4][SPARI_ROW], phi[SPARI_MAX_NODES][SPARI_ROW], g[4][SPARI_ROW], share[6][SPARI_ROW];
+                             int consistent, int has_moment, double (*f)[SPARI_ROW], int at, double (*work)[SPARI_ROW],
+                             double *least, spari_bin_cut *cut, spari_bins *load) {
+    double(*own)[SPARI_ROW] = work, (*g)[SPARI_ROW] = work + 4, (*share)[SPARI_ROW] = work + 8,
+    (*phi)[SPARI_ROW] = work + 14;
     const double *in[9];
     int whole = 1, up = (count + W - 1) / W * W, modes = s->per_element;
     for (int k = 0; k < 4; k++) { /* what lies beyond the end repeats the last node, so that every lane is a real one */

@@ -346,14 +346,15 @@ static int build_balls(spari_line *line) {
 }
 
 spari_line *spari_line_create(int elements, int per_element, const double *x) {
-    double m[SPARI_MAX_NODES * SPARI_MAX_NODES];
     spari_line *line = spari_zalloc(1, sizeof *line);
     if (!line) {
         return NULL;
     }
     line->elements = elements, line->per_element = per_element;
     line->c = spari_zalloc((int64_t)elements * per_element * 4, sizeof *line->c);
-    if (!line->c) {
+    double *m = spari_zalloc((int64_t)per_element * per_element, sizeof *m);
+    if (!line->c || !m) {
+        free(m);
         spari_line_free(line);
         return NULL;
     }
@@ -376,6 +377,7 @@ spari_line *spari_line_create(int elements, int per_element, const double *x) {
             }
         }
     }
+    free(m);
     if (per_element > 1 && build_balls(line) != SPAR_OK) {
         spari_line_free(line);
         return NULL;
@@ -412,11 +414,12 @@ void spari_line_point(const spari_line *line, int element, double xi, double x[3
 /* One point's search: what is best so far. */
 typedef struct search {
     const spari_line *line;
-    double p[3];   /* from the line's origin */
-    double square; /* least squared distance met */
-    double reach;  /* its root, widened by the tie: nothing farther is looked at */
-    double tie;    /* squared distances this close are equal */
-    int element;   /* the foot; -1: none yet */
+    struct part *stack; /* [DEPTH + 1]: parts of a segment that are still to be looked at */
+    double p[3];        /* from the line's origin */
+    double square;      /* least squared distance met */
+    double reach;       /* its root, widened by the tie: nothing farther is looked at */
+    double tie;         /* squared distances this close are equal */
+    int element;        /* the foot; -1: none yet */
     double xi;
     int ambiguous;
     int method;
@@ -605,7 +608,7 @@ static int settle(search *q, const segment *s, const double p[3], part *a, int n
 
 /* By Descartes' rule and halving, as said at the top. */
 static void bound(search *q, const segment *s, const double p[3]) {
-    part stack[DEPTH + 1];
+    part *stack = q->stack;
     int n = 2 * (s->modes - 1), depth = 1;
     double size = spari_norm(p) + s->radius, noise = 32 * DBL_EPSILON * size * size;
     double slope_noise = 32 * DBL_EPSILON * size * s->radius;
@@ -734,14 +737,19 @@ typedef struct points {
     int *element;
     double *xi, *feet;
     uint8_t *flags;
+    struct part *stacks; /* of each thread */
 } points;
 
 enum { SLAB = 1024 }; /* a thread's share; the first of them knows no neighbour */
 
-static void project_slab(const spari_line *line, int method, int64_t n, const double *x, int *element, double *xi,
-                         double *feet, uint8_t *flags) {
-    search q = {.line = line, .method = method, .xi = line->per_element > 1 ? -1 : 0};
-    for (int64_t j = 0; j < n; j++) {
+static void project_item(void *context, int64_t item, int worker) {
+    const points *p = context;
+    const spari_line *line = p->line;
+    const double *x = p->x;
+    int64_t first = item * SLAB, end = p->n - first < SLAB ? p->n : first + SLAB;
+    search q = {.line = line, .method = p->method, .xi = line->per_element > 1 ? -1 : 0};
+    q.stack = p->stacks + (ptrdiff_t)worker * (DEPTH + 1);
+    for (int64_t j = first; j < end; j++) {
         for (int i = 0; i < 3; i++) {
             q.p[i] = x[3 * j + i] - line->origin[i];
         }
@@ -755,22 +763,20 @@ static void project_slab(const spari_line *line, int method, int64_t n, const do
             walk(&q);
             q.element = q.element < 0 ? last : q.element;
         }
-        element[j] = q.element, xi[j] = q.xi;
-        flags[j] = (uint8_t)((q.ambiguous ? SPAR_MAP_AMBIGUOUS : 0) | (is_beyond(&q) ? SPAR_MAP_END : 0));
-        spari_line_point(line, q.element, q.xi, feet + 3 * j, NULL);
+        p->element[j] = q.element, p->xi[j] = q.xi;
+        p->flags[j] = (uint8_t)((q.ambiguous ? SPAR_MAP_AMBIGUOUS : 0) | (is_beyond(&q) ? SPAR_MAP_END : 0));
+        spari_line_point(line, q.element, q.xi, p->feet + 3 * j, NULL);
     }
 }
 
-static void project_item(void *context, int64_t item, int worker) {
-    const points *p = context;
-    int64_t first = item * SLAB, n = p->n - first < SLAB ? p->n - first : SLAB;
-    (void)worker;
-    project_slab(p->line, p->method, n, p->x + 3 * first, p->element + first, p->xi + first, p->feet + 3 * first,
-                 p->flags + first);
-}
-
-void spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
-                        double *xi, double *feet, uint8_t *flags) {
-    points p = {line, method, n, x, element, xi, feet, flags};
+int spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
+                       double *xi, double *feet, uint8_t *flags) {
+    points p = {line, method, n, x, element, xi, feet, flags, NULL};
+    p.stacks = spari_zalloc((int64_t)spari_crew_threads(crew) * (DEPTH + 1), sizeof *p.stacks);
+    if (!p.stacks) {
+        return SPAR_ERR_MEMORY;
+    }
     spari_crew_run(crew, (n + SLAB - 1) / SLAB, project_item, &p);
+    free(p.stacks);
+    return SPAR_OK;
 }

@@ -13,9 +13,9 @@ void spari_line_free(spari_line *line);
 
 /* Feet of points x [n][3]: element [n], local xi [n], foot [n][3], flags [n] (SPAR_MAP_END, SPAR_MAP_AMBIGUOUS). The
    foot is the place of smallest distance; of several, the one with the smallest coordinate along the line, flagged.
-   crew: who looks for them (base/crew.h). */
-void spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
-                        double *xi, double *foot, uint8_t *flags);
+   crew: who looks for them (base/crew.h). SPAR_OK, or SPAR_ERR_MEMORY without a message. */
+int spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
+                       double *xi, double *foot, uint8_t *flags);
 /* Place (and derivative, NULL: not wanted) of the line. */
 void spari_line_point(const spari_line *line, int element, double xi, double x[3], double dx[3]);
 

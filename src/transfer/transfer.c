@@ -64,9 +64,11 @@ typedef struct kernels {
     double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int what,
                      double (*buf)[SPARI_ROW], int at);
     double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
-                    double (*f)[SPARI_ROW], int at, int audited, double *modal, double *sums, double *tops);
+                    double (*f)[SPARI_ROW], int at, int audited, double (*rows)[SPARI_ROW], double *modal, double *sums,
+                    double *tops);
     int (*bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q, int consistent,
-                int has_moment, double (*f)[SPARI_ROW], int at, double *least, spari_bin_cut *cut, spari_bins *load);
+                int has_moment, double (*f)[SPARI_ROW], int at, double (*rows)[SPARI_ROW], double *least,
+                spari_bin_cut *cut, spari_bins *load);
     void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
     void (*store)(double (*row)[SPARI_ROW], int count, double *out);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
@@ -394,6 +396,7 @@ typedef struct gathering {
     int consistent, has_moment, audited;
     spari_source force, moment;
     int64_t nodes, slab, first; /* of the line; of fluid nodes in a slab; the slab that goes to work space 0 */
+    int64_t rows;               /* doubles of work space before the sums */
     double *work;
 } gathering;
 
@@ -402,9 +405,9 @@ static void clear_sums(double *block, int64_t nodes) {
     *sums_at(block, nodes).least = HUGE_VAL;
 }
 
-static void add_tile(const gathering *g, int64_t first, const load_sums *to) {
+/* f: rows of work space, of which the first six are for the loads. */
+static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], const load_sums *to) {
     const spari_nodes *s = g->s;
-    double f[6][SPARI_ROW];
     int count = spari_tile_count(s, first);
     fetch_rows(&g->kernel, s, first, count, g->force, f);
     if (g->has_moment) {
@@ -417,18 +420,18 @@ static void add_tile(const gathering *g, int64_t first, const load_sums *to) {
         int run = run_length(s, first + at, count - at);
         ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
         double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, f, at,
-                                   g->audited, to->modal + node * 14, to->audit, to->tops);
+                                   g->audited, f + 6, to->modal + node * 14, to->audit, to->tops);
         *to->least = d < *to->least ? d : *to->least;
         at += run;
     }
 }
 
-static void add_slab(const gathering *g, int64_t slab, double *block) {
+static void add_slab(const gathering *g, int64_t slab, double *rows, double *block) {
     const load_sums to = sums_at(block, g->nodes);
     int64_t from = slab * g->slab, end = from + g->slab < g->s->n ? from + g->slab : g->s->n;
     clear_sums(block, g->nodes);
     for (int64_t first = from; first < end; first += SPARI_TILE) {
-        add_tile(g, first, &to);
+        add_tile(g, first, (double(*)[SPARI_ROW])rows, &to);
     }
 }
 
@@ -436,16 +439,20 @@ static spari_crew *crew_of(const spari_nodes *s) {
     return s->crew ? *s->crew : NULL;
 }
 
-/* Of several slabs at once each has a block of its own. */
+/* The work space of a thread, its rows first. */
+static double *work_of(const gathering *g, int worker) {
+    int64_t size = g->rows + spari_gather_share(g->nodes);
+    return worker == 0 ? g->work : spari_crew_room(crew_of(g->s), worker, size);
+}
+
+/* Of several slabs at once each has a block of its own, whichever thread fills it. */
 static double *block_of(const gathering *g, int64_t k) {
-    int64_t size = spari_gather_share(g->nodes);
-    return k == 0 ? g->work + size : spari_crew_room(crew_of(g->s), (int)k, size);
+    return work_of(g, (int)k) + g->rows;
 }
 
 static void gather_item(void *context, int64_t item, int worker) {
     const gathering *g = context;
-    (void)worker;
-    add_slab(g, g->first + item, block_of(g, item));
+    add_slab(g, g->first + item, work_of(g, worker), block_of(g, item));
 }
 
 static void join_sums(const double *block, double *total, int64_t nodes) {
@@ -460,22 +467,22 @@ static void join_sums(const double *block, double *total, int64_t nodes) {
     }
 }
 
-/* All loads, into the first block of the work space. */
-static void sum_all_loads(gathering *g) {
+/* All loads, into a block. */
+static void sum_all_loads(gathering *g, double *total) {
     int64_t slabs = spari_slabs(g->s->n, g->slab);
     spari_crew *crew = crew_of(g->s);
     if (slabs < 2) {
-        add_slab(g, 0, g->work);
+        add_slab(g, 0, g->work, total);
         return;
     }
-    int shared = spari_crew_is_free(crew) && spari_crew_room(crew, 1, spari_gather_share(g->nodes));
+    int shared = spari_crew_is_free(crew) && spari_crew_room(crew, 1, g->rows + spari_gather_share(g->nodes));
     int64_t most = shared ? spari_crew_threads(crew) : 1;
-    clear_sums(g->work, g->nodes);
+    clear_sums(total, g->nodes);
     for (g->first = 0; g->first < slabs; g->first += most) {
         int64_t here = slabs - g->first < most ? slabs - g->first : most;
         spari_crew_run(crew, here, gather_item, g);
         for (int64_t k = 0; k < here; k++) {
-            join_sums(block_of(g, k), g->work, g->nodes);
+            join_sums(block_of(g, k), total, g->nodes);
         }
     }
 }
@@ -497,10 +504,11 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
     int64_t nodes = (int64_t)s->elements * s->per_element;
     gathering g = {.s = s, .kernel = choose_kernels(s), .c = c, .consistent = consistent, .force = force};
     g.moment = moment, g.has_moment = moment.d || moment.f, g.audited = audit != NULL;
-    g.nodes = nodes, g.work = work;
+    g.nodes = nodes, g.work = work, g.rows = spari_gather_rows(s->per_element);
+    double *block = work + g.rows + spari_gather_share(nodes);
     g.slab = SPARI_SUM_SLAB * (1 + nodes / 1024); /* to join the sums is little beside making them */
-    sum_all_loads(&g);
-    const load_sums total = sums_at(work, nodes);
+    sum_all_loads(&g, block);
+    const load_sums total = sums_at(block, nodes);
     spread(s->elements, s->per_element, modal, consistent, q, total.modal, load);
     if (audit) {
         finish_audit(&total, audit);
@@ -509,12 +517,13 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
 }
 
 double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent, const double *q, spari_source force,
-                       spari_source moment, spari_bins *load, int *finite) {
+                       spari_source moment, double *work, spari_bins *load, int *finite) {
     const kernels kernel = choose_kernels(s);
     const int has_moment = moment.d || moment.f, P = s->per_element;
-    double f[6][SPARI_ROW] = {{0}}, chained[4 * SPARI_MAX_NODES], least = HUGE_VAL;
+    double(*f)[SPARI_ROW] = (double(*)[SPARI_ROW])work, chained[4 * SPARI_MAX_NODES], least = HUGE_VAL;
     spari_bin_cut cut;
     spari_bins_cut(0, &cut);
+    memset(f, 0, 6 * sizeof *f);
     memset(load, 0, sizeof *load * 6 * (size_t)s->elements * (size_t)P);
     *finite = 1;
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
@@ -527,8 +536,8 @@ double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent
             int run = run_length(s, first + at, count - at);
             ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * P;
             spari_chain(P, q + 7 * node + 3, 7, chained);
-            *finite = kernel.bins(s, first + at, run, modal, chained, consistent && P > 1, has_moment, f, at, &least,
-                                  &cut, load + 6 * node) &&
+            *finite = kernel.bins(s, first + at, run, modal, chained, consistent && P > 1, has_moment, f, at, f + 6,
+                                  &least, &cut, load + 6 * node) &&
                       *finite;
             at += run;
         }

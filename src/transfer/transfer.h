@@ -137,14 +137,19 @@ void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)
 void spari_tile_store_at(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
                          double *d, float *f);
 
-/* Work space of the loads on so many nodes of a line, in doubles: of the call, and of each thread. */
+/* Work space of the loads on a line of so many elements, in doubles: the rows of a tile (loads, polynomials or shape
+   functions, what goes between), then sums, one block for each thread and another for the call. */
+static inline int64_t spari_gather_rows(int per_element) {
+    return (int64_t)(20 + per_element) * SPARI_ROW;
+}
 static inline int64_t spari_gather_share(int64_t nodes) {
     return nodes * 7 * 2 + 22;
 }
-static inline int64_t spari_gather_room(int64_t nodes) {
-    return 2 * spari_gather_share(nodes);
+static inline int64_t spari_gather_room(int elements, int per_element) {
+    return spari_gather_rows(per_element) + 2 * spari_gather_share((int64_t)elements * per_element);
 }
-/* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: spari_gather_room doubles. nodal
+/* Loads: force, moment (may be none) of all nodes [n][3] -> load [nodes][6]. work: spari_gather_room doubles, at
+   the beginning of a cache line, which each thread but the first has of the crew too. nodal
    quaternions q [nodes][7] are needed by the consistent kind. Returns the least |Q|^2. audit NULL: not wanted. */
 double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,
                           const double *q, spari_source force, spari_source moment, double *work, double *load,
@@ -152,8 +157,8 @@ double spari_gather_loads(const spari_nodes *nodes, const double *modal, const d
 
 /* The same loads as sums that depend on no order of the nodes and no width of vectors, load [nodes][6]; rounded to
    doubles they differ from those above by rounding. *finite 0: one of the shares is not, or is too large for a double,
-   and the sums are of no use. */
+   and the sums are of no use. work: as above, its rows alone. */
 double spari_bin_loads(const spari_nodes *nodes, const double *modal, int consistent, const double *q,
-                       spari_source force, spari_source moment, spari_bins *load, int *finite);
+                       spari_source force, spari_source moment, double *work, spari_bins *load, int *finite);
 
 #endif
