@@ -1,7 +1,6 @@
 /* A cylinder in a stream, on a spring and damper in one direction. The fluid is a wake oscillator (Facchinetti, de
    Langre & Biolley, J. Fluids Struct. 19 (2004)), q'' + e w (q^2 - 1) q' + w^2 q = A y''/D with lift q C / 2, and the
-   water's added mass; a flow solver would stand in its place. Printed: the amplitude over the speed, with its lock-in.
- */
+   water's added mass; a flow solver would stand in its place. Printed: the amplitude over the speed, with lock-in. */
 #include <math.h>
 #include <spar/spar.h>
 #include <stdio.h>

@@ -117,7 +117,7 @@ typedef struct setting {
     int poses, accelerations;    /* pulled */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
-    int unaudited, account, guess, laden, dragged;
+    int unaudited, account, guess, laden, dragged, sprung;
     int reproducible;                    /* if GIVEN */
     int aero;                            /* blades with sections */
     int aero_effects;                    /* if GIVEN */
@@ -202,6 +202,10 @@ static void make_beam(scene *s) {
     }
     s->described = heap;
     MUST(spar_member_commit(*b));
+    if (s->is.sprung) { /* its tip to the ground, all six motions free */
+        const double spring[36] = {[14] = 10};
+        MUST(spar_member_set_spring(*b, NODES - 1, 63, spring, NULL, NULL, NULL));
+    }
     MUST(spar_member_set_load(*b, NODES - 1, SPAR_LOAD_DEAD, tip));
 }
 
@@ -422,6 +426,13 @@ static const effect effects[] = {
      {0}},
     {"work account", "spari_work_step", NEVER, {.account = 1}, {0}, {0}},
     {"bodies on beams", "", NEVER, {.laden = 1}, {.laden = 1, .effects = ALL}, {0}},
+    {"joints",
+     "spari_assembly_advance spari_assembly_balance spari_assembly_answer spari_joint_hold spari_joint_spring "
+     "spari_joint_accept spari_joints_on",
+     0,
+     {.sprung = 1},
+     {0},
+     {0}},
     {"known added mass", "spari_added_times", NEVER, {.guess = 1}, {0}, {0}},
     {"fluid moment",
      "",
