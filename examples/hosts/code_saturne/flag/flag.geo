@@ -3,7 +3,7 @@
 If (!Exists(n)) n = 1; EndIf
 span = 0.01; h = 0.01; cx = 0.2; cy = 0.2; r = 0.05; L = 2.5; H = 0.41; B = 0.1; tip = 0.6; // h: half the flag's thickness
 around = Ceil(20*n) + 1; ring = Ceil(14*n) + 1; beside = Ceil(20*n) + 1; along = Ceil(40*n) + 1; end = Ceil(8*n) + 1;
-wake = Ceil(60*n) + 1; wall = Ceil(12*n) + 1; front = Ceil(10*n) + 1;
+wake = Ceil(69*n) + 1; wall = Ceil(10*n) + 1; front = Ceil(8*n) + 1;
 s = Sqrt(2)/2; root = cx + Sqrt(r*r - h*h);
 
 Point(1) = {cx, cy, 0};
@@ -40,7 +40,7 @@ Transfinite Curve{2, 3, 4, 7, 8, 9, 32, 36, 40} = around;
 Transfinite Curve{11:16} = ring Using Progression 1.1^(1/n);
 Transfinite Curve{17, 18, 19, 20, 33, 37} = along Using Bump 0.5;
 Transfinite Curve{21, 28} = end;
-Transfinite Curve{24:27, 34, 38} = wake Using Progression 1.04^(1/n);
+Transfinite Curve{24:27, 34, 38} = wake Using Progression 1.036^(1/n);
 Transfinite Curve{31, 35, 50, 51} = front;
 Transfinite Curve{39, 41, 42:49} = wall Using Bump 0.4;
 
