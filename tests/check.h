@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <spar/spar.h>
+#include <string.h>
 
 /* The call must succeed; else the message says why. */
 #define OK(session, call)                                                                                              \
@@ -17,6 +18,18 @@
         int status_ = (call);                                                                                          \
         if (status_ != SPAR_OK) {                                                                                      \
             fail_msg("%s: %s: %s", #call, spar_status_text(status_), spar_session_message(session));                   \
+        }                                                                                                              \
+    } while (0)
+
+/* The call must fail with this status, and a message that says `text`. */
+#define REFUSED(session, expected, text, call)                                                                         \
+    do {                                                                                                               \
+        int refused_ = (call);                                                                                         \
+        if (refused_ != (expected)) {                                                                                  \
+            fail_msg("%s: status %d (%s), expected %d", #call, refused_, spar_status_text(refused_), (expected));      \
+        }                                                                                                              \
+        if (!strstr(spar_session_message(session), (text))) {                                                          \
+            fail_msg("%s: the message '%s' does not say '%s'", #call, spar_session_message(session), (text));          \
         }                                                                                                              \
     } while (0)
 

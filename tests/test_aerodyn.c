@@ -405,14 +405,6 @@ static void test_mistakes(void **state) {
     end_wing(&w);
 }
 
-#define REFUSED(code, call, what)                                                                                      \
-    do {                                                                                                               \
-        assert_int_equal(call, code);                                                                                  \
-        if (!strstr(spar_session_message(w.s), what)) {                                                                \
-            fail_msg("%s: %s", #call, spar_session_message(w.s));                                                      \
-        }                                                                                                              \
-    } while (0)
-
 /* Two tables between which AFTabMod 2 interpolates, a mirrored rotor, spans off the blade, blades that are not alike.
  */
 static void test_refusals(void **state) {
@@ -423,17 +415,18 @@ static void test_refusals(void **state) {
     const char *path = deck("primary.dat", " 1 AFTabMod", " 2 AFTabMod");
     read_wing(&w, path, 0, NULL); /* one table: nothing to interpolate */
     put("a.dat", "2 NumTabs\n3 NumAlf\n-90 0 0 0\n0 0 0 0\n90 0 0 0\n");
-    REFUSED(SPAR_ERR_UNSUPPORTED, spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL), "AFTabMod 2");
+    REFUSED(w.s, SPAR_ERR_UNSUPPORTED, "AFTabMod 2", spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL));
     path = deck(NULL, NULL, NULL);
     OK(w.s, spar_aero_set_turn(w.aero, -1));
-    REFUSED(SPAR_ERR_UNSUPPORTED, spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL), "spar_aero_set_turn");
+    REFUSED(w.s, SPAR_ERR_UNSUPPORTED, "spar_aero_set_turn", spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL));
     OK(w.s, spar_aero_set_turn(w.aero, 1));
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_read_aerodyn(w.aero, path, NULL, long_q, NULL), "a unit quaternion");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_read_aerodyn(w.aero, NULL, NULL, NULL, NULL), "primary_path is NULL");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, off), "span 3.1; the blade file goes");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, none), "section 1");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, NULL), "span is NULL");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_fluid_read_aerodyn(w.f, path, NULL, NULL, -1, off), "-1 sections");
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "a unit quaternion", spar_aero_read_aerodyn(w.aero, path, NULL, long_q, NULL));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "primary_path is NULL", spar_aero_read_aerodyn(w.aero, NULL, NULL, NULL, NULL));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "span 3.1; the blade file goes",
+            spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, off));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, none));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "span is NULL", spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, NULL));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "-1 sections", spar_fluid_read_aerodyn(w.f, path, NULL, NULL, -1, off));
     assert_int_equal(spar_fluid_read_aerodyn(NULL, path, NULL, NULL, 0, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_aero_read_aerodyn(NULL, path, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
     double K[36];
@@ -457,12 +450,12 @@ static void test_refusals(void **state) {
     OK(w.s, spar_fluid_read_aerodyn(both[1], path, NULL, NULL, 0, NULL));
     OK(w.s, spar_fluid_map(both[1]));
     OK(w.s, spar_aero_create(2, both, &pair));
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_read_aerodyn(pair, path, NULL, NULL, NULL), "blade 1 ('sections')");
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "blade 1 ('sections')", spar_aero_read_aerodyn(pair, path, NULL, NULL, NULL));
     spar_aero_destroy(&pair);
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_read_aerodyn(w.aero, PRIMARY, NULL, NULL, NULL), "the spans of these");
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "the spans of these", spar_aero_read_aerodyn(w.aero, PRIMARY, NULL, NULL, NULL));
     OK(w.s, spar_fluid_set_motion_nodes(w.f, 4, (double[12]){0}));
     OK(w.s, spar_fluid_map(w.f));
-    REFUSED(SPAR_ERR_STATE, spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL), "had 3 sections");
+    REFUSED(w.s, SPAR_ERR_STATE, "had 3 sections", spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL));
     OK(NULL, spar_aero_create(0, NULL, &pair)); /* a rank without blades reads all the same */
     OK(NULL, spar_aero_read_aerodyn(pair, path, NULL, NULL, NULL));
     assert_int_equal(spar_aero_read_aerodyn(pair, "nowhere.dat", NULL, NULL, NULL), SPAR_ERR_IO);

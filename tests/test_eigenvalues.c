@@ -3,15 +3,6 @@
 
 #include "member/structure.h"
 
-#define REFUSED(session, status, text, call)                                                                           \
-    do {                                                                                                               \
-        assert_int_equal(call, status);                                                                                \
-        if (!strstr(spar_session_message(session), text)) {                                                            \
-            print_error("'%s' does not name '%s'\n", spar_session_message(session), text);                             \
-            fail();                                                                                                    \
-        }                                                                                                              \
-    } while (0)
-
 /* The largest growth rate of n eigenvalues. */
 static double growth(int n, double (*value)[2]) {
     double most = -INFINITY;

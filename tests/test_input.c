@@ -4,18 +4,6 @@
 
 static double K[36], M[36];
 
-/* The call is refused with `expected`, and the message says `word`. */
-#define REFUSED(session, expected, word, call)                                                                         \
-    do {                                                                                                               \
-        int got_ = (call);                                                                                             \
-        if (got_ != (expected)) {                                                                                      \
-            fail_msg("%s: status %d (%s), expected %d", #call, got_, spar_status_text(got_), (expected));              \
-        }                                                                                                              \
-        if (!strstr(spar_session_message(session), (word))) {                                                          \
-            fail_msg("%s: the message '%s' does not say '%s'", #call, spar_session_message(session), (word));          \
-        }                                                                                                              \
-    } while (0)
-
 /* A small run with known answer: after any refusal the session must still do it. */
 static void still_works(spar_session *s, const char *name) {
     double load[6] = {0, 0, 150, 0, 0, 0}, q[7];

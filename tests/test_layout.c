@@ -12,13 +12,6 @@
 
 enum { N = 300 /* more than one tile of the kernels */, MOST = 32, ROOM = 16 * N };
 
-/* The call must answer this status, with a message that has the text. */
-#define REFUSED(session, status, text, call)                                                                           \
-    do {                                                                                                               \
-        assert_int_equal(call, status);                                                                                \
-        assert_non_null(strstr(spar_session_message(session), text));                                                  \
-    } while (0)
-
 /* Packed, by component (with a gap and without), in records, components and nodes both apart. */
 static const int64_t layouts[][2] = {{3, 1}, {1, N}, {1, N + 7}, {8, 1}, {9, 4}, {2, 2 * N + 1}};
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };

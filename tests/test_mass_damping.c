@@ -4,14 +4,6 @@
 
 #include <stdio.h>
 
-#define REFUSED(s, code, call, what)                                                                                   \
-    do {                                                                                                               \
-        assert_int_equal(call, code);                                                                                  \
-        if (!strstr(spar_session_message(s), what)) {                                                                  \
-            fail_msg("%s: %s", #call, spar_session_message(s));                                                        \
-        }                                                                                                              \
-    } while (0)
-
 enum { P = 7, KINDS = 4 };
 static const double two_pi = 6.283185307179586, L = 2, alpha = 0.8;
 /* the last: LARGE_ROTATION off */
@@ -269,24 +261,24 @@ static void test_bad_input(void **state) {
     spar_member *b = beam(s, 0, 0, alpha, NULL), *point = NULL;
     OK(s, spar_beam_get_mass_damping(b, &got));
     assert_true(got == alpha);
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_mass_damping(b, -1), "alpha is -1");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_mass_damping(b, NAN), "alpha");
+    REFUSED(s, SPAR_ERR_ARGUMENT, "alpha is -1", spar_beam_set_mass_damping(b, -1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "alpha", spar_beam_set_mass_damping(b, NAN));
     OK(s, spar_beam_get_mass_damping(b, &got));
     assert_true(got == alpha);
     OK(s, spar_beam_get_mass_damping(b, NULL));
     OK(s, spar_point_create(s, "point", NULL, NULL, &point));
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_mass_damping(point, 1), "'point' is not a beam");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_get_mass_damping(point, &got), "'point' is not a beam");
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'point' is not a beam", spar_beam_set_mass_damping(point, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'point' is not a beam", spar_beam_get_mass_damping(point, &got));
     assert_int_equal(spar_beam_set_mass_damping(NULL, 1), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_beam_get_mass_damping(NULL, &got), SPAR_ERR_ARGUMENT);
     static const int roots[2] = {SPAR_ROOT_FREE, SPAR_ROOT_PINNED};
     for (int k = 0; k < 2; k++) {
         OK(s, spar_member_set_root(b, roots[k]));
-        REFUSED(s, SPAR_ERR_UNSUPPORTED, spar_member_commit(b), "spar_beam_set_damping");
+        REFUSED(s, SPAR_ERR_UNSUPPORTED, "spar_beam_set_damping", spar_member_commit(b));
     }
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
     OK(s, spar_member_commit(b));
-    REFUSED(s, SPAR_ERR_STATE, spar_beam_set_mass_damping(b, 1), "committed");
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_beam_set_mass_damping(b, 1));
     spar_session_destroy(&s);
 }
 

@@ -4,14 +4,6 @@
 
 #include <stdio.h>
 
-#define REFUSED(s, code, call, what)                                                                                   \
-    do {                                                                                                               \
-        assert_int_equal(call, code);                                                                                  \
-        if (!strstr(spar_session_message(s), what)) {                                                                  \
-            fail_msg("%s: %s", #call, spar_session_message(s));                                                        \
-        }                                                                                                              \
-    } while (0)
-
 static const double two_pi = 6.283185307179586, L = 2, EI = 5, m = 3;
 
 /* Slender: shear and stretch 1e8 EI / L^2, rotary inertia 1e-8 m L^2. */
@@ -333,14 +325,14 @@ static void test_bad_input(void **state) {
     OK(s, spar_beam_get_masses(b, &n, 0, NULL, NULL));
     assert_int_equal(n, 0);
     OK(s, spar_beam_set_masses(b, 2, eta, mass));
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(b, 2, beyond, mass), "body 1 is at eta 1.5");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(b, 2, bad, mass), "eta");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(b, -1, eta, mass), "-1 bodies");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(b, 10001, eta, mass), "10001 bodies");
+    REFUSED(s, SPAR_ERR_ARGUMENT, "body 1 is at eta 1.5", spar_beam_set_masses(b, 2, beyond, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "eta", spar_beam_set_masses(b, 2, bad, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 bodies", spar_beam_set_masses(b, -1, eta, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "10001 bodies", spar_beam_set_masses(b, 10001, eta, mass));
     assert_int_equal(spar_beam_set_masses(b, 1, NULL, mass), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_beam_set_masses(b, 1, eta, NULL), SPAR_ERR_ARGUMENT);
     mass[36] = 9;
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(b, 2, eta, mass), "body 1 is not that of a rigid body");
+    REFUSED(s, SPAR_ERR_ARGUMENT, "body 1 is not that of a rigid body", spar_beam_set_masses(b, 2, eta, mass));
     mass[36] = 4;
     OK(s, spar_beam_get_masses(b, &n, 3, where, got));
     assert_true(n == 2 && where[0] == 0.2 && where[1] == 0.1 && where[2] == 0);
@@ -350,16 +342,16 @@ static void test_bad_input(void **state) {
     assert_int_equal(spar_beam_set_masses(NULL, 0, NULL, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_beam_get_masses(NULL, NULL, 0, NULL, NULL), SPAR_ERR_ARGUMENT);
     OK(s, spar_rigid_create(s, "body", none, NULL, mass, &body));
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_set_masses(body, 1, eta, mass), "'body' is not a beam");
-    REFUSED(s, SPAR_ERR_ARGUMENT, spar_beam_get_masses(body, &n, 0, NULL, NULL), "'body' is not a beam");
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'body' is not a beam", spar_beam_set_masses(body, 1, eta, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'body' is not a beam", spar_beam_get_masses(body, &n, 0, NULL, NULL));
     OK(s, spar_member_commit(b));
-    REFUSED(s, SPAR_ERR_STATE, spar_beam_set_masses(b, 0, NULL, NULL), "committed");
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_beam_set_masses(b, 0, NULL, NULL));
     scene_diagonal(K, 1, 1, 1, 1, 1, 1);
     OK(s, spar_beam_create(s, "light", 1, 3, &light));
     OK(s, spar_beam_set_axis(light, 2, one, (double[6]){0, 0, 0, 1, 0, 0}, NULL));
     OK(s, spar_beam_set_sections(light, 1, one, K, NULL));
     OK(s, spar_beam_set_masses(light, 2, eta, mass));
-    REFUSED(s, SPAR_ERR_STATE, spar_member_commit(light), "sections without mass");
+    REFUSED(s, SPAR_ERR_STATE, "sections without mass", spar_member_commit(light));
     spar_session_destroy(&s);
 }
 

@@ -18,13 +18,6 @@ static const double force_offset[N][3] = {{0, 0.1, 0}, {0, -0.2, 0.1},   {0.1, 0
                                           {0, 0.5, 0}, {0, 0.3, -0.125}, {0, 0.25, 0}};
 static const double motion_offset[M][3] = {{0, 0.6, 0.2}, {0, -0.2, 0.1}, {0, 0, 0.3}, {0.1, 0.2, 0.3}};
 
-/* The call must answer this status, with a message that has the text. */
-#define REFUSED(session, status, text, call)                                                                           \
-    do {                                                                                                               \
-        assert_int_equal(call, status);                                                                                \
-        assert_non_null(strstr(spar_session_message(session), text));                                                  \
-    } while (0)
-
 typedef struct blade {
     spar_session *session;
     spar_member *beam;

@@ -580,14 +580,6 @@ static int calls_back(spar_session *s, double t, double dt, int iteration, void 
     return springs_fluid(s, t, dt, iteration, context);
 }
 
-#define REFUSED(s, expected, text, call)                                                                               \
-    do {                                                                                                               \
-        assert_int_equal((call), (expected));                                                                          \
-        if (!strstr(spar_session_message(s), (text))) {                                                                \
-            fail_msg("'%s' has no '%s'", spar_session_message(s), (text));                                             \
-        }                                                                                                              \
-    } while (0)
-
 /* Every way to fail leaves loads, shape, clock and what quasi-Newton has learned as they were: a run that fails in it,
    before the first step and between later ones, ends like one that does not try, to the bit. */
 static void test_failures_leave_all(void **state) {

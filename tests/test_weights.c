@@ -15,13 +15,6 @@
 
 enum { N = 300, /* more than one tile of the kernels */ MOST = 64 };
 
-/* The call must answer this status, with a message that has the text. */
-#define REFUSED(session, status, text, call)                                                                           \
-    do {                                                                                                               \
-        assert_int_equal(call, status);                                                                                \
-        assert_non_null(strstr(spar_session_message(session), text));                                                  \
-    } while (0)
-
 typedef struct mesh {
     spar_session *session;
     spar_member *member;
