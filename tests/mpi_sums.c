@@ -6,8 +6,12 @@
 #include "scene.h"
 
 #include "ranks.h"
+#include "session/own.h"
+#include "trial/apply.h"
+#include "trial/remake.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { NODES = 61, STEPS = 6, POINTS = 10 };
 enum { IN_TURN, ALL_ON_ONE, AT_RANDOM, ONE_EACH, DEALS };
@@ -268,6 +272,89 @@ static void parts_of_a_step(void **state) {
     }
 }
 
+/* The beam with other nodes, as if that had been advised. */
+static int give_nodes(scene *c, int per_element) {
+    spar_session *s = c->session;
+    spari_advised *advised = s->own->advised = calloc(1, sizeof *advised);
+    c->beam->advice = calloc(1, sizeof *c->beam->advice);
+    assert_true(advised && c->beam->advice);
+    (void)spari_settings_varied(s, advised->setting);
+    advised->given = 1;
+    advised->of = spari_advised_of(s);
+    *c->beam->advice = spari_remake_of(c->beam);
+    c->beam->advice->per_element = per_element;
+    return spar_session_apply_advice(s, NULL);
+}
+
+/* With other nodes in the middle of a run in which one fluid on the beam has fallen silent: its loads go over, whoever
+   had them, and the run has the bits of one process. So have the errors that trials
+   on as many nodes find. */
+static void other_nodes(void **state) {
+    (void)state;
+    const MPI_Comm world = MPI_COMM_WORLD;
+    int turns[STEPS];
+    for (int parts = 0; parts <= 3; parts += 3) {
+        for (int deal = -1; deal < DEALS; deal++) { /* -1: alone */
+            static double before[7], q[7 * POINTS], loads[6 * POINTS], error[SPAR_TRY_LOAD + 1];
+            double tip[7], x[7 * POINTS], y[6 * POINTS], report[SPAR_TRY_COUNT];
+            int64_t n;
+            scene c;
+            create(&c, deal < 0 ? NULL : &world, deal < 0 ? IN_TURN : deal, SPAR_COUPLING_IQN_ILS);
+            c.parts = parts;
+            c.pushed_until = 0.02 * 2 - 0.01;
+            advance(&c, 3, turns);
+            OK(c.session, spar_session_try(c.session, 0.02, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, report));
+            OK(c.session, spar_session_try(c.session, 0.01, 16, NULL, solve, &c, 1, SPAR_TRY_COUNT, report));
+            scene_tip(c.beam, tip);
+            OK(c.session, give_nodes(&c, 4));
+            OK(c.session, spar_member_get_count(c.beam, &n));
+            assert_int_equal(n, 8);
+            advance(&c, 3, turns);
+            OK(c.session, spar_member_get_motion(c.beam, x, NULL, NULL));
+            OK(c.session, spar_member_get_loads(c.beam, y));
+            if (deal < 0) {
+                memcpy(before, tip, sizeof tip);
+                memcpy(q, x, 7 * (size_t)n * sizeof *x);
+                memcpy(loads, y, 6 * (size_t)n * sizeof *y);
+                memcpy(error, report, sizeof error);
+                assert_true(error[SPAR_TRY_MOTION] > 0);
+            }
+            assert_memory_equal(error, report, sizeof error);
+            assert_memory_equal(before, tip, sizeof tip);
+            assert_memory_equal(q, x, 7 * (size_t)n * sizeof *x);
+            assert_memory_equal(loads, y, 6 * (size_t)n * sizeof *y);
+            spar_session_destroy(&c.session);
+        }
+    }
+}
+
+/* Where one rank has a fluid that the others have not, its sums would be nobody's: refused on all, and the run goes on
+   with the nodes and the bits that it had. */
+static void other_nodes_and_fluids(void **state) {
+    (void)state;
+    const MPI_Comm world = MPI_COMM_WORLD;
+    int turns[STEPS];
+    int64_t n;
+    scene alone, all;
+    spar_fluid *mine;
+    create(&alone, NULL, IN_TURN, SPAR_COUPLING_IQN_ILS);
+    create(&all, &world, IN_TURN, SPAR_COUPLING_IQN_ILS);
+    if (rank == 0) {
+        OK(all.session, spar_fluid_create(all.beam, "mine", &mine));
+    }
+    advance(&alone, 3, turns);
+    advance(&all, 2, turns);
+    if (size > 1) {
+        REFUSED(all.session, SPAR_ERR_COMM, "list of fluids", give_nodes(&all, 4));
+    }
+    OK(all.session, spar_member_get_count(all.beam, &n));
+    assert_int_equal(n, POINTS);
+    advance(&all, 1, turns);
+    same_bits(&all, &alone);
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
+}
+
 /* In the middle of a run, and off again: the run goes on; switched on by one rank alone it is refused on all. */
 static void switched_between_steps(void **state) {
     (void)state;
@@ -287,10 +374,9 @@ static void switched_between_steps(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_alone),
-        cmocka_unit_test(resumed_on_other_ranks),
-        cmocka_unit_test(parts_of_a_step),
-        cmocka_unit_test(switched_between_steps),
+        cmocka_unit_test(same_as_alone),          cmocka_unit_test(resumed_on_other_ranks),
+        cmocka_unit_test(parts_of_a_step),        cmocka_unit_test(other_nodes),
+        cmocka_unit_test(other_nodes_and_fluids), cmocka_unit_test(switched_between_steps),
     };
     return RANKS_RUN(argc, argv, tests);
 }

@@ -55,6 +55,11 @@ int spari_fluid_asked(const spar_fluid *fluid);
    give it to spari_fluid_restore, also after a failure unless it is NULL. Local. */
 int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old);
 void spari_fluid_restore(spar_fluid *fluid, spar_fluid *old);
+/* Its loads as reproducible sums, of twice the loads on the nodes there were: adds them to sums[carried_size], which is
+   of what `before` was; and back as values of that size, for the nodes there are now: NULL, another rank has them. */
+int64_t spari_fluid_carried_size(const spar_member *before);
+void spari_fluid_add_carried(const spar_fluid *old, const spar_member *before, spari_bins *sums);
+void spari_fluid_put_carried(spar_fluid *fluid, const spar_member *before, const double *values);
 /* It stays as it was made anew: what it was goes. */
 void spari_fluid_adopt(spar_fluid *fluid, spar_fluid *old);
 /* Whether there are nodes that wait for their map. */

@@ -10,8 +10,7 @@ static size_t count_loads(const spar_fluid *fluid) {
     return fluid->load ? 6 * (size_t)fluid->member->nodes : 0;
 }
 
-/* The sum of one number. */
-static void add_twice(spari_bins *sum, double x) {
+void spari_fluid_add_twice(spari_bins *sum, double x) {
     spari_bins one = {0};
     spari_bins_add(&one, x);
     spari_bins_double(&one);
@@ -42,7 +41,7 @@ static int make_some(spar_fluid *fluid, int first, int last, const double *const
             return SPAR_ERR_MEMORY;
         }
         for (int64_t i = 0; value[k - first] && i < n; i++) {
-            add_twice(fluid->bins[k] + i, value[k - first][i]);
+            spari_fluid_add_twice(fluid->bins[k] + i, value[k - first][i]);
         }
     }
     return SPAR_OK;
@@ -93,7 +92,7 @@ void spari_fluid_add_bins(const spar_fluid *fluid, spari_bins *load) {
         if (fluid->bins[SPARI_OF_PUSHED]) {
             spari_bins_merge(load + i, fluid->bins[SPARI_OF_PUSHED] + i);
         } else {
-            add_twice(load + i, fluid->load[i]);
+            spari_fluid_add_twice(load + i, fluid->load[i]);
         }
     }
 }

@@ -104,7 +104,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
 static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
-    memset(f->bins, 0, sizeof f->bins); /* the values serve */
+    memset(f->bins, 0, sizeof f->bins);
     f->history = NULL;
     f->taking = NULL;
     if (same_nodes) {
@@ -135,6 +135,24 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory_for_trial(f);
 }
 
+/* The same nodes have the same sums. What is made of the values alone would be rounded once on each rank, and so depend
+   on who has which nodes. */
+static int copy_bins(spar_fluid *f, const spar_fluid *old) {
+    static const int kinds[] = {SPARI_OF_PUSHED, SPARI_OF_ACCEPTED, SPARI_OF_BEGIN};
+    if (!old->bins[SPARI_OF_PUSHED]) {
+        return SPAR_OK;
+    }
+    if (spari_fluid_make_bins(f) != SPAR_OK) {
+        return no_memory_for_trial(f);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (f->bins[kinds[k]] && old->bins[kinds[k]]) {
+            memcpy(f->bins[kinds[k]], old->bins[kinds[k]], 6 * (size_t)f->member->nodes * sizeof *f->bins[0]);
+        }
+    }
+    return SPAR_OK;
+}
+
 int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {
     spar_fluid *copy = spari_zalloc(1, sizeof *copy), was;
     *old = NULL;
@@ -151,15 +169,51 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     was = *fluid;
     spar_member as_it_was = *before;
     was.member = &as_it_was; /* its line is the one the map was made on */
-    SPARI_TRY(begin(fluid, &was, before->per_element == fluid->member->per_element));
     int elements = before->elements, P = before->per_element, n = fluid->member->per_element;
+    SPARI_TRY(begin(fluid, &was, P == n));
     spari_resample_loads(elements, P, n, was.load, fluid->load);
     spari_resample_loads(elements, P, n, was.load_accepted, fluid->load_accepted);
     if (was.parts) {
         fluid->parts->ended = was.parts->ended;
         spari_resample_loads(elements, P, n, was.parts->end[0], fluid->parts->end[0]);
     }
-    return SPAR_OK;
+    return P == n ? copy_bins(fluid, &was) : SPAR_OK;
+}
+
+/* ---- reproducible sums on other nodes ---- */
+
+enum { CARRIED = 3 }; /* load, load_accepted, end[0] of parts */
+
+int64_t spari_fluid_carried_size(const spar_member *before) {
+    return CARRIED * 6 * before->nodes;
+}
+
+void spari_fluid_add_carried(const spar_fluid *old, const spar_member *before, spari_bins *sums) {
+    const double *value[CARRIED] = {old->load, old->load_accepted, old->parts ? old->parts->end[0] : NULL};
+    const spari_bins *bins[CARRIED] = {old->bins[SPARI_OF_PUSHED], old->bins[SPARI_OF_ACCEPTED],
+                                       old->parts ? old->bins[SPARI_OF_BEGIN] : NULL};
+    int64_t n = 6 * before->nodes;
+    for (int k = 0; k < CARRIED; k++) {
+        for (int64_t i = 0; i < n && value[k]; i++) {
+            if (bins[k]) {
+                spari_bins_merge(sums + k * n + i, bins[k] + i);
+            } else {
+                spari_fluid_add_twice(sums + k * n + i, value[k][i]);
+            }
+        }
+    }
+}
+
+void spari_fluid_put_carried(spar_fluid *f, const spar_member *before, const double *values) {
+    double *to[CARRIED] = {f->load, f->load_accepted, f->parts ? f->parts->end[0] : NULL};
+    int64_t n = 6 * before->nodes;
+    for (int k = 0; k < CARRIED; k++) {
+        if (to[k] && values) {
+            spari_resample_loads(before->elements, before->per_element, f->member->per_element, values + k * n, to[k]);
+        } else if (to[k]) {
+            memset(to[k], 0, 6 * (size_t)f->member->nodes * sizeof *to[k]);
+        }
+    }
 }
 
 void spari_fluid_mute(spar_fluid *fluid, int mute) {

@@ -147,6 +147,8 @@ double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
    was, no message. */
 int spari_fluid_make_bins(spar_fluid *fluid);
 void spari_fluid_drop_bins(spar_fluid *fluid);
+/* Twice a number is added to a sum. */
+void spari_fluid_add_twice(spari_bins *sum, double x);
 /* The loads of the last push hold at t^n; they are again those that held at t^n. */
 void spari_fluid_keep_loads(spar_fluid *fluid);
 void spari_fluid_revert_loads(spar_fluid *fluid);

@@ -13,6 +13,7 @@
 #include "../session/own.h"
 #include "../session/spread.h"
 #include "../solve/work.h"
+#include "carry.h"
 #include "remake.h"
 #include "retie.h"
 
@@ -42,7 +43,8 @@ typedef struct change {
     int64_t pack_count, *first;
     anew *made; /* [count] in their order */
     int64_t count;
-    spari_ties ties; /* of the members; laid aside where one that is tied is made anew */
+    spari_carried *carried; /* [count] room for the fluids with other nodes */
+    spari_ties ties;        /* of the members; laid aside where one that is tied is made anew */
 } change;
 
 static int change_create(spar_session *s, change *c) {
@@ -50,8 +52,8 @@ static int change_create(spar_session *s, change *c) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         n++;
     }
-    *c = (change){.made = spari_zalloc(n, sizeof *c->made)};
-    SPARI_REQUIRE(s, c->made, SPAR_ERR_MEMORY, "no memory to put advice in force");
+    *c = (change){.made = spari_zalloc(n, sizeof *c->made), .carried = spari_zalloc(n, sizeof *c->carried)};
+    SPARI_REQUIRE(s, c->made && c->carried, SPAR_ERR_MEMORY, "no memory to put advice in force");
     return SPAR_OK;
 }
 
@@ -129,6 +131,23 @@ static int remake_fluids(spar_session *s, change *c) {
     return SPAR_OK;
 }
 
+/* Collective. */
+static int carry_change(spar_session *s, const change *c, const char *call) {
+    int64_t count = 0;
+    int any = 0;
+    for (int64_t k = 0; k < c->count; k++) {
+        const anew *a = &c->made[k];
+        any = any || (a->member && a->member->per_element != a->was.per_element);
+        for (int64_t j = 0; j < c->count && a->fluid; j++) {
+            const anew *of = &c->made[j];
+            if (of->member == spari_fluid_member(a->fluid) && of->member->per_element != of->was.per_element) {
+                c->carried[count++] = (spari_carried){a->fluid, a->fluid_was, &of->was};
+            }
+        }
+    }
+    return spari_carry_loads(s, call, any, c->carried, count);
+}
+
 static void lay_exchange_aside(spari_own *own, change *c) {
     c->pack = own->pack, c->motion = own->motion, c->first = own->first, c->pack_count = own->pack_count;
     own->pack = own->motion = NULL;
@@ -147,6 +166,7 @@ static void change_free(change *c) {
     free(c->motion);
     free(c->first);
     free(c->made);
+    free(c->carried);
 }
 
 /* The message of the failure stays. */
@@ -221,6 +241,7 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
         status = status == SPAR_OK ? spari_assemblies_make(s, __func__) : status;
     }
     status = spari_session_seal(s, status);
+    status = status == SPAR_OK ? carry_change(s, &c, __func__) : status;
     if (status == SPAR_OK) {
         confirm(s, &c);
     } else if (begun) {

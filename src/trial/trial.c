@@ -1,6 +1,7 @@
 /* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
 #include "trial.h"
 
+#include "carry.h"
 #include "cost.h"
 #include "retie.h"
 
@@ -85,7 +86,14 @@ typedef struct stash {
     spari_ties ties;      /* of the members */
     spar_fluid **fluids;  /* what they were, in their order */
     int fluid_count, fluids_made;
+    spari_carried *carried; /* [fluid_count] room for those with other nodes */
 } stash;
+
+static void stash_free(const stash *t) {
+    free(t->members);
+    free(t->fluids);
+    free(t->carried);
+}
 
 /* Where it fails the session is as it was: there is nothing to go back to. */
 static int stash_create(spar_session *s, stash *t) {
@@ -102,15 +110,11 @@ static int stash_create(spar_session *s, stash *t) {
     }
     t->members = spari_zalloc(s->member_count, sizeof *t->members);
     t->fluids = spari_zalloc(t->fluid_count, sizeof(spar_fluid *));
-    if (!t->members || !t->fluids) {
-        free(t->members);
-        free(t->fluids);
-        return spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
-    }
-    int status = spari_ties_lay_aside(s, &t->ties);
+    t->carried = spari_zalloc(t->fluid_count, sizeof *t->carried);
+    int status = t->members && t->fluids && t->carried ? spari_ties_lay_aside(s, &t->ties)
+                                                       : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     if (status != SPAR_OK) {
-        free(t->members);
-        free(t->fluids);
+        stash_free(t);
         return status;
     }
     own->coupling = NULL;
@@ -152,6 +156,22 @@ static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
     return SPAR_OK;
 }
 
+/* Loads that fluids bring to other nodes; collective. */
+static int carry_loads(spar_session *s, const stash *t) {
+    int64_t count = 0;
+    int any = 0, k = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        any = any || m->per_element != member_before(s, t, m)->per_element;
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
+        const spar_member *before = member_before(s, t, spari_fluid_member(f));
+        if (before->per_element != spari_fluid_member(f)->per_element) {
+            t->carried[count++] = (spari_carried){f, t->fluids[k], before};
+        }
+    }
+    return spari_carry_loads(s, "a trial run", any, t->carried, count);
+}
+
 /* The message of a failure stays. */
 static void go_back(spar_session *s, stash *t) {
     spar_fluid *f = s->fluids;
@@ -170,8 +190,7 @@ static void go_back(spar_session *s, stash *t) {
     copy_saved(s, &t->session);
     s->own->pack = t->pack, s->own->motion = t->motion, s->own->first = t->first;
     s->own->pack_count = t->pack_count, s->own->coupling = t->coupling;
-    free(t->members);
-    free(t->fluids);
+    stash_free(t);
     spari_fluid_release_gone(s);
 }
 
@@ -486,6 +505,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
     int status = stash_create(s, &t), away = status == SPAR_OK;
     status = away ? make_anew(s, &t, wish) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = status == SPAR_OK ? carry_loads(s, &t) : status;
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
     if (status == SPAR_OK) {
         status = run_there(s, run, balanced, record);

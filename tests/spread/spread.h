@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include <cmocka.h>
 
@@ -53,6 +54,14 @@ int spread_step_accept(spar_session *session);
 int spread_get_motion(const spar_member *member, double *q, double *v, double *a);
 int spread_get_loads(const spar_member *member, double *load);
 int spread_get_reaction(const spar_member *member, double *load);
+int spread_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
+               void *context, int compare, int64_t capacity, double *report);
+int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
+                          spar_fluid_solver solve, void *context, int64_t rows, int64_t columns, double *table);
+int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
+                  spar_fluid_solver solve, void *context, int64_t capacity, double *advice);
+int spread_apply_advice(spar_session *session, double *dt);
+int spread_remove(const char *path);
 
 #ifndef SPREAD_ITSELF
 #undef cmocka_run_group_tests
@@ -95,6 +104,11 @@ int spread_get_reaction(const spar_member *member, double *load);
 #define spar_member_get_motion spread_get_motion
 #define spar_member_get_loads spread_get_loads
 #define spar_member_get_reaction spread_get_reaction
+#define spar_session_try spread_try
+#define spar_session_report_effects spread_report_effects
+#define spar_session_advise spread_advise
+#define spar_session_apply_advice spread_apply_advice
+#define remove spread_remove
 #endif
 
 #endif

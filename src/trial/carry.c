@@ -1,0 +1,111 @@
+/* Reproducible sums of loads go over to other nodes: see carry.h. */
+#include "carry.h"
+
+#include "../base/scene.h"
+#include "../comm/enter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FLAGS = 32 }; /* fluids in a word */
+
+typedef struct carry_room {
+    const spari_carried *fluids;
+    int64_t count, words, *first, sums; /* words: of a rank, and one for its status */
+    double *here;                       /* [ranks][words]: which fluids have force nodes there */
+    spari_bins *sum;                    /* [sums], and room for a status */
+    double *value;                      /* of the largest fluid */
+} carry_room;
+
+/* What must be alike on all ranks, for sums over them to be of one fluid. */
+static uint64_t hash_of(const carry_room *c) {
+    uint64_t h = SPARI_HASH_BEGIN;
+    for (int64_t k = 0; k < c->count; k++) {
+        const char *member = spari_fluid_member(c->fluids[k].fluid)->name,
+                   *name = spar_fluid_get_name(c->fluids[k].fluid);
+        h = spari_hash_bytes(h, member, strlen(member) + 1);
+        h = spari_hash_bytes(h, name, strlen(name) + 1);
+    }
+    return h;
+}
+
+static int make_sums_room(spar_session *s, carry_room *c) {
+    int64_t ranks = spari_comm_size(s->comm), most = 0;
+    for (int64_t k = 0; k < c->count; k++) {
+        int64_t n = spari_fluid_carried_size(c->fluids[k].before);
+        c->sums += n;
+        most = n > most ? n : most;
+    }
+    c->words = (c->count + FLAGS - 1) / FLAGS + 1;
+    c->first = spari_zalloc(ranks + 1, sizeof *c->first);
+    c->here = spari_zalloc(ranks * c->words, sizeof *c->here);
+    c->sum = spari_zalloc(c->sums + 1, sizeof *c->sum);
+    c->value = spari_zalloc(most, sizeof *c->value);
+    SPARI_REQUIRE(s, c->first && c->here && c->sum && c->value, SPAR_ERR_MEMORY,
+                  "no memory for reproducible sums of loads on other nodes");
+    for (int64_t r = 0; r < ranks; r++) {
+        c->first[r + 1] = (r + 1) * c->words;
+    }
+    return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
+}
+
+static void flag_own(const spar_session *s, carry_room *c) {
+    double *own = c->here + c->first[spari_comm_rank(s->comm)];
+    for (int64_t k = 0; k < c->count; k++) {
+        int64_t n = 0;
+        (void)spar_fluid_get_count(c->fluids[k].fluid, SPAR_NODES_FORCE, &n);
+        own[k / FLAGS] += n > 0 ? (double)(UINT32_C(1) << k % FLAGS) : 0;
+    }
+}
+
+/* The first rank that has force nodes of the k-th fluid; 0 if none has. */
+static int holder_of(const spar_session *s, const carry_room *c, int64_t k) {
+    for (int r = 0; r < spari_comm_size(s->comm); r++) {
+        if ((uint32_t)c->here[c->first[r] + k / FLAGS] >> k % FLAGS & 1) {
+            return r;
+        }
+    }
+    return 0;
+}
+
+static void put_sums(const spar_session *s, const carry_room *c) {
+    const spari_bins *sum = c->sum;
+    for (int64_t k = 0; k < c->count; k++) {
+        const spari_carried *f = c->fluids + k;
+        int64_t n = spari_fluid_carried_size(f->before);
+        for (int64_t i = 0; i < n; i++) {
+            c->value[i] = 0.5 * spari_bins_value(sum++);
+        }
+        int holds = holder_of(s, c, k) == spari_comm_rank(s->comm);
+        spari_fluid_put_carried(f->fluid, f->before, holds ? c->value : NULL);
+    }
+}
+
+static int carry(spar_session *s, const char *call, carry_room *c) {
+    int status = make_sums_room(s, c);
+    const spari_alike alike[] = {spari_hash("list of fluids (reproducible sums, on other nodes)", hash_of(c))};
+    SPARI_TRY(spari_enter_alike(s, call, alike, 1, status));
+    flag_own(s, c);
+    SPARI_TRY(spari_comm_share(s->comm, c->here, c->first, SPAR_OK, s->message, sizeof s->message));
+    spari_bins *at = c->sum;
+    for (int64_t k = 0; k < c->count; k++) {
+        spari_fluid_add_carried(c->fluids[k].old, c->fluids[k].before, at);
+        at += spari_fluid_carried_size(c->fluids[k].before);
+    }
+    SPARI_TRY(spari_comm_sum_bins(s->comm, c->sum, c->sums, SPAR_OK, s->message, sizeof s->message));
+    put_sums(s, c);
+    return SPAR_OK;
+}
+
+int spari_carry_loads(spar_session *s, const char *call, int any, const spari_carried *fluids, int64_t count) {
+    carry_room c = {.fluids = fluids, .count = count};
+    if (!any || !s->reproducible || spari_comm_size(s->comm) == 1) {
+        return SPAR_OK;
+    }
+    int status = carry(s, call, &c);
+    free(c.first);
+    free(c.here);
+    free(c.sum);
+    free(c.value);
+    return status;
+}
