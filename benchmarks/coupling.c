@@ -5,8 +5,9 @@
    coupling [--seeds n] [--default] [--scene 0|1] [--out file.csv]
 
    Rows of the CSV: scene, added mass over mass, noise, corrections (0: exact), scheme, seed, evaluations a step, most
-   of a step, steps made of 40, distance from the exact fluid's run. --default: the default's runs alone, for many
-   seeds. A case's settings that did not end every step, or ended it elsewhere, have failed. */
+   of a step, steps made of 40, distance from the exact fluid's run; "as near": once more, with a finer tolerance.
+   --default: the default's runs alone, for many seeds. A case's settings that did not end every step, or ended it
+   elsewhere, have failed. */
 #include "support/flows.h"
 
 #include <math.h>
@@ -84,21 +85,24 @@ typedef struct outcome {
     int failed;
 } outcome;
 
+/* `finer`: times the tolerance. */
 static outcome try_setting(FILE *out, flow_case c, const struct flow_kind *kind, const struct setting *by, int seeds,
-                           const flow_result *exact) {
+                           double finer, const flow_result *exact) {
     static flow_result result;
     outcome o = {0, 0, 0};
     int n = kind->noise > 0 ? seeds : 1;
     for (int seed = 1; seed <= n; seed++) {
         flow_case one = with(c, kind, by, (unsigned)seed);
+        one.rtol *= finer;
         (void)flow_run(&one, &result);
         double off = flow_distance(&result, exact);
         int bad = result.status != SPAR_OK || !(off < bound(kind));
         o.failed += bad;
         o.mean += result.iterations / n;
         o.off = fmax(o.off, off);
-        fprintf(out, "%s,%g,%g,%d,%s,%d,%.3f,%d,%d,%.2e\n", scene_name[c.scene], c.added, kind->noise, kind->inner,
-                by->name, seed, bad ? NAN : result.iterations, result.most, result.steps, off);
+        fprintf(out, "%s,%g,%g,%d,%s%s,%d,%.3f,%d,%d,%.2e\n", scene_name[c.scene], c.added, kind->noise, kind->inner,
+                by->name, finer < 1 ? " as near" : "", seed, bad ? NAN : result.iterations, result.most, result.steps,
+                off);
     }
     fflush(out);
     return o;
@@ -114,14 +118,26 @@ static int stops_by_loads(const struct setting *by) {
     return by->option[0][0] && strcmp(by->option[0][0], "coupling.norm") == 0;
 }
 
+/* One that ends farther from the exact fluid than the default does, where no noise hides it, is held to a tolerance
+   that is as much finer: what is compared is the cost of the same error. */
+static outcome try_as_near(FILE *out, flow_case c, const struct flow_kind *kind, const struct setting *by, int seeds,
+                           const flow_result *exact, const outcome *mine) {
+    static const double AS_NEAR = 1.5, FINE = 5e-6;
+    outcome o = try_setting(out, c, kind, by, seeds, 1, exact);
+    if (o.failed == 0 && kind->noise == 0 && o.off > fmax(AS_NEAR * mine->off, FINE)) {
+        o = try_setting(out, c, kind, by, seeds, fmax(mine->off / o.off, 0.1), exact);
+    }
+    return o;
+}
+
 /* A setting counts that ends every step, by the same test as the default, about as near to the exact fluid. */
 static void play_case(FILE *out, flow_case c, const struct flow_kind *kind, int seeds, int count,
                       const flow_result *exact, account *sum) {
-    outcome mine = try_setting(out, c, kind, settings, seeds, exact);
+    outcome mine = try_setting(out, c, kind, settings, seeds, 1, exact);
     double best = HUGE_VAL;
     int by = 0;
     for (int i = 1; i < count; i++) {
-        outcome o = try_setting(out, c, kind, settings + i, seeds, exact);
+        outcome o = try_as_near(out, c, kind, settings + i, seeds, exact, &mine);
         if (o.failed == 0 && !stops_by_loads(settings + i) && o.off <= fmax(3 * mine.off, 2e-5) && o.mean < best) {
             best = o.mean, by = i;
         }

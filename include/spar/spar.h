@@ -296,7 +296,9 @@ SPAR_API int spar_session_get_option(const spar_session *session, const char *ke
      iterations: out, how many there were, which may be more than the capacity
      capacity: in, of the two arrays; max_iterations of spar_session_set_coupling is always enough
      residual[capacity], size[capacity]: out, by iteration, the change of the loads and the loads, N: root of the sum of
-           squares over all nodes of forces, and of moments divided by the member's length; 0 behind the last
+           squares over all nodes of forces, and of moments divided by the member's length; 0 behind the last. Where
+           loads are weighed by motion the change is the part of their size that it is of their motion; IQN-ILS takes
+           it against what a fluid that answers in parts will have settled to
    Each NULL: not wanted. */
 SPAR_API int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity,
                                          double *residual, double *size);

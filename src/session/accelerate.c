@@ -18,12 +18,21 @@ typedef struct column {
     int64_t step;   /* of the accelerator's own count: in which it was made */
     int64_t serial; /* the larger the newer */
     double dt;
+    int led; /* imaged: the change of g before it is known */
 } column;
 
 /* Ratios of differences, by weight: what they come to, and how far they agree. */
 typedef struct tally {
     double weight, square, sum, sum2; /* sums of w, w^2, w r, w r^2 */
 } tally;
+
+/* How far the fluid's answers are a function of the loads. */
+typedef struct memory {
+    double contradiction; /* of its answers, relative to their change */
+    double rho;           /* the part of a change that comes again with the next answer; 0: none, or not known */
+    double scatter;       /* the contradiction that rho leaves */
+    spari_asymmetry told; /* of the columns, older ones fading */
+} memory;
 
 struct spari_accelerator {
     spari_accelerator_settings set;
@@ -45,7 +54,10 @@ struct spari_accelerator {
     int imaged;                /* in the step: inner products are those of the images */
     double *change, *answer;   /* [2][n + 1] of g - x and of g since the iteration before; their images */
     int renewed;               /* images of columns, for the step under way or one that was rejected since */
-    double scatter, scatter_accepted;
+    memory memory, memory_accepted;
+    double *lead;                                    /* [2][n] imaged: the change of g that the next follows; image */
+    double *last;                                    /* [n] imaged: g at the end of the step before */
+    int led, ended;                                  /* whether there is a lead, and a last */
     double residual, residual_first, residual_least; /* in the norm of the images: now, and of the step */
     int rises;                                       /* iterations since it was far above the least */
 
@@ -53,6 +65,7 @@ struct spari_accelerator {
     column *column;         /* [slots] */
     double *v, *w;          /* [slots][n] differences of the residual g - x, and of g */
     double *iv, *iw;        /* imaged: their images */
+    double *b, *ib;         /* imaged: the change of g before, and its image */
     double *q, *r;          /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
     double *p;              /* imaged: images of q */
     spari_secants *secants; /* imaged */
@@ -86,7 +99,10 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
              (a->change = spari_zalloc(2 * n, sizeof *a->change)) &&
              (a->answer = spari_zalloc(2 * n + 1, sizeof *a->answer)) &&
              (a->iv = spari_zalloc(2 * k * n + 1, sizeof *a->iv)) &&
-             (a->iw = spari_zalloc(2 * k * n + 1, sizeof *a->iw)) && (a->p = spari_zalloc(k * n, sizeof *a->p)) &&
+             (a->iw = spari_zalloc(2 * k * n + 1, sizeof *a->iw)) && (a->b = spari_zalloc(2 * k * n, sizeof *a->b)) &&
+             (a->ib = spari_zalloc(2 * k * n + 1, sizeof *a->ib)) &&
+             (a->lead = spari_zalloc(k > 0 ? 2 * n + 1 : 0, sizeof *a->lead)) &&
+             (a->last = spari_zalloc(k > 0 ? n : 0, sizeof *a->last)) && (a->p = spari_zalloc(k * n, sizeof *a->p)) &&
              (k == 0 || (a->secants = spari_secants_create(n, (int)k)));
     if (!ok) {
         spari_accelerator_free(&a);
@@ -99,7 +115,8 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    double *all[] = {a->x, a->g, a->image, a->change, a->answer, a->v, a->w, a->iv, a->iw, a->q, a->r, a->p, a->alpha};
+    double *all[] = {a->x, a->g,  a->image, a->change, a->answer, a->v, a->w, a->iv,   a->iw,
+                     a->b, a->ib, a->lead,  a->last,   a->q,      a->r, a->p, a->alpha};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -146,6 +163,14 @@ static double *slot_iv(const spari_accelerator *a, int slot) {
 
 static double *slot_iw(const spari_accelerator *a, int slot) {
     return a->iw + slot * a->n;
+}
+
+static double *slot_b(const spari_accelerator *a, int slot) {
+    return a->b + slot * a->n;
+}
+
+static double *slot_ib(const spari_accelerator *a, int slot) {
+    return a->ib + slot * a->n;
 }
 
 /* The root of a . image, 0 where rounding makes that negative. */
@@ -195,13 +220,66 @@ static void over_sizes(const spari_accelerator *a, const double *in, double *out
     }
 }
 
+/* ---- memory of the fluid ---- */
+
+/* Contradiction above QUIET is looked at; above LOUD columns that it is left in are averaged. */
+static const double QUIET = 1e-3, LOUD = 0.05;
+
+int spari_accelerator_contradicted(const spari_accelerator *a) {
+    return a->imaged && a->slots > 0 && a->memory.contradiction > QUIET;
+}
+
+static double rho_of(const spari_accelerator *a) {
+    return a->imaged ? a->memory.rho : 0;
+}
+
+/* change, image := what the fluid answers by itself of the one in slot s, as if it did not remember, from v or w and
+   its image */
+static void forget_lead(const spari_accelerator *a, int s, double *change, double *image) {
+    double rho = rho_of(a);
+    if (rho > 0) {
+        axpy(-rho, slot_b(a, s), change, a->n);
+        axpy(-rho, slot_ib(a, s), image, a->n);
+    }
+}
+
+/* r := the residual with what comes again of the last change, (T31); returns its length. */
+static double residual_to_come(const spari_accelerator *a, const double *x, const double *g, const double *image,
+                               double *r) {
+    double square = 0, rho = a->led ? rho_of(a) : 0;
+    for (int64_t i = 0; i < a->n; i++) {
+        r[i] = g[i] - x[i];
+        double answer = image[i];
+        if (rho > 0) {
+            r[i] += rho * a->lead[i];
+            answer += rho * a->lead[a->n + i];
+        }
+        square += r[i] * answer;
+    }
+    return sqrt(fmax(square, 0));
+}
+
+int spari_accelerator_settle(const spari_accelerator *a, const double *x, const double *g, double *r) {
+    double rho = rho_of(a);
+    const double *before = a->iteration > 0 ? a->g : a->ended ? a->last : NULL;
+    for (int64_t i = 0; rho > 0 && before && i < a->n; i++) {
+        r[i] = g[i] - x[i] + rho / (1 - rho) * (g[i] - before[i]);
+    }
+    return rho > 0 && before;
+}
+
 /* ---- columns ---- */
+
+/* Of no use in the factorisation as long as the fluid remembers. */
+static int is_unled(const spari_accelerator *a, int slot) {
+    return rho_of(a) > 0 && !a->column[slot].led;
+}
 
 /* Adds a column to the factorisation, by Gram-Schmidt done twice (Giraud et al. 2005: orthogonal to rounding). Returns
    0, and adds nothing, where too little of it is new: no more than `filter`. */
 static int append(spari_accelerator *a, int slot, double filter) {
     int k = a->used;
-    if (k == a->set.columns) {
+    if (k == a->set.columns || is_unled(a, slot)) {
         return 0;
     }
     double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns, *images = a->imaged ? a->p : a->q;
@@ -209,6 +287,7 @@ static int append(spari_accelerator *a, int slot, double filter) {
     if (a->imaged) {
         memcpy(q, slot_v(a, slot), (size_t)a->n * sizeof *q);
         memcpy(p, slot_iv(a, slot), (size_t)a->n * sizeof *p);
+        forget_lead(a, slot, q, p);
     } else {
         over_sizes(a, slot_v(a, slot), q);
     }
@@ -241,7 +320,7 @@ static int append(spari_accelerator *a, int slot, double filter) {
 
 /* Of what is new in a column less than the fluid's scatter is that. */
 static double least_new(const spari_accelerator *a) {
-    return a->imaged ? fmax(a->set.filter, a->scatter) : a->set.filter;
+    return a->imaged ? fmax(a->set.filter, a->memory.scatter) : a->set.filter;
 }
 
 static int newest_before(const spari_accelerator *a, int64_t serial) {
@@ -254,9 +333,6 @@ static int newest_before(const spari_accelerator *a, int64_t serial) {
     }
     return found;
 }
-
-/* Scatter above QUIET: the columns that the filter takes out are kept, to be averaged with; above LOUD they are. */
-static const double QUIET = 1e-3, LOUD = 0.05;
 
 /* Out of use: a column of this step for good, an older one until it is known whether the step is accepted. */
 static void drop_column(spari_accelerator *a, int slot) {
@@ -272,7 +348,8 @@ static void factor_columns(spari_accelerator *a) {
         int full = a->used == a->set.columns;
         if (!append(a, s, least_new(a))) {
             a->dropped += !full;
-            if (a->scatter <= QUIET) {
+            /* those taken out below QUIET have nothing to say; above, they are averaged with */
+            if (a->memory.scatter <= QUIET && !is_unled(a, s)) {
                 drop_column(a, s);
             }
         }
@@ -304,23 +381,77 @@ static void limit_columns(spari_accelerator *a) {
     }
 }
 
-/* What the columns of the step, all but the one in slot `last`, make of that one. One that fits forgets a part of the
-   scatter seen before. */
-static void note_scatter(spari_accelerator *a, int last) {
-    static const double INDEPENDENT = 1e-2, MEMORY = 0.8;
-    int64_t serial = a->serial + 1;
-    spari_secants_begin(a->secants, INDEPENDENT);
+static spari_secant secant_of(const spari_accelerator *a, int slot) {
+    int led = a->column[slot].led;
+    return (spari_secant){slot_v(a, slot),  slot_w(a, slot),  led ? slot_b(a, slot) : NULL,
+                          slot_iv(a, slot), slot_iw(a, slot), led ? slot_ib(a, slot) : NULL};
+}
+
+/* The columns in use that are older than `serial`, the newest first; of this step alone, or of all. */
+static void gather_secants(spari_accelerator *a, double filter, int64_t serial, int of_step) {
+    spari_secants_begin(a->secants, filter);
     for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        const spari_secant c = secant_of(a, s);
         serial = a->column[s].serial;
-        if (a->column[s].step != a->step ||
-            !spari_secants_add(a->secants, slot_v(a, s), slot_w(a, s), slot_iv(a, s), slot_iw(a, s))) {
+        if ((of_step && a->column[s].step != a->step) || !spari_secants_add(a->secants, &c)) {
             break;
         }
     }
+}
+
+/* What is new in a column, so that its direction counts as one. */
+static const double INDEPENDENT = 1e-2;
+
+/* How far the newest column is from what the others of the step make of it, as of a fluid that remembers rho: negative
+   where they cannot tell. */
+static double defect_of(spari_accelerator *a, int newest, double rho) {
+    const spari_secant c = secant_of(a, newest);
+    gather_secants(a, INDEPENDENT, a->column[newest].serial, 1);
+    spari_secants_remember(a->secants, rho);
     (void)spari_secants_fit(a->secants, 0);
-    double off = spari_secants_defect(a->secants, slot_v(a, last), slot_w(a, last), slot_iv(a, last), slot_iw(a, last));
-    if (off >= 0) {
-        a->scatter = fmax(fmin(off, 1), MEMORY * a->scatter);
+    return spari_secants_defect(a->secants, &c);
+}
+
+/* A column that fits forgets a part of what was seen before. */
+static double faded(double seen, double defect) {
+    static const double MEMORY = 0.8;
+    return defect >= 0 ? fmax(fmin(defect, 1), MEMORY * seen) : seen;
+}
+
+/* (T31). Returns what rho leaves of the asymmetry, over what is symmetric. Where too few pairs tell, rho stays. */
+static double recall(spari_accelerator *a) {
+    static const double FADE = 0.95, EXPLAINED = 0.5, MOST_OF_IT = 0.95;
+    enum { PAIRS = 3 };
+    spari_asymmetry *told = &a->memory.told;
+    int fresh = told->pairs > 0 ? 1 : a->slots;
+    *told = (spari_asymmetry){told->pairs, FADE * told->ww, FADE * told->both, FADE * told->bb, FADE * told->symmetric};
+    gather_secants(a, INDEPENDENT, a->serial + 1, 0);
+    spari_secants_tell(a->secants, fresh, told);
+    if (told->pairs >= PAIRS) {
+        int explained = told->both > 0 && told->both * told->both > EXPLAINED * told->ww * told->bb;
+        a->memory.rho = explained ? fmin(told->both / told->bb, MOST_OF_IT) : 0;
+    }
+    double rho = a->memory.rho, left = told->ww - rho * (2 * told->both - rho * told->bb);
+    return sqrt(fmax(left, 0) / told->symmetric);
+}
+
+/* What the newest column shows: how far it contradicts the others of the step, whether memory explains that, and what
+   is left then. */
+static void weigh_answers(spari_accelerator *a, int newest) {
+    memory *m = &a->memory;
+    double defect = defect_of(a, newest, 0), was = m->rho, left = 1;
+    m->contradiction = faded(m->contradiction, defect);
+    if (m->contradiction > QUIET) {
+        left = recall(a);
+    } else {
+        m->rho = 0;
+        m->told = (spari_asymmetry){0};
+    }
+    if (m->rho > 0) {
+        defect = defect_of(a, newest, m->rho);
+        m->scatter = was > 0 ? fmin(faded(m->scatter, defect), left) : faded(0, defect);
+    } else {
+        m->scatter = faded(m->scatter, defect);
     }
 }
 
@@ -342,11 +473,16 @@ static void add_column(spari_accelerator *a) {
         a->dropped++;
         return;
     }
-    if (a->imaged) {
-        note_scatter(a, s);
+    a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt, a->imaged && a->led};
+    if (a->column[s].led) {
+        memcpy(slot_b(a, s), a->lead, bytes);
+        memcpy(slot_ib(a, s), a->lead + a->n, bytes);
     }
-    a->column[s] = (column){LIVE, a->step, ++a->serial, a->dt};
-    if (!append(a, s, least_new(a))) {
+    double rho = a->memory.rho;
+    if (a->imaged) {
+        weigh_answers(a, s);
+    }
+    if (a->memory.rho != rho || !append(a, s, least_new(a))) {
         factor_columns(a);
     }
 }
@@ -361,11 +497,12 @@ static double longest(const spari_accelerator *a) {
 
 /* Cuts a step made with alpha to that. */
 static void trust(const spari_accelerator *a, const double *x, double *next) {
-    double step = 0, most = longest(a);
+    double step = 0, most = longest(a), rho = rho_of(a);
     for (int64_t i = 0; i < a->n; i++) {
-        double answer = a->image[i];
+        double answer = a->image[i] + (rho > 0 && a->led ? rho * a->lead[a->n + i] : 0);
         for (int j = 0; j < a->used; j++) {
-            answer += a->alpha[j] * slot_iw(a, a->order[j])[i];
+            int slot = a->order[j];
+            answer += a->alpha[j] * (slot_iw(a, slot)[i] - (rho > 0 ? rho * slot_ib(a, slot)[i] : 0));
         }
         step += (next[i] - x[i]) * answer;
     }
@@ -393,9 +530,7 @@ static void back_substitute(spari_accelerator *a) {
 static int quasi_newton_imaged(spari_accelerator *a, const double *x, const double *g, double *next) {
     int64_t n = a->n;
     int m = a->used;
-    for (int64_t i = 0; i < n; i++) {
-        next[i] = g[i] - x[i];
-    }
+    (void)residual_to_come(a, x, g, a->image, next);
     memset(a->alpha, 0, (size_t)m * sizeof *a->alpha);
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < m; j++) {
@@ -452,21 +587,17 @@ static int quasi_newton(spari_accelerator *a, const double *x, const double *g, 
 /* next by the derivative that fits all columns. Returns 0 where that gives no numbers. */
 static int step_by_average(spari_accelerator *a, const double *x, const double *g, double *next) {
     static const double PART = 0.5, FILTER = 0.3;
-    int64_t serial = a->serial + 1;
-    spari_secants_begin(a->secants, fmin(fmax(a->set.filter, PART * a->scatter), FILTER));
-    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
-        serial = a->column[s].serial;
-        if (!spari_secants_add(a->secants, slot_v(a, s), slot_w(a, s), slot_iv(a, s), slot_iw(a, s))) {
-            break;
-        }
-    }
-    return spari_secants_fit(a->secants, a->scatter * a->scatter) > 0 &&
-           spari_secants_step(a->secants, x, g, a->residual, longest(a), next);
+    double *r = a->change;
+    gather_secants(a, fmin(fmax(a->set.filter, PART * a->memory.scatter), FILTER), a->serial + 1, 0);
+    spari_secants_remember(a->secants, a->memory.rho);
+    double length = residual_to_come(a, x, g, a->image, r);
+    return spari_secants_fit(a->secants, a->memory.scatter * a->memory.scatter) > 0 &&
+           spari_secants_step(a->secants, x, r, length, longest(a), next);
 }
 
 /* By the columns of this step and of earlier ones, which are averaged where they contradict each other. */
 static int next_by_columns(spari_accelerator *a, const double *x, const double *g, double *next) {
-    return (a->imaged && a->scatter > LOUD && step_by_average(a, x, g, next)) ||
+    return (a->imaged && a->memory.scatter > LOUD && step_by_average(a, x, g, next)) ||
            (a->used > 0 && quasi_newton(a, x, g, next));
 }
 
@@ -597,11 +728,7 @@ int spari_accelerator_imaged(const spari_accelerator *a) {
 }
 
 static void measure(spari_accelerator *a, const double *x, const double *g, const double *image) {
-    double square = 0;
-    for (int64_t i = 0; i < a->n && a->imaged; i++) {
-        square += (g[i] - x[i]) * image[i];
-    }
-    a->residual = sqrt(fmax(square, 0));
+    a->residual = a->imaged ? residual_to_come(a, x, g, image, a->change) : 0;
     if (a->iteration == 1) {
         a->residual_first = a->residual_least = a->residual;
         a->rises = 0;
@@ -612,9 +739,9 @@ static void measure(spari_accelerator *a, const double *x, const double *g, cons
 
 /* What rises again, twice, after it had all but ended is driven by columns below the fluid's scatter. */
 static void suspect(spari_accelerator *a) {
-    if (a->secants && a->imaged && a->scatter <= LOUD && a->rises >= 2 &&
+    if (a->secants && a->imaged && a->memory.scatter <= LOUD && a->rises >= 2 &&
         a->residual_least < 0.03 * a->residual_first) {
-        a->scatter = 2 * LOUD;
+        a->memory.scatter = 2 * LOUD;
     }
 }
 
@@ -633,7 +760,21 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
     if (a->scheme->learn) {
         a->scheme->learn(a);
     }
+    a->led = a->imaged && a->secants;
+    if (a->led) {
+        memcpy(a->lead, a->change + a->n, (size_t)a->n * sizeof *a->lead);
+        memcpy(a->lead + a->n, a->answer + a->n, (size_t)a->n * sizeof *a->lead);
+    }
     return SPAR_OK;
+}
+
+/* What the step's first answer has changed since the last one of the step before. */
+static int lead_in(spari_accelerator *a, const double *g, const spari_images *images) {
+    a->led = a->ended && spari_accelerator_contradicted(a);
+    for (int64_t i = 0; a->led && i < a->n; i++) {
+        a->lead[i] = g[i] - a->last[i];
+    }
+    return a->led ? images->of(images->context, 1, a->lead, a->lead + a->n) : SPAR_OK;
 }
 
 /* Whether column and image in slot s belong to another flexibility S than g - x and g with theirs: v . S y is not
@@ -662,13 +803,23 @@ static int renew_images(spari_accelerator *a, const double *x, const double *g, 
         return SPAR_OK;
     }
     size_t bytes = (size_t)a->n * sizeof *a->v;
+    int led = 0;
     for (int s = 0; s < a->slots; s++) {
-        if (a->column[s].state == FREE) {
+        column *c = a->column + s;
+        c->led &= spari_accelerator_contradicted(a); /* else nobody asks for it */
+        led |= c->led;
+        if (c->state == FREE) {
             memset(slot_v(a, s), 0, bytes);
             memset(slot_w(a, s), 0, bytes);
         }
+        if (c->state == FREE || !c->led) {
+            memset(slot_b(a, s), 0, bytes);
+        }
     }
     a->renewed = 1;
+    if (led) {
+        SPARI_TRY(images->of(images->context, a->slots, a->b, a->ib));
+    }
     SPARI_TRY(images->of(images->context, a->slots, a->v, a->iv));
     return images->of(images->context, a->slots, a->w, a->iw);
 }
@@ -686,9 +837,9 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
         SPARI_TRY(renew_images(a, x, g, images));
         factor_columns(a);
     }
+    SPARI_TRY(a->iteration > 1 ? learn(a, x, g, images) : lead_in(a, g, images));
     measure(a, x, g, image);
     if (a->iteration > 1) {
-        SPARI_TRY(learn(a, x, g, images));
         suspect(a);
     }
     if (a->n == 0) {
@@ -715,7 +866,7 @@ static int oldest_live(const spari_accelerator *a, int *count) {
     return oldest;
 }
 
-void spari_accelerator_accept(spari_accelerator *a) {
+void spari_accelerator_accept(spari_accelerator *a, const double *g) {
     for (int s = 0; s < a->slots; s++) {
         column *c = a->column + s;
         if (c->state == DROPPED || a->step - c->step >= a->set.reuse) {
@@ -734,7 +885,11 @@ void spari_accelerator_accept(spari_accelerator *a) {
     a->ratios_before = all_ratios(a, FADE);
     a->ratios = (tally){0};
     a->most_weight = 0;
-    a->scatter_accepted = a->scatter;
+    a->memory_accepted = a->memory;
+    a->ended = g && spari_accelerator_contradicted(a);
+    if (a->ended) {
+        memcpy(a->last, g, (size_t)a->n * sizeof *g);
+    }
     a->used = 0;
     a->renewed = 0;
     a->step++;
@@ -749,7 +904,8 @@ void spari_accelerator_reject(spari_accelerator *a) {
     }
     a->ratios = (tally){0};
     a->most_weight = 0;
-    a->scatter = a->scatter_accepted;
+    a->memory = a->memory_accepted;
+    a->ended = 0; /* nobody knows what the fluid goes back to */
     a->used = 0;
     a->iteration = 0;
 }
@@ -790,16 +946,21 @@ int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, doubl
 }
 
 double spari_accelerator_scatter(const spari_accelerator *a) {
-    return a->scatter;
+    return a->memory.scatter;
 }
 
 /* ---- save and load ---- */
 
-enum { HEAD = 31, COLUMN_HEAD = 5 };
+enum { OWN = 31, MEMORY = sizeof(memory) / sizeof(double), HEAD = OWN + 2 * MEMORY, COLUMN_HEAD = 6 };
 
-/* Vectors of length n that are kept of the iteration before, and of each column. */
-static int64_t kept(const spari_accelerator *a) {
-    return a->set.imaged ? 4 : 2;
+/* Vectors of length n that are kept of each column. */
+static int64_t of_column(const spari_accelerator *a) {
+    return a->set.imaged ? 6 : 2;
+}
+
+/* And of the iteration before: x and g, their images, what the fluid remembers. */
+static int64_t of_iteration(const spari_accelerator *a) {
+    return 2 + (a->set.imaged ? 2 : 0) + (a->secants ? 3 : 0);
 }
 
 static int occupied(const spari_accelerator *a) {
@@ -811,64 +972,91 @@ static int occupied(const spari_accelerator *a) {
 }
 
 int64_t spari_accelerator_state_size(const spari_accelerator *a) {
-    return HEAD + kept(a) * a->n + occupied(a) * (COLUMN_HEAD + kept(a) * a->n) + a->used;
+    return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used;
+}
+
+/* The vectors of a column; of one that is not imaged the first two. */
+static void column_vectors(const spari_accelerator *a, int s, double *vectors[6]) {
+    double *const all[] = {slot_v(a, s), slot_w(a, s), slot_iv(a, s), slot_iw(a, s), slot_b(a, s), slot_ib(a, s)};
+    memcpy(vectors, all, sizeof all);
+}
+
+/* Returns what comes behind it. */
+static double *save_column(const spari_accelerator *a, int s, double *state) {
+    const column *c = a->column + s;
+    const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
+    double *vectors[6];
+    column_vectors(a, s, vectors);
+    memcpy(state, what, sizeof what);
+    state += COLUMN_HEAD;
+    for (int k = 0; k < of_column(a); k++, state += a->n) {
+        memcpy(state, vectors[k], (size_t)a->n * sizeof *state);
+    }
+    return state;
+}
+
+static const double *load_column(spari_accelerator *a, const double *state) {
+    int s = (int)state[0];
+    double *vectors[6];
+    a->column[s] = (column){(column_state)(int)state[1], (int64_t)state[2], (int64_t)state[3], state[4], (int)state[5]};
+    column_vectors(a, s, vectors);
+    state += COLUMN_HEAD;
+    for (int k = 0; k < of_column(a); k++, state += a->n) {
+        memcpy(vectors[k], state, (size_t)a->n * sizeof *state);
+    }
+    return state;
 }
 
 void spari_accelerator_save(const spari_accelerator *a, double *state) {
-    const double head[HEAD] = {(double)a->n,
-                               (double)a->step,
-                               (double)a->serial,
-                               a->iteration,
-                               a->dropped,
-                               a->dt,
-                               a->ratio,
-                               a->omega,
-                               a->omega_accepted,
-                               a->size[0],
-                               a->size[1],
-                               a->weight[0],
-                               a->weight[1],
-                               occupied(a),
-                               a->used,
-                               a->imaged,
-                               a->scatter,
-                               a->scatter_accepted,
-                               a->residual_first,
-                               a->residual_least,
-                               a->rises,
-                               a->ratios.weight,
-                               a->ratios.square,
-                               a->ratios.sum,
-                               a->ratios.sum2,
-                               a->ratios_before.weight,
-                               a->ratios_before.square,
-                               a->ratios_before.sum,
-                               a->ratios_before.sum2,
-                               a->most_weight,
-                               a->renewed};
+    const double own[OWN] = {(double)a->n,
+                             (double)a->step,
+                             (double)a->serial,
+                             a->iteration,
+                             a->dropped,
+                             a->dt,
+                             a->ratio,
+                             a->omega,
+                             a->omega_accepted,
+                             a->size[0],
+                             a->size[1],
+                             a->weight[0],
+                             a->weight[1],
+                             occupied(a),
+                             a->used,
+                             a->imaged,
+                             a->led,
+                             a->ended,
+                             a->residual_first,
+                             a->residual_least,
+                             a->rises,
+                             a->ratios.weight,
+                             a->ratios.square,
+                             a->ratios.sum,
+                             a->ratios.sum2,
+                             a->ratios_before.weight,
+                             a->ratios_before.square,
+                             a->ratios_before.sum,
+                             a->ratios_before.sum2,
+                             a->most_weight,
+                             a->renewed};
     size_t bytes = (size_t)a->n * sizeof *state;
-    memcpy(state, head, sizeof head);
-    memcpy(state += HEAD, a->x, bytes);
+    memcpy(state, own, sizeof own);
+    memcpy(state += OWN, &a->memory, sizeof a->memory);
+    memcpy(state += MEMORY, &a->memory_accepted, sizeof a->memory);
+    memcpy(state += MEMORY, a->x, bytes);
     memcpy(state += a->n, a->g, bytes);
     state += a->n;
     if (a->set.imaged) {
         memcpy(state, a->image, 2 * bytes);
         state += 2 * a->n;
     }
+    if (a->secants) {
+        memcpy(state, a->lead, 2 * bytes);
+        memcpy(state + 2 * a->n, a->last, bytes);
+        state += 3 * a->n;
+    }
     for (int s = 0; s < a->slots; s++) {
-        const column *c = a->column + s;
-        if (c->state != FREE) {
-            const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt};
-            memcpy(state, what, sizeof what);
-            memcpy(state += COLUMN_HEAD, slot_v(a, s), bytes);
-            memcpy(state += a->n, slot_w(a, s), bytes);
-            state += a->n;
-            if (a->set.imaged) {
-                memcpy(state, slot_iv(a, s), bytes);
-                memcpy(state + a->n, slot_iw(a, s), bytes);
-                state += 2 * a->n;
-            }
-        }
+        state = a->column[s].state == FREE ? state : save_column(a, s, state);
     }
     for (int j = 0; j < a->used; j++) {
         state[j] = a->order[j];
@@ -881,13 +1069,13 @@ static int whole_below(double x, double end) {
 
 /* Columns in slots of their own, not more of this step nor of older ones than there can be. */
 static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
-    int64_t width = COLUMN_HEAD + kept(a) * a->n, of_step = 0;
+    int64_t width = COLUMN_HEAD + of_column(a) * a->n, of_step = 0;
     for (int64_t k = 0; k < occupied; k++) {
         const double *c = first + k * width;
         int now = c[2] == step;
         of_step += now;
         if (!whole_below(c[0], a->slots) || !(c[1] == LIVE || (!now && (c[1] == RESTING || c[1] == DROPPED))) ||
-            !whole_below(c[2], step + 1) || !spari_is_count(c[3])) {
+            !whole_below(c[2], step + 1) || !spari_is_count(c[3]) || !whole_below(c[5], a->secants ? 2 : 1)) {
             return 0;
         }
         for (const double *other = first; other != c; other += width) {
@@ -899,6 +1087,15 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
     return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
 }
 
+/* What the fluid is seen to remember, as it is in a struct memory. */
+static int is_memory(const spari_accelerator *a, const double *state) {
+    memory m;
+    memcpy(&m, state, sizeof m);
+    int sound = m.contradiction >= 0 && m.contradiction <= 1 && m.rho >= 0 && m.rho < 1 && m.scatter >= 0 &&
+                m.scatter <= 1 && spari_first_nonfinite(&m.told.pairs, 5) < 0;
+    return sound && (a->secants || (m.contradiction == 0 && m.rho == 0));
+}
+
 int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count) {
     if (count < HEAD || !spari_is_count(state[1]) || !spari_is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
         !whole_below(state[4], INT_MAX) || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
@@ -906,11 +1103,13 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
         return 0;
     }
     int64_t occupied = (int64_t)state[13], used = (int64_t)state[14];
-    if (count != HEAD + kept(a) * a->n + occupied * (COLUMN_HEAD + kept(a) * a->n) + used) {
+    if (count != HEAD + of_iteration(a) * a->n + occupied * (COLUMN_HEAD + of_column(a) * a->n) + used) {
         return 0;
     }
     if (!whole_below(state[15], a->set.imaged ? 2 : 1) || !whole_below(state[20], INT_MAX) ||
-        !whole_below(state[30], 2) || !are_columns(a, state + HEAD + kept(a) * a->n, occupied, state[1])) {
+        !whole_below(state[30], 2) || !is_memory(a, state + OWN) || !is_memory(a, state + OWN + MEMORY) ||
+        !whole_below(state[16], a->secants ? 2 : 1) || !whole_below(state[17], a->secants ? 2 : 1) ||
+        !are_columns(a, state + HEAD + of_iteration(a) * a->n, occupied, state[1])) {
         return 0;
     }
     for (int64_t j = count - used; j < count; j++) {
@@ -932,7 +1131,10 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     a->dt = state[5], a->ratio = state[6], a->omega = state[7], a->omega_accepted = state[8];
     memcpy(a->size, state + 9, sizeof a->size);
     memcpy(a->weight, state + 11, sizeof a->weight);
-    a->imaged = (int)state[15], a->scatter = state[16], a->scatter_accepted = state[17], a->residual_first = state[18];
+    a->imaged = (int)state[15], a->residual_first = state[18];
+    a->led = (int)state[16], a->ended = (int)state[17];
+    memcpy(&a->memory, state + OWN, sizeof a->memory);
+    memcpy(&a->memory_accepted, state + OWN + MEMORY, sizeof a->memory);
     a->residual_least = state[19], a->rises = (int)state[20];
     a->ratios = (tally){state[21], state[22], state[23], state[24]};
     a->ratios_before = (tally){state[25], state[26], state[27], state[28]};
@@ -945,20 +1147,16 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
         memcpy(a->image, state, 2 * bytes);
         state += 2 * a->n;
     }
+    if (a->secants) {
+        memcpy(a->lead, state, 2 * bytes);
+        memcpy(a->last, state + 2 * a->n, bytes);
+        state += 3 * a->n;
+    }
     for (int s = 0; s < a->slots; s++) {
         a->column[s].state = FREE;
     }
     for (int k = 0; k < occupied; k++) {
-        int s = (int)state[0];
-        a->column[s] = (column){(column_state)(int)state[1], (int64_t)state[2], (int64_t)state[3], state[4]};
-        memcpy(slot_v(a, s), state += COLUMN_HEAD, bytes);
-        memcpy(slot_w(a, s), state += a->n, bytes);
-        state += a->n;
-        if (a->set.imaged) {
-            memcpy(slot_iv(a, s), state, bytes);
-            memcpy(slot_iw(a, s), state + a->n, bytes);
-            state += 2 * a->n;
-        }
+        state = load_column(a, state);
     }
     a->used = 0;
     for (int j = 0; j < used; j++) { /* in the order of the first time: the same bits */

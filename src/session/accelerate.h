@@ -12,6 +12,10 @@
    have not ended) is then found by what the columns of the step say of its next answer, and its derivative is fitted
    to all columns instead (secants.h).
 
+   Some of that is memory: a fluid that goes a part of the way in an answer gives the rest with the next ones, dg_k = J
+   dx_k + rho dg_(k-1). Where one rho explains what contradicts, differences, residual and the end of the step are those
+   of a fluid that has settled (T31, T32).
+
    Without images, entries i with i % period < split are forces, the others moments (already divided by a length). Each
    of the two is measured by its own size, so that the choice of units changes no iterate. */
 #ifndef SPARI_ACCELERATE_H
@@ -71,8 +75,13 @@ typedef struct spari_images {
    imaged: without. A status: that of images->of. */
 int spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
                            double *next);
-/* The step is accepted: its columns may serve the next ones. */
-void spari_accelerator_accept(spari_accelerator *a);
+/* Whether answers contradict each other, so that the next step asks for the last of this one. */
+int spari_accelerator_contradicted(const spari_accelerator *a);
+/* The residual against what the fluid will have settled to, (T32): r [n] of x and g, which have not been given to
+   `next` yet. Returns 0, and leaves r, where the fluid does not remember. */
+int spari_accelerator_settle(const spari_accelerator *a, const double *x, const double *g, double *r);
+/* The step is accepted: its columns may serve the next ones. g: what came back last, NULL: not known. */
+void spari_accelerator_accept(spari_accelerator *a, const double *g);
 /* The step is given up: all is as before it began. Its columns go, for what made the host reject the step (a failed
    solution, wild iterates) is in them. */
 void spari_accelerator_reject(spari_accelerator *a);

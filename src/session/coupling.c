@@ -21,8 +21,8 @@ void spari_coupling_free(spari_coupling **coupling) {
     if (!c) {
         return;
     }
-    double *all[] = {c->length,   c->unit, c->x,     c->g,    c->predicted, c->motion,
-                     c->residual, c->size, c->image, c->room, c->missed,    c->shift};
+    double *all[] = {c->length, c->unit,  c->x,    c->g,      c->predicted, c->motion, c->residual,
+                     c->size,   c->image, c->room, c->missed, c->shift,     c->settled};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -56,6 +56,8 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
            (c->image = spari_zalloc(images + 1, sizeof(double))) &&
            (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
+           (!(c->weighs && spari_coupling_scheme_of(scheme)->columns) ||
+            (c->settled = spari_zalloc(2 * n + 1, sizeof(double)))) &&
            (c->room = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
@@ -299,6 +301,23 @@ int spari_coupling_weighs(const spar_session *s) {
     return c->weighs && (s->iteration == 0 || spari_accelerator_imaged(c->accelerator));
 }
 
+/* motion := that of the residual against what the fluid will have settled to, where that is larger: an answer that goes
+   a part of the way may agree with the loads while the rest is still to come. */
+static int unsettled(spar_session *s, double *motion) {
+    const spari_coupling *c = s->own->coupling;
+    double *r = c->settled, *image = c->settled + c->n, square = 0;
+    if (!spari_accelerator_settle(c->accelerator, c->x, c->g, r)) {
+        return SPAR_OK;
+    }
+    const spari_weighed w = weighed(c);
+    SPARI_TRY(spari_weigh_images(s, &w, 1, r, image));
+    for (int64_t i = 0; i < c->n; i++) {
+        square += r[i] * image[i];
+    }
+    *motion = fmax(*motion, sqrt(fmax(square, 0)));
+    return SPAR_OK;
+}
+
 /* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
 static int weigh_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
@@ -309,6 +328,9 @@ static int weigh_residual(spar_session *s, double size, double *residual) {
         stack(s);
         const spari_weighed w = weighed(c);
         SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));
+        if (c->weighed && c->settled) {
+            SPARI_TRY(unsettled(s, &motion));
+        }
         if (c->weighed) {
             *residual = whole > 0 ? size * (motion / whole) : 0;
         }
@@ -548,8 +570,12 @@ void spari_coupling_accept(spar_session *s) {
         estimate_error(s);
         watch(s);
     }
-    if (s->own->coupling->accelerator) {
-        spari_accelerator_accept(s->own->coupling->accelerator);
+    if (c->accelerator) {
+        int ended = s->phase == SPARI_CHECKED && spari_accelerator_contradicted(c->accelerator);
+        if (ended) {
+            stack(s);
+        }
+        spari_accelerator_accept(c->accelerator, ended ? c->g : NULL);
     }
 }
 

@@ -20,6 +20,7 @@ typedef struct spari_coupling {
     double *image;     /* weighing motion: [2 n + 1], what g - x and g move, stacked; with a shift [3 n + 1], the loads
                           themselves behind; and room for the ranks' status */
     double *room;      /* likewise: loads of one member */
+    double *settled;   /* weighing motion, with columns: [2 n + 1], the residual against the settled fluid, its image */
     double *predicted; /* iterated: loads the step began with, as they are */
     double *motion;    /* motion test: places and quaternions [7] of the iteration before */
     spari_accelerator *accelerator; /* iterated */

@@ -10,7 +10,7 @@
 enum { MOST = SPARI_SECANTS_MOST };
 
 typedef struct secant {
-    const double *v, *w, *iv, *iw;
+    spari_secant of;
     double size; /* of x */
 } secant;
 
@@ -18,6 +18,7 @@ struct spari_secants {
     int64_t n;
     int most, count, rank;
     double filter, gain; /* largest |w| / |x| */
+    double rho;          /* of a change, comes again with the next answer */
     secant column[MOST];
     double at[MOST][MOST]; /* of column j, of unit size, in the basis: at[j][i] */
     double *q, *p, *u;     /* [most][n]: the basis, orthonormal; its images; J of it */
@@ -51,7 +52,7 @@ void spari_secants_free(spari_secants *s) {
 void spari_secants_begin(spari_secants *s, double filter) {
     s->count = s->rank = 0;
     s->filter = filter;
-    s->gain = 0;
+    s->gain = s->rho = 0;
 }
 
 static double product(const double *a, const double *b, int64_t n) {
@@ -72,8 +73,8 @@ static void add_times(double f, const double *a, double *b, int64_t n) {
 static double split(const spari_secants *s, const secant *c, double *q, double *p, double *parts) {
     int64_t n = s->n;
     for (int64_t i = 0; i < n; i++) {
-        q[i] = (c->w[i] - c->v[i]) / c->size;
-        p[i] = (c->iw[i] - c->iv[i]) / c->size;
+        q[i] = (c->of.w[i] - c->of.v[i]) / c->size;
+        p[i] = (c->of.iw[i] - c->of.iv[i]) / c->size;
     }
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < s->rank; j++) {
@@ -86,28 +87,29 @@ static double split(const spari_secants *s, const secant *c, double *q, double *
     return sqrt(fmax(product(q, p, n), 0));
 }
 
-static double size_between(const double *a, const double *ia, const double *b, const double *ib, int64_t n) {
+/* of x = w - v */
+static double secant_size(const spari_secant *c, int64_t n) {
     double sum = 0;
     for (int64_t i = 0; i < n; i++) {
-        sum += (a[i] - (b ? b[i] : 0)) * (ia[i] - (ib ? ib[i] : 0));
+        sum += (c->w[i] - c->v[i]) * (c->iw[i] - c->iv[i]);
     }
     return sqrt(fmax(sum, 0));
 }
 
-int spari_secants_add(spari_secants *s, const double *v, const double *w, const double *iv, const double *iw) {
+int spari_secants_add(spari_secants *s, const spari_secant *column) {
     if (s->count == s->most) {
         return 0;
     }
     int64_t n = s->n;
     secant *c = s->column + s->count;
     double *q = s->q + s->rank * n, *p = s->p + s->rank * n, *at = s->at[s->count];
-    *c = (secant){v, w, iv, iw, size_between(w, iw, v, iv, n)};
+    *c = (secant){*column, secant_size(column, n)};
     if (!(c->size > 0) || !isfinite(c->size)) {
         return 1;
     }
     memset(at, 0, sizeof s->at[0]);
     double left = split(s, c, q, p, at);
-    s->gain = fmax(s->gain, size_between(w, iw, NULL, NULL, n) / c->size);
+    s->gain = fmax(s->gain, sqrt(fmax(product(column->w, column->iw, n), 0)) / c->size);
     if (left > s->filter) {
         for (int64_t i = 0; i < n; i++) {
             q[i] /= left;
@@ -136,15 +138,48 @@ static void invert(double a[MOST][MOST], int n) {
     }
 }
 
+/* x of c . S what of d, over the sizes of both x */
+static double answered(const secant *c, const double *what, double size, int64_t n) {
+    double sum = 0;
+    for (int64_t i = 0; i < n; i++) {
+        sum += (c->of.iw[i] - c->of.iv[i]) * what[i];
+    }
+    return sum / (c->size * size);
+}
+
+void spari_secants_tell(const spari_secants *s, int newest, spari_asymmetry *sum) {
+    for (int k = 0; k < s->count && k < newest; k++) {
+        const secant *c = s->column + k;
+        double itself = answered(c, c->of.w, c->size, s->n);
+        sum->symmetric += 2 * itself * itself;
+        for (int l = k + 1; l < s->count; l++) {
+            const secant *d = s->column + l;
+            if (c->of.b && d->of.b) {
+                double one = answered(c, d->of.w, d->size, s->n), other = answered(d, c->of.w, c->size, s->n);
+                double w = one - other, b = answered(c, d->of.b, d->size, s->n) - answered(d, c->of.b, c->size, s->n);
+                sum->both += w * b, sum->ww += w * w, sum->bb += b * b;
+                sum->symmetric += (one + other) * (one + other);
+                sum->pairs++;
+            }
+        }
+    }
+}
+
+void spari_secants_remember(spari_secants *s, double rho) {
+    s->rho = rho;
+}
+
 /* A column's weight in the fit: the longer, the less of it is noise that does not grow with it. By the fourth root of
-   the length: tried against none, the square root and the length itself on the flows of the coupling benchmark. */
+   the length: tried against none, the square root and the length itself on the flows of the coupling benchmark. Where
+   the fluid remembers, little of one is known whose b is not. */
 static void weigh_columns(const spari_secants *s, double weight[MOST]) {
+    static const double UNKNOWN = 1e-2;
     double longest = 0;
     for (int k = 0; k < s->count; k++) {
         longest = fmax(longest, s->column[k].size);
     }
     for (int k = 0; k < s->count; k++) {
-        weight[k] = sqrt(sqrt(s->column[k].size / longest));
+        weight[k] = sqrt(sqrt(s->column[k].size / longest)) * (s->rho > 0 && !s->column[k].of.b ? UNKNOWN : 1);
     }
 }
 
@@ -168,17 +203,21 @@ int spari_secants_fit(spari_secants *s, double doubt) {
             for (int i = 0; i < m; i++) {
                 f += weight[k] * s->at[k][i] * s->a[i][j];
             }
-            add_times(f / s->column[k].size, s->column[k].w, s->u + j * s->n, s->n);
+            const spari_secant *c = &s->column[k].of;
+            add_times(f / s->column[k].size, c->w, s->u + j * s->n, s->n);
+            if (s->rho > 0 && c->b) {
+                add_times(-s->rho * f / s->column[k].size, c->b, s->u + j * s->n, s->n);
+            }
         }
     }
     return m;
 }
 
-double spari_secants_defect(spari_secants *s, const double *v, const double *w, const double *iv, const double *iw) {
+double spari_secants_defect(spari_secants *s, const spari_secant *column) {
     static const double FAR = 0.3, CARE = 2;
     int64_t n = s->n;
     double parts[MOST] = {0}, off = 0, seen = 0;
-    secant c = {v, w, iv, iw, size_between(w, iw, v, iv, n)};
+    secant c = {*column, secant_size(column, n)};
     if (s->rank == 0 || s->rank == s->most || !(c.size > 0) || !isfinite(c.size)) {
         return -1;
     }
@@ -188,7 +227,7 @@ double spari_secants_defect(spari_secants *s, const double *v, const double *w, 
     }
     for (int i = 0; i < s->rank; i++) {
         const double *p = s->p + i * n;
-        double was = product(p, w, n), says = 0;
+        double was = product(p, column->w, n), says = s->rho > 0 && column->b ? s->rho * product(p, column->b, n) : 0;
         for (int j = 0; j < s->rank; j++) {
             says += c.size * parts[j] * product(p, s->u + j * n, n);
         }
@@ -225,7 +264,7 @@ static void diagonalise(double a[MOST][MOST], double e[MOST][MOST], int m) {
     }
 }
 
-int spari_secants_step(spari_secants *s, const double *x, const double *g, double length, double longest,
+int spari_secants_step(spari_secants *s, const double *x, const double *r, double length, double longest,
                        double *next) {
     int m = s->rank;
     int64_t n = s->n;
@@ -233,7 +272,7 @@ int spari_secants_step(spari_secants *s, const double *x, const double *g, doubl
     for (int i = 0; i < m; i++) {
         const double *p = s->p + i * n;
         for (int64_t k = 0; k < n; k++) {
-            b[i] += p[k] * (g[k] - x[k]);
+            b[i] += p[k] * r[k];
         }
         for (int j = 0; j <= i; j++) {
             double both = product(p, s->u + j * n, n) + product(s->p + j * n, s->u + i * n, n);
@@ -252,7 +291,7 @@ int spari_secants_step(spari_secants *s, const double *x, const double *g, doubl
     }
     double square = length * length;
     for (int64_t i = 0; i < n; i++) {
-        next[i] = g[i] - x[i];
+        next[i] = r[i];
     }
     for (int j = 0; j < m; j++) {
         add_times(y[j] - b[j], s->q + j * n, next, n);
