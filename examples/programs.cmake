@@ -125,7 +125,7 @@ if(TARGET examples_rotor_fortran)
   set(run --wind 11 --gust 4 --gust-start 0 --gust-length 0.4 --seconds 0.3 --dt 0.01 --elements 1 --nodes 10
     --coupling-tolerance 1e-6 --iterations 20)
   add_test(NAME example_rotor_reference
-    COMMAND examples_rotor ${run} --coupling fixed-point --predictor 1 --rho-inf 0.8 --vtk-every 0 --no-plots --quiet
+    COMMAND examples_rotor ${run} --coupling fixed-point --predictor 1 --rho-inf 0.8 --newton 1e-12 --vtk-every 0 --no-plots --quiet
             --out ${PROJECT_BINARY_DIR}/tests/rotor_reference)
   list(APPEND run --compare ${PROJECT_BINARY_DIR}/tests/rotor_reference/history.csv)
   add_test(NAME example_rotor_fortran COMMAND examples_rotor_fortran ${run})

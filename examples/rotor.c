@@ -427,16 +427,16 @@ static void show_progress(const scene *s, double t, double begun, double *shown)
 }
 
 /* Bends the blades to where the loads of the turning rotor and gravity would hold them at rest: straight blades let go
-   in the wind swing for many turns. The loads depend on the shape: a few rounds bring both together. The static
-   solution takes along the centrifugal force of the turning root. */
+   in the wind swing for many turns. The loads depend on the shape: a few rounds bring both together, the first with
+   the loads in steps. The static solution takes along the centrifugal force of the turning root. */
 static int bend(scene *s) {
-    enum { ROUNDS = 4, LOAD_STEPS = 4 };
+    enum { ROUNDS = 4, FIRST_STEPS = 4 };
     for (int round = 0; round < ROUNDS; round++) {
         if (solve_fluid(s, 0, 0) != SPAR_OK) {
             return 1;
         }
         for (int b = 0; b < s->rotor.blades; b++) {
-            TRY(spar_member_solve_static(s->blade[b], LOAD_STEPS));
+            TRY(spar_member_solve_static(s->blade[b], round == 0 ? FIRST_STEPS : 1));
         }
         for (int b = 0; b < s->rotor.blades; b++) {
             if (spin(s, b) != SPAR_OK) {

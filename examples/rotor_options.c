@@ -51,7 +51,8 @@ static const option options[] = {
     {"predictor", WHOLE, AT(predictor), 0, 2, "ORDER", "extrapolation of the loads: 0, 1, 2 [1]"},
     {"rho-inf", NUMBER, AT(rho_inf), 0, 1, "R", "spectral radius of generalised-alpha [0.8]"},
     {"substeps", WHOLE, AT(substeps), 1, 10000, "N", "structure steps per coupling step [1]"},
-    {"newton", NUMBER, AT(newton), 0, 1, "R", "increment, relative, that ends Newton's iteration [1e-12]"},
+    {"newton", NUMBER, AT(newton), 0, 1, "R",
+     "increment, relative, that ends Newton's iteration [a hundredth of the coupling's tolerance]"},
     {"theta", NUMBER, AT(theta), 0, 1, "THETA", "where in the step the fluid takes the motion [1]"},
     {"tolerance", NUMBER, AT(tolerance), 1e-12, 1, "R",
      "run with the cheapest settings that keep this error of the deflection [none: as given]"},
@@ -255,7 +256,7 @@ static void set_defaults(rotor_options *o) {
                          .fidelity = SPAR_FIDELITY_EXACT,
                          .modes = 8,
                          .coupling_tolerance = 1e-6,
-                         .newton = 1e-12,
+                         .newton = NAN,
                          .tolerance = NAN,
                          .trial = NAN,
                          .relaxation = 1,
@@ -294,6 +295,9 @@ int rotor_options_read(rotor_options *o, int argc, char **argv) {
         if (read_value(o, p, value) != 0) {
             return 1;
         }
+    }
+    if (isnan(o->newton)) { /* what it leaves is to be small beside what the coupling leaves */
+        o->newton = fmax(1e-2 * o->coupling_tolerance, 1e-12);
     }
     return 0;
 }
