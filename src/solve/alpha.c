@@ -300,8 +300,23 @@ static double infinity_norm(const double *r, int n) {
     return big;
 }
 
-/* A tangent that needed more iterations is replaced in the next solution. */
-enum { PATIENCE = 5 };
+/* A tangent serves on where a solution takes no more iterations than this. Where it takes more, another is formed for
+   the next solution if that pays: a tangent costs about as much as PRICE iterations, and the cost of a solution, that
+   of the tangent shared by all that it served for, is least where a solution first costs more than their mean. Where
+   new ones contract no better than old ones the mean never falls so far. */
+enum { PATIENCE = 5, PRICE = 10 };
+
+/* Whether the tangent is kept after a solution of so many iterations; fresh: it was formed in it. */
+static int serves_on(spari_solver *s, int iterations, int fresh) {
+    if (fresh) { /* of the iterations the first few may have been without it */
+        s->served = 1;
+        s->spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
+        return 1;
+    }
+    s->served++;
+    s->spent += iterations;
+    return iterations <= PATIENCE || iterations * s->served <= s->spent;
+}
 
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
     const double *v = c->still && !s->body->D ? NULL : to->v;
@@ -377,7 +392,7 @@ static void renew_alone(void *self) {
 static void end_alone(void *self, int iterations, int fresh) {
     const alpha_step *t = self;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    t->s->factored = t->s->factored && (fresh || iterations <= PATIENCE);
+    t->s->factored = t->s->factored && serves_on(t->s, iterations, fresh);
 }
 
 /* The state at the end of a substep. */

@@ -40,6 +40,7 @@ struct spari_solver {
     double kept_cm, kept_cv;   /* its coefficients */
     double *kept_q;            /* [n][4] how the nodes were turned when it was formed */
     double *turn;              /* [n][4] their turn since */
+    int64_t served, spent;     /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
     int64_t newton, factors;   /* totals: iterations, factorisations */
 };
