@@ -2,6 +2,9 @@
 
    beam [runs]    microseconds, Newton iterations and factorisations a step: a table
 
+   Peers end Newton at 1e-5 + 1e-3 |x|, with a tangent for each iteration: what that leaves is four orders less than
+   what a kept tangent leaves at those numbers. Errors are compared, so Newton goes to 1e-9 here: it leaves no more.
+
    Figures are medians over runs of the mean over the steps of a run. Peers are compared by the yardstick: a 60 x 60 LU
    factorisation by GSL over its own CBLAS, which took 39 us where the peers were measured. */
 #include "beam_scene.h"
@@ -80,16 +83,16 @@ static void peers(nrel5mw *turbine, int repeats) {
         deck deck;
         double peer_us, goal;
     } row[] = {
-        {"box beam, 6 nodes", "Kynema-FMB", {0, 6, 6, 101, 0.01, 1e-5, 1e-3}, 76, 3},
-        {"box beam, 8 nodes", "Kynema-FMB", {0, 8, 8, 101, 0.01, 1e-5, 1e-3}, 129, 3},
-        {"box beam, 11 nodes", "Kynema-FMB", {0, 11, 11, 101, 0.01, 1e-5, 1e-3}, 284, 3},
-        {"NREL 5-MW, 6 nodes", "BeamDyn", {1, 6, 0, 501, 0.002, 1e-5, 1e-3}, 930, 10},
-        {"NREL 5-MW, 8 nodes", "BeamDyn", {1, 8, 0, 501, 0.002, 1e-5, 1e-3}, 1440, 10},
-        {"NREL 5-MW, 10 nodes", "BeamDyn", {1, 10, 0, 501, 0.002, 1e-5, 1e-3}, 2100, 10},
-        {"NREL 5-MW, 12 nodes", "BeamDyn", {1, 12, 0, 501, 0.002, 1e-5, 1e-3}, 2900, 10},
-        {"blade, 11 nodes, 50 pts", "Kynema-FMB", {1, 11, 50, 101, 0.01, 1e-5, 1e-3}, 920, 3},
-        {"tight: box, 8 nodes", "-", {0, 8, 8, 101, 0.01, 1e-10, 1e-10}, 0, 0},
-        {"tight: NREL, 8 nodes", "-", {1, 8, 0, 501, 0.002, 1e-10, 1e-10}, 0, 0},
+        {"box beam, 6 nodes", "Kynema-FMB", {0, 6, 6, 101, 0.01, 1e-9, 1e-9}, 76, 15},
+        {"box beam, 8 nodes", "Kynema-FMB", {0, 8, 8, 101, 0.01, 1e-9, 1e-9}, 129, 18},
+        {"box beam, 11 nodes", "Kynema-FMB", {0, 11, 11, 101, 0.01, 1e-9, 1e-9}, 284, 25},
+        {"NREL 5-MW, 6 nodes", "BeamDyn", {1, 6, 0, 501, 0.002, 1e-9, 1e-9}, 930, 60},
+        {"NREL 5-MW, 8 nodes", "BeamDyn", {1, 8, 0, 501, 0.002, 1e-9, 1e-9}, 1440, 80},
+        {"NREL 5-MW, 10 nodes", "BeamDyn", {1, 10, 0, 501, 0.002, 1e-9, 1e-9}, 2100, 110},
+        {"NREL 5-MW, 12 nodes", "BeamDyn", {1, 12, 0, 501, 0.002, 1e-9, 1e-9}, 2900, 150},
+        {"blade, 11 nodes, 50 pts", "Kynema-FMB", {1, 11, 50, 101, 0.01, 1e-9, 1e-9}, 920, 20},
+        {"loose: box, 8 nodes", "-", {0, 8, 8, 101, 0.01, 1e-5, 1e-3}, 0, 0},
+        {"loose: NREL, 8 nodes", "-", {1, 8, 0, 501, 0.002, 1e-5, 1e-3}, 0, 0},
     };
     enum { ROWS = sizeof row / sizeof *row };
     double yard[ROWS + 1];
@@ -104,7 +107,9 @@ static void peers(nrel5mw *turbine, int repeats) {
            "%.0f "
            "us\n",
            machine, ROWS + 1, yard[0], yard[ROWS], yardstick_of_peers);
-    printf("rho_inf 0; Newton tolerance 1e-5 + 1e-3 |x| (tight: 1e-10); medians of %d runs\n\n", repeats);
+    printf("rho_inf 0; Newton tolerance 1e-9, which leaves what 1e-5 + 1e-3 |x| leaves to the peers (loose: those "
+           "numbers); medians of %d runs\n\n",
+           repeats);
     printf("%-24s %6s %6s %9s %7s %7s %10s %9s %9s %7s %9s\n", "case", "points", "dt", "us/step", "Newton", "factor",
            "tol. error", "peer us", "here us", "ratio", "goal");
     for (int i = 0; i < ROWS; i++) {
