@@ -94,6 +94,8 @@ module spar
   integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
+  integer, parameter, public :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
+      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer, parameter, public :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
       SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
@@ -160,6 +162,12 @@ module spar
     procedure :: step_solve => session_step_solve
     procedure :: step_accept => session_step_accept
     procedure :: step_reject => session_step_reject
+    procedure, private :: session_set_tolerance, session_set_tolerance_single_1
+    generic :: set_tolerance => session_set_tolerance, session_set_tolerance_single_1
+    procedure, private :: session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
+    generic :: get_tolerance => session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
+    procedure, private :: session_get_pace, session_get_pace_single_1
+    generic :: get_pace => session_get_pace, session_get_pace_single_1
     procedure, private :: session_step_begin_start, session_step_begin_start_single_1
     generic :: step_begin_start => session_step_begin_start, session_step_begin_start_single_1
     procedure :: save => session_save
@@ -184,6 +192,8 @@ module spar
     procedure :: solve_static => session_solve_static
     procedure, private :: session_start, session_start_single_1
     generic :: start => session_start, session_start_single_1
+    procedure, private :: session_step_within, session_step_within_single_1
+    generic :: step_within => session_step_within, session_step_within_single_1
     procedure, private :: session_try_64, session_try_32
     procedure, private :: session_try_64_single_1, session_try_64_single_2, session_try_64_single_3, &
         session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
@@ -279,6 +289,8 @@ module spar
     procedure, private :: member_get_work, member_get_work_single_1
     generic :: get_work => member_get_work, member_get_work_single_1
     procedure :: solve_static => member_solve_static
+    procedure, private :: member_get_error, member_get_error_single_1, member_get_error_single_2
+    generic :: get_error => member_get_error, member_get_error_single_1, member_get_error_single_2
     procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
     procedure, private :: member_create_point, member_create_point_single_1
@@ -844,6 +856,24 @@ contains
     if (present(iterations)) iterations = n
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_step
+
+  ! A step that keeps the tolerance of set_tolerance: tried with dt, and with less while its error is too large; dt: then that to
+  ! go on with, taken: that of the step. before is called ahead of each try, solve as in step.
+  subroutine session_step_within(self, dt, before, solve, context, taken, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(inout) :: dt
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_double), intent(inout), optional :: taken
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_step_within(self%handle, dt, to_before, to_solver, c_loc(record), taken), self%handle, stat, errmsg)
+  end subroutine session_step_within
 
   ! The balanced start before the first step, of dt: solve as in step, with dt = 0, called until the loads agree.
   subroutine session_start(self, dt, solve, context, iterations, stat, errmsg)
@@ -2412,6 +2442,33 @@ contains
     call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
   end subroutine session_step_reject
 
+  subroutine session_set_tolerance(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: drift, rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
+  end subroutine session_set_tolerance
+
+  subroutine session_get_tolerance(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: drift, rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
+  end subroutine session_get_tolerance
+
+  subroutine session_get_pace(self, pace, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: pace(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_pace(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
+  end subroutine session_get_pace
+
   subroutine session_step_begin_start(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
@@ -2906,6 +2963,15 @@ contains
 
     call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
   end subroutine member_solve_static
+
+  subroutine member_get_error(self, step, nodes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout), optional :: step, nodes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_error(self%handle, step, nodes), self%session, stat, errmsg)
+  end subroutine member_get_error
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3802,6 +3868,26 @@ contains
     call session_step(self, dt=real(dt, c_double), solve=solve, context=context, iterations=iterations, stat=stat, &
         errmsg=errmsg)
   end subroutine session_step_single_1
+
+  subroutine session_step_within_single_1(self, dt, before, solve, context, taken, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(inout) :: dt
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_float), intent(inout), optional :: taken
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_dt
+    real(c_double), allocatable :: c_taken
+
+    allocate (c_dt, source=untouched)
+    if (present(taken)) allocate (c_taken, source=untouched)
+    call session_step_within(self, dt=c_dt, before=before, solve=solve, context=context, taken=c_taken, stat=stat, &
+        errmsg=errmsg)
+    call take(c_dt, dt)
+    call take(c_taken, taken)
+  end subroutine session_step_within_single_1
 
   subroutine session_start_single_1(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
@@ -5276,6 +5362,58 @@ contains
     call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
   end subroutine session_step_begin_single_1
 
+  subroutine session_set_tolerance_single_1(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: drift
+    real(c_float), intent(in) :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_tolerance(self, drift=real(drift, c_double), rtol=real(rtol, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_set_tolerance_single_1
+
+  subroutine session_get_tolerance_single_1(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: drift
+    real(c_float), intent(inout), optional :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_drift
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_drift, source=untouched)
+    if (present(rtol)) allocate (c_rtol, source=untouched)
+    call session_get_tolerance(self, drift=c_drift, rtol=c_rtol, stat=stat, errmsg=errmsg)
+    call take(c_drift, drift)
+    call take(c_rtol, rtol)
+  end subroutine session_get_tolerance_single_1
+
+  subroutine session_get_tolerance_single_2(self, no_drift, rtol, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    type(absent), intent(in), optional :: no_drift
+    real(c_float), intent(inout) :: rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_rtol, source=untouched)
+    if (present(no_drift)) return
+    call session_get_tolerance(self, rtol=c_rtol, stat=stat, errmsg=errmsg)
+    call take(c_rtol, rtol)
+  end subroutine session_get_tolerance_single_2
+
+  subroutine session_get_pace_single_1(self, pace, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: pace(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_pace(:)
+
+    allocate (c_pace(ubound(pace, 1, c_int64_t)), source=untouched)
+    call session_get_pace(self, pace=c_pace, stat=stat, errmsg=errmsg)
+    call take(c_pace, pace)
+  end subroutine session_get_pace_single_1
+
   subroutine session_step_begin_start_single_1(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: dt
@@ -5706,6 +5844,36 @@ contains
     call member_get_work(self, work=c_work, stat=stat, errmsg=errmsg)
     call take(c_work, work)
   end subroutine member_get_work_single_1
+
+  subroutine member_get_error_single_1(self, step, nodes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: step
+    real(c_float), intent(inout), optional :: nodes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_step
+    real(c_double), allocatable :: c_nodes
+
+    allocate (c_step, source=untouched)
+    if (present(nodes)) allocate (c_nodes, source=untouched)
+    call member_get_error(self, step=c_step, nodes=c_nodes, stat=stat, errmsg=errmsg)
+    call take(c_step, step)
+    call take(c_nodes, nodes)
+  end subroutine member_get_error_single_1
+
+  subroutine member_get_error_single_2(self, no_step, nodes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_step
+    real(c_float), intent(inout) :: nodes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_nodes
+
+    allocate (c_nodes, source=untouched)
+    if (present(no_step)) return
+    call member_get_error(self, nodes=c_nodes, stat=stat, errmsg=errmsg)
+    call take(c_nodes, nodes)
+  end subroutine member_get_error_single_2
 
   subroutine joint_set_frame_single_1(self, x, q, stat, errmsg)
     class(spar_joint), intent(inout) :: self

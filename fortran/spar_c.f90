@@ -1143,6 +1143,45 @@ module spar_calls
       integer(c_int) :: status
     end function spar_step
 
+    function spar_session_set_tolerance(session, drift, rtol) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: drift, rtol
+      integer(c_int) :: status
+    end function spar_session_set_tolerance
+
+    function spar_session_get_tolerance(session, drift, rtol) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: drift, rtol
+      integer(c_int) :: status
+    end function spar_session_get_tolerance
+
+    function spar_session_get_pace(session, capacity, pace) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: pace(*)
+      integer(c_int) :: status
+    end function spar_session_get_pace
+
+    function spar_step_within(session, dt, before, solve, context, taken) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: dt
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      real(c_double), intent(inout), optional :: taken
+      integer(c_int) :: status
+    end function spar_step_within
+
+    function spar_member_get_error(member, step, nodes) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: step, nodes
+      integer(c_int) :: status
+    end function spar_member_get_error
+
     function spar_session_start(session, dt, solve, context, iterations) bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_ptr
       type(c_ptr), value :: session
@@ -1496,6 +1535,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
+  integer(c_int), parameter :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
+      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
       SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &

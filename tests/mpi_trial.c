@@ -268,6 +268,41 @@ static void failing_in_advice(void **state) {
     }
 }
 
+/* Steps to a tolerance: the same dt and the same tries on all ranks, and as one process has them, to 1e-6 (sums of
+   loads differ in their last digits); errors of members are known on every rank. */
+static void same_steps(void **state) {
+    (void)state;
+    scene all, alone;
+    double next[2] = {0.1, 0.1}, taken[2], pace[2][SPAR_PACE_COUNT], error[2][4];
+    create(&all, rank, size);
+    create(&alone, 0, 1);
+    OK(all.session, spar_session_set_tolerance(all.session, 1e-6, 3e-3));
+    OK(alone.session, spar_session_set_tolerance(alone.session, 1e-6, 3e-3));
+    for (int i = 0; i < 30; i++) {
+        OK(all.session, spar_step_within(all.session, next, before, solve, &all, taken));
+        OK(alone.session, spar_step_within(alone.session, next + 1, before, solve, &alone, taken + 1));
+        same_on_all(next, 1);
+        same_on_all(taken, 1);
+        NEAR(taken[0], taken[1], 1e-6 * taken[1]);
+    }
+    OK(all.session, spar_session_get_pace(all.session, SPAR_PACE_COUNT, pace[0]));
+    OK(alone.session, spar_session_get_pace(alone.session, SPAR_PACE_COUNT, pace[1]));
+    OK(all.session, spar_member_get_error(all.beam, error[0], error[0] + 1));
+    OK(all.session, spar_member_get_error(all.body, error[0] + 2, error[0] + 3));
+    OK(alone.session, spar_member_get_error(alone.beam, error[1], error[1] + 1));
+    OK(alone.session, spar_member_get_error(alone.body, error[1] + 2, error[1] + 3));
+    same_on_all(pace[0], SPAR_PACE_COUNT);
+    same_on_all(error[0], 4);
+    assert_true(pace[0][SPAR_PACE_REJECTED] >= 1);
+    assert_true(pace[0][SPAR_PACE_REJECTED] == pace[1][SPAR_PACE_REJECTED]);
+    for (int k = 0; k < 4; k++) {
+        NEAR(error[0][k], error[1][k], 1e-3 * error[1][k]);
+    }
+    assert_true(error[0][0] > 0 && error[0][1] > 0 && error[0][2] > 0 && error[0][3] == 0);
+    spar_session_destroy(&all.session);
+    spar_session_destroy(&alone.session);
+}
+
 /* Arguments that are wrong on one rank. */
 static void bad_arguments(void **state) {
     (void)state;
@@ -293,6 +328,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_table),         cmocka_unit_test(same_advice),       cmocka_unit_test(failing_callbacks),
         cmocka_unit_test(failing_in_a_table), cmocka_unit_test(failing_in_advice), cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(same_steps),
     };
     return RANKS_RUN(argc, argv, tests);
 }

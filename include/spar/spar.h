@@ -1129,6 +1129,63 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
      iterations: out, how many it took, NULL: not wanted */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
+/* What a host does ahead of a step of dt from t, where the library makes the steps (spar_step_within, trials): drive
+   roots, set loads, keep what its fluid had at t^n. Answer 0 for success; anything else ends the call with
+   SPAR_ERR_USER. */
+typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
+
+/* Steps to a tolerance: dt is chosen step by step, by what the time integration of the members adds to the error of
+   their motion in each step, as the accelerations at its ends show it: the error of the step by itself, not that of the
+   run, in which those of many steps add up or cancel. Loads that change in jumps within a step, and what explicit
+   coupling leaves (SPAR_REPORT_ERROR, SPAR_REPORT_MOTION_ERROR), are not in it. A member's error in a step over dt, the
+   speed at which the computed motion drifts from the true one (root of the mean square over its nodes, seen from a
+   driven root), is to be at most
+           drift + rtol * (the largest speed of its nodes so far, likewise),
+   where rtol is about the part of the amplitude that is lost in a radian of the motion. Members whose motion the host
+   gives, and those without inertia, have none. Ranks need all of the state (option ranks.state = all).
+   Alike on all ranks; between steps.
+     drift: in, m/s, >= 0; 0 with rtol 0 (default): no tolerance, nothing is found or kept; out
+     rtol: in, 0 to 1, > 0 only with a drift > 0, as what begins at rest has no speed; out */
+SPAR_API int spar_session_set_tolerance(spar_session *session, double drift, double rtol);
+SPAR_API int spar_session_get_tolerance(const spar_session *session, double *drift, double *rtol);
+/* Entries of the pace of steps, spar_session_get_pace. */
+enum {
+    SPAR_PACE_RATIO = 0,    /* error over tolerance, the largest of all members; 0 in a first step that began without
+                               spar_session_start, whose accelerations nobody knows */
+    SPAR_PACE_NEXT_DT = 1,  /* s, 0.2 to 2 of this step's: to go on with; or, if it is rejected, to try again with. By a
+                               PI controller; small changes, which would only cost new tangents, are not proposed */
+    SPAR_PACE_REJECT = 2,   /* 1: the step under way is to be rejected */
+    SPAR_PACE_REJECTED = 3, /* steps given up so far whose error was too large */
+    SPAR_PACE_COUNT = 4
+};
+/* What the tolerance says: between solve and accept of the step under way (the host then calls spar_step_accept or
+   spar_step_reject, and begins the next step with the dt named here, or a smaller one), between steps of the last
+   accepted one. The same on all ranks. Local. pace[capacity]: out, by SPAR_PACE_*, NULL: not wanted. SPAR_ERR_STATE: no
+   tolerance, or no step since it was set. */
+SPAR_API int spar_session_get_pace(const spar_session *session, int64_t capacity, double *pace);
+/* One step that keeps the tolerance: tried with dt, and again with a smaller one while its error is too large. For
+   fluids that can go back to t^n: before and solve are called again with another dt, for the same t.
+     dt: in, s, to try with; out, to go on with
+     before: in, called ahead of each try, on all ranks or on none; NULL: nothing to do
+     solve, context: in, as of spar_step; context goes to before too
+     taken: out, s, of the step that was accepted, NULL: not wanted
+   A host that has to meet a time (of output, of a given dt) gives the smaller of the two. Collective. SPAR_ERR_STATE:
+   no tolerance; SPAR_ERR_NUMERIC: 12 tries did not keep it. After a failure the session is at t^n, dt as it was given.
+ */
+SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
+                              void *context, double *taken);
+
+/* What the numbers of a member leave of error in its motion now: root of the mean square over its nodes, m; true to a
+   factor of 3 (docs/advice.md has what that was measured on). Each NULL: not wanted. Local, the same on all ranks.
+     step: out, what the last step added, or what the step under way adds once it is solved, as the tolerance takes it:
+           SPAR_ERR_STATE where none is set
+     nodes: out, how far the motion between steps, and the loads there, would take a beam with four more nodes an
+   element from the shape it has: its equations with their tangent, solved up to five times in this call. 0 for what has
+           no shape; -1: not known (fidelity linear or modal, 24 nodes an element, a root that is free before the first
+           step, no solution)
+   SPAR_ERR_STATE too in trials, statics and starts, and of the nodes within a step. */
+SPAR_API int spar_member_get_error(spar_member *member, double *step, double *nodes);
+
 /* The balanced start: accelerations at t = 0 of all members, and the fluid's loads there that answer to them. Places
    and velocities stay. A fluid that has an added mass gives loads by accelerations, and these follow from the loads:
    pushed for the accelerations of 0 that there are before a run, or not at all, loads at t = 0 make it first order in
@@ -1207,9 +1264,6 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are
    compared at 8 times, evenly spread. The seconds of a run are the processor time of its steps, the fluid's included,
    on all ranks; advice goes by counted work, not by them. */
-
-/* t, dt: the step goes from t to t + dt. Answer 0 for success; anything else ends the trial with SPAR_ERR_USER. */
-typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
 
 /* What a trial says. Errors are roots of the mean square over members, places along them and the 8 times. */
 enum {

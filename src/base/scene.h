@@ -61,13 +61,14 @@ struct spar_session {
     int accept_unconverged;               /* option coupling.unconverged = accept */
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
-    double coupling_target;          /* error the advised dt aims at */
-    int coupling_patience;           /* option coupling.patience */
-    int norm_of_loads;               /* option coupling.norm = motion (default) | loads */
-    int added_by_velocity;           /* option fluid.added_mass = acceleration (default) | velocity */
-    int coupling_estimate;           /* option coupling.estimate = off (default) | on */
-    double motion_atol, motion_rtol; /* stop test on the motion; both 0: none */
-    int theta_on_group;              /* option fluid.theta = average (default) | group */
+    double tolerance_drift, tolerance_rtol; /* of a step, m/s and relative; 0: none */
+    double coupling_target;                 /* error the advised dt aims at */
+    int coupling_patience;                  /* option coupling.patience */
+    int norm_of_loads;                      /* option coupling.norm = motion (default) | loads */
+    int added_by_velocity;                  /* option fluid.added_mass = acceleration (default) | velocity */
+    int coupling_estimate;                  /* option coupling.estimate = off (default) | on */
+    double motion_atol, motion_rtol;        /* stop test on the motion; both 0: none */
+    int theta_on_group;                     /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
     int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
     double horizon;                                        /* option advise.horizon */

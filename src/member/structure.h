@@ -94,6 +94,7 @@ struct spar_member {
     spari_applied *applied_next;        /* of a file being loaded */
     int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
+    double step_error, speed;           /* where a tolerance is set: of the last step, m, and the largest so far, m/s */
     void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
     spari_assembly *assembly;           /* it is solved with others; NULL: alone */
     spari_work *work;                   /* NULL: not asked for */

@@ -2,6 +2,7 @@
 #include "lend.h"
 
 #include "../base/quiet.h"
+#include "../comm/comm.h"
 
 int spari_lend_refuse(spar_session *s, const char *call) {
     SPARI_REQUIRE(s, !s->lent, SPAR_ERR_STATE,
@@ -32,4 +33,25 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
     int told = s->failures != failures; /* what went wrong there */
     return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, answer,
                       s->iteration, told ? ": " : "", told ? s->message : "");
+}
+
+int spari_lend_before(spar_session *s, spar_before_step before, double dt, void *context) {
+    if (!before) {
+        return SPAR_OK;
+    }
+    int64_t failures = s->failures;
+    s->parted = 0;
+    spari_host host;
+    spari_host_begin(&host);
+    int answer = before(s, s->time, dt, context), status = SPAR_OK;
+    spari_host_end(&host);
+    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+        return SPAR_ERR_COMM;
+    }
+    if (answer != 0 && s->failures == failures) {
+        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", answer);
+    } else if (answer != 0) {
+        status = SPAR_ERR_USER;
+    }
+    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }

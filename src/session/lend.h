@@ -10,5 +10,7 @@ int spari_lend_refuse(spar_session *session, const char *call);
 /* Runs it for the step of dt from t^n; solve NULL: nothing to run. SPAR_ERR_COMM: it has led this rank away from the
    others, who know; any other failure is this rank's own. Local. */
 int spari_lend(spar_session *session, const char *lender, spar_fluid_solver solve, double dt, void *context);
+/* The host's call ahead of a step of dt; NULL: nothing to call, on any rank. Collective. */
+int spari_lend_before(spar_session *session, spar_before_step before, double dt, void *context);
 
 #endif

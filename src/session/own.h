@@ -9,6 +9,15 @@ typedef struct spari_record spari_record;     /* trial/trial.h */
 typedef struct spari_coupling spari_coupling; /* coupling.h */
 typedef struct spari_advised spari_advised;   /* trial/apply.h */
 
+/* Of steps to a tolerance (pace.h), kept from step to step. */
+typedef struct spari_pace {
+    double last;  /* error over tolerance of the last accepted step, */
+    double ratio; /* and as dt goes by it, which fades; 0: none */
+    double next;  /* dt, s; 0: no step yet */
+    double cut;   /* the step last tried was rejected: 1 */
+    int64_t rejected;
+} spari_pace;
+
 struct spari_own {
     double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members], the fluids that
                     push, the status */
@@ -22,6 +31,7 @@ struct spari_own {
     struct spari_spread *spread; /* option ranks.state = touched, while the clock runs (spread.h); else NULL */
     spari_coupling *coupling;    /* from the first step on */
     spari_coupling *aside; /* that of the steps, while a solution is under way that is none; NULL: there was none */
+    spari_pace pace;       /* of steps to a tolerance */
     spari_record *kept;    /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);
     spari_advised *advised; /* of spar_session_advise; NULL: none */

@@ -74,6 +74,24 @@ static void pass_count(passage *t, int *x) {
     }
 }
 
+/* Numbers, checked to be some. */
+static void pass_numbers(passage *t, double *words, int64_t n) {
+    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, words, n);
+    if (t->mode == CHECK && !t->image->failed) {
+        t->image->failed = spari_first_nonfinite(there, n) >= 0;
+    }
+}
+
+/* Of steps to a tolerance. */
+static void pass_pace(passage *t, spari_pace *p) {
+    pass_numbers(t, &p->ratio, 1);
+    pass_numbers(t, &p->last, 1);
+    pass_numbers(t, &p->next, 1);
+    pass_numbers(t, &p->cut, 1);
+    pass(t, &p->rejected, 1);
+}
+
 static void pass_clock(passage *t, spar_session *s) {
     int phase = (int)s->phase;
     pass(t, &s->time, 1);
@@ -87,6 +105,7 @@ static void pass_clock(passage *t, spar_session *s) {
     pass_int(t, &s->past);
     pass_int(t, &s->started);
     pass_int(t, &phase);
+    pass_pace(t, &s->own->pace);
     if (t->mode == READ) {
         s->phase = (spari_phase)phase;
         s->past = s->past < s->predictor ? s->past : s->predictor;
@@ -123,15 +142,6 @@ static void pass_motion(passage *t, double *words, int width, int64_t n) {
     pass(t, words, width * n);
     if (t->mode == CHECK) {
         check_pose_words(t, t->image->failed ? NULL : there, width, n);
-    }
-}
-
-/* Numbers, checked to be some. */
-static void pass_numbers(passage *t, double *words, int64_t n) {
-    const double *there = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, words, n);
-    if (t->mode == CHECK && !t->image->failed) {
-        t->image->failed = spari_first_nonfinite(there, n) >= 0;
     }
 }
 
@@ -194,6 +204,8 @@ static void pass_member(passage *t, spar_member *m) {
     pass(t, m->drive, 2 * (int64_t)(sizeof *m->drive / sizeof(double)));
     pass(t, &m->dissipated, 1);
     pass(t, &m->dissipated_step, 1);
+    pass_numbers(t, &m->step_error, 1);
+    pass_numbers(t, &m->speed, 1);
     pass_int(t, &m->motion_given);
     pass_int(t, &m->drive_given);
     if (m->added) {

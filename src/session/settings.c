@@ -19,7 +19,7 @@
 #include <string.h>
 
 /* Calls that set, beside spar_session_set_option. */
-enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, OPTION };
+enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, OPTION };
 
 /* Rows: of an argument of a setter, in the order of its arguments; of an option that is a number, or one of two words,
    for 0 and 1; and of what a setter has done though the setting may be as it was, which nobody sets. Each with field,
@@ -76,6 +76,8 @@ static const spari_setting settings[] = {
     REAL(RELAXATION, "relaxation", "omega", relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
          SPARI_ALIKE | SPARI_OF_COUPLING),
     WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_ALIKE),
+    REAL(TOLERANCE, "tolerance", "drift", tolerance_drift, 0, DBL_MAX, not_negative, 0, SPARI_ALIKE),
+    REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE),
     OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_ALIKE),
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_ALIKE),
@@ -318,6 +320,23 @@ int spar_session_set_reproducible(spar_session *session, int on) {
 
 int spar_session_get_reproducible(const spar_session *session, int *on) {
     return get(session, __func__, REPRODUCIBLE, (void *const[]){on});
+}
+
+int spar_session_set_tolerance(spar_session *session, double drift, double rtol) {
+    SPARI_QUIET;
+    const double given[] = {drift, rtol};
+    SPARI_TRY(check_given(session, __func__, TOLERANCE, given));
+    SPARI_REQUIRE(
+        session, drift > 0 || rtol == 0, SPAR_ERR_ARGUMENT,
+        "%s: drift is 0 and rtol %g: what begins at rest has no speed to be relative to; give a drift too, in "
+        "m/s, as small as does not matter",
+        __func__, rtol);
+    store_given(session, TOLERANCE, given);
+    return SPAR_OK;
+}
+
+int spar_session_get_tolerance(const spar_session *session, double *drift, double *rtol) {
+    return get(session, __func__, TOLERANCE, (void *const[]){drift, rtol});
 }
 
 /* ---- options ---- */

@@ -1,4 +1,5 @@
 /* One coupling step: predict, solve, check, accept or reject. */
+#include "step.h"
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
 #include "../member/added.h"
@@ -12,6 +13,7 @@
 #include "exchange.h"
 #include "lend.h"
 #include "own.h"
+#include "pace.h"
 #include "spread.h"
 #include "start.h"
 #include "threads.h"
@@ -63,6 +65,7 @@ static int check_begin(spar_session *s, const char *call, double dt) {
         "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
         "it to touched again, or save, and load into a session with ranks.state = all",
         call);
+    SPARI_TRY(spari_pace_check(s, call));
     if (s->touched && s->substeps > 1 && spari_comm_size(s->comm) > 1) {
         SPARI_TRY(check_learning(s, call));
     }
@@ -368,6 +371,7 @@ int spar_step_accept(spar_session *session) {
     if (!s->aside) {
         accept_loads(s);
     }
+    spari_pace_accept(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_accept(m);
     }
@@ -396,6 +400,7 @@ static void reject(spar_session *s) {
     if (!s->aside) {
         spari_coupling_reject(s);
     }
+    spari_pace_reject(s);
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         spari_learned_begin(m);
@@ -462,17 +467,26 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
     return SPAR_OK;
 }
 
-/* What has been begun, to its end. */
-static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
+int spari_step_run(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int status = iterate(s, call, solve, context);
-    if (iterations) {
-        *iterations = s->iteration;
-    }
     if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(s) != SPAR_OK) {
         status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
     }
-    status = status == SPAR_OK ? spar_step_accept(s) : status;
     if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
+        reject(s);
+    }
+    return status;
+}
+
+/* What has been begun, to its end. */
+static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
+    int status = spari_step_run(s, call, solve, context);
+    if (iterations) {
+        *iterations = s->iteration;
+    }
+    SPARI_TRY(status);
+    status = spar_step_accept(s);
+    if (status == SPAR_ERR_COMM) {
         reject(s);
     }
     return status;

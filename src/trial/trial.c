@@ -13,6 +13,7 @@
 #include "../math/rotation.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
+#include "../session/lend.h"
 #include "../session/own.h"
 #include "../session/spread.h"
 #include "../session/start.h"
@@ -347,27 +348,6 @@ int spari_trial_keep(spar_session *s, spari_record *record) {
     return SPAR_OK;
 }
 
-static int prepare_step(spar_session *s, const spari_run *run) {
-    if (!run->before) {
-        return SPAR_OK;
-    }
-    int64_t failures = s->failures;
-    s->parted = 0;
-    spari_host host;
-    spari_host_begin(&host);
-    int answer = run->before(s, s->time, run->dt, run->context), status = SPAR_OK;
-    spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
-        return SPAR_ERR_COMM;
-    }
-    if (answer != 0 && s->failures == failures) {
-        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", answer);
-    } else if (answer != 0) {
-        status = SPAR_ERR_USER;
-    }
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
-}
-
 /* Loads of step i: unstable explicit coupling begins as a saw-tooth, whose second differences change sign with every
    step, while those of a motion that the steps resolve keep theirs. size: squares of the loads in each quarter. */
 static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_record *r, double size[4]) {
@@ -420,7 +400,7 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
 static int march(spar_session *s, const spari_run *run, const sight *w, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
-        SPARI_TRY(prepare_step(s, run));
+        SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
         SPARI_TRY(step_once(s, run, r));
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);

@@ -29,6 +29,10 @@ program test_bindings
   call refused(spar_session_set_relaxation(none, 0.0_c_double), 'spar_session_set_relaxation')
   call refused(spar_session_set_reproducible(none, 0_c_int), 'spar_session_set_reproducible')
   call refused(spar_session_set_threads(none, 2_c_int), 'spar_session_set_threads')
+  call refused(spar_session_set_tolerance(none, 1.0_c_double, 0.0_c_double), 'spar_session_set_tolerance')
+  call refused(spar_session_get_tolerance(none), 'spar_session_get_tolerance')
+  call refused(spar_session_get_pace(none, 0_c_int64_t), 'spar_session_get_pace')
+  call refused(spar_member_get_error(none), 'spar_member_get_error')
   call refused(spar_session_set_option(none), 'spar_session_set_option')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
   call refused(spar_session_get_phase(none), 'spar_session_get_phase')
@@ -164,6 +168,7 @@ program test_bindings
   call refused(spar_step_reject(none), 'spar_step_reject')
   call refused(spar_step(none, 0.0_c_double, c_null_funptr, none), 'spar_step')
   call refused(spar_session_start(none, 0.1_c_double, c_null_funptr, none), 'spar_session_start')
+  call refused(spar_step_within(none, before=c_null_funptr, solve=c_null_funptr, context=none), 'spar_step_within')
   call refused(spar_step_begin_start(none, 0.1_c_double), 'spar_step_begin_start')
   call refused(spar_session_solve_static(none, 1_c_int, c_null_funptr, none), 'spar_session_solve_static')
   call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int, &

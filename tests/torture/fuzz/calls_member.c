@@ -447,6 +447,12 @@ void do_spar_member_get_energy(call *c) {
     RUN(c, spar_member_get_energy(m->m, n, energy));
 }
 
+void do_spar_member_get_error(call *c) {
+    live_member *m = arg_member(c, -1);
+    double *step = OUT_OR_NULL(c, 1), *nodes = OUT_OR_NULL(c, 1);
+    RUN(c, spar_member_get_error(m->m, step, nodes));
+}
+
 void do_spar_member_get_work(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = arg_count(c, 0, SPAR_WORK_COUNT + 2);

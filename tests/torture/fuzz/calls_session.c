@@ -153,6 +153,25 @@ void do_spar_session_set_newton(call *c) {
     RUN(c, spar_session_set_newton(l->s, atol, rtol, most));
 }
 
+void do_spar_session_set_tolerance(call *c) {
+    live_session *l = arg_session(c);
+    double drift = arg_real(c, 0, 0.1), rtol = arg_real(c, 0, 0.1);
+    RUN(c, spar_session_set_tolerance(l->s, drift, rtol));
+}
+
+void do_spar_session_get_tolerance(call *c) {
+    live_session *l = arg_session(c);
+    double *drift = OUT_OR_NULL(c, 1), *rtol = OUT_OR_NULL(c, 1);
+    RUN(c, spar_session_get_tolerance(l->s, drift, rtol));
+}
+
+void do_spar_session_get_pace(call *c) {
+    live_session *l = arg_session(c);
+    int64_t n = arg_count(c, 0, SPAR_PACE_COUNT + 2);
+    double *pace = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_session_get_pace(l->s, n, pace));
+}
+
 void do_spar_session_set_predictor(call *c) {
     live_session *l = arg_session(c);
     int order = arg_int(c, 0, 2);
@@ -414,6 +433,18 @@ void do_spar_session_start(call *c) {
     host *h = arg_host(c, &solve, NULL);
     int *iterations = arg_out(c, sizeof *iterations, 1);
     RUN(c, spar_session_start(l->s, dt, solve, h, iterations));
+}
+
+void do_spar_step_within(call *c) {
+    live_session *l = arg_session(c);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    double *dt = arg_out(c, sizeof *dt, 1), *taken = OUT_OR_NULL(c, 1);
+    if (dt) {
+        *dt = 0.01;
+    }
+    RUN(c, spar_step_within(l->s, dt, before, solve, h, taken));
 }
 
 void do_spar_step_begin_start(call *c) {

@@ -46,6 +46,9 @@ enum {
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
     CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
+    CALL(spar_session_set_tolerance, 60, FUZZ_CHANGES)                                                                 \
+    CALL(spar_session_get_tolerance, 20, FUZZ_PURE)                                                                    \
+    CALL(spar_session_get_pace, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_get_gravity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_session_get_integrator, 20, FUZZ_PURE)                                                                   \
@@ -182,6 +185,8 @@ enum {
     CALL(spar_step_reject, 100, FUZZ_CHANGES)                                                                          \
     CALL(spar_step, 250, FUZZ_CHANGES)                                                                                 \
     CALL(spar_session_start, 60, FUZZ_CHANGES)                                                                         \
+    CALL(spar_step_within, 80, FUZZ_CHANGES)                                                                           \
+    CALL(spar_member_get_error, 60, FUZZ_PURE)                                                                         \
     CALL(spar_step_begin_start, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_session_solve_static, 60, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_save, 20, FUZZ_PURE)                                                                             \

@@ -207,7 +207,8 @@ static const char *message_of(const call *c) {
 /* The call, or that of its parts that failed: a step's, a trial's. */
 static int names(const call *c, const char *message) {
     int trial = (c->what->flags & FUZZ_TRIAL) != 0;
-    return strstr(message, c->what->name) || (c->index == CALL_spar_step && strstr(message, "spar_step_")) ||
+    return strstr(message, c->what->name) ||
+           ((c->index == CALL_spar_step || c->index == CALL_spar_step_within) && strstr(message, "spar_step_")) ||
            (trial && (strstr(message, "spar_step") || strstr(message, "spar_session_try")));
 }
 
@@ -243,7 +244,7 @@ static void check_state(const call *c) {
         }
         parts[2] = c->index != CALL_spar_aero_solve;
     }
-    if (c->index == CALL_spar_step || c->index == CALL_spar_session_start ||
+    if (c->index == CALL_spar_step || c->index == CALL_spar_step_within || c->index == CALL_spar_session_start ||
         c->index == CALL_spar_session_solve_static) {
         parts[1] = parts[2] = 0;
     }

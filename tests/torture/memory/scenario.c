@@ -281,6 +281,7 @@ static void settings(spar_session *s) {
     CALL(spar_session_set_integrator, s, 0.8, 1);
     CALL(spar_session_set_newton, s, 1e-10, 1e-9, 30);
     CALL(spar_session_set_predictor, s, 2);
+    CALL(spar_session_set_tolerance, s, 1e9, 0);
     CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 40);
     CALL(spar_session_set_relaxation, s, 0.9);
     if (run.ranks == 1) {
@@ -348,6 +349,7 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_session_get_integrator, s, number + 0, whole + 8);
     CALL(spar_session_get_newton, s, number + 0, number + 8, whole + 16);
     CALL(spar_session_get_predictor, s, whole + 0);
+    CALL(spar_session_get_tolerance, s, number + 0, number + 8);
     CALL(spar_session_get_coupling, s, whole + 0, number + 8, number + 16, whole + 24);
     CALL(spar_session_get_relaxation, s, number + 0);
     CALL(spar_session_get_reproducible, s, whole + 0);
@@ -376,6 +378,7 @@ static void act_step(void) {
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
+    double pace[SPAR_PACE_COUNT];
     int64_t step, node;
     int done = 0, iteration;
     spar_member *owner;
@@ -418,6 +421,9 @@ static void act_step(void) {
     CALL(spar_session_get_residual, s, residual, size);
     CALL(spar_session_get_report, s, SPAR_REPORT_COUNT, report);
     NOTE(report);
+    CALL(spar_session_get_pace, s, SPAR_PACE_COUNT, pace);
+    CALL(spar_member_get_error, b, pace, pace + 1);
+    NOTE(pace);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
     CALL(spar_fluid_get_total, h.fluid[0], NULL, total, total + 3);
@@ -742,6 +748,11 @@ static void act_try(void) {
         CALL(spar_session_try, h.session, 0.02, 8, before_step, solve, &h, compare, SPAR_TRY_COUNT, report);
         note(report, 3 * sizeof *report);
     }
+    double next = 0.02, taken;
+    CALL(spar_session_set_tolerance, h.session, 1, 0.1);
+    CALL(spar_step_within, h.session, &next, before_step, solve, &h, &taken);
+    note(&next, sizeof next);
+    CALL(spar_session_set_tolerance, h.session, 0, 0);
     go(&h, 1);
     end_session(&h.session);
 }

@@ -251,6 +251,15 @@ static int make_equilibrium(scene *c, const arguments *a) {
 static int make_start(scene *c, const arguments *a) {
     return spar_session_start(c->session, a->dt, a->solve, c, NULL);
 }
+static int make_within(scene *c, const arguments *a) {
+    double step = a->dt; /* a tolerance that any step keeps, on all ranks that are here, and none afterwards */
+    if (spar_session_set_tolerance(c->session, 1e9, 0) != SPAR_OK) {
+        return SPAR_ERR_STATE;
+    }
+    int status = spar_step_within(c->session, &step, NULL, a->solve, c, NULL);
+    (void)spar_session_set_tolerance(c->session, 0, 0);
+    return status;
+}
 static int make_begin_start(scene *c, const arguments *a) {
     return spar_step_begin_start(c->session, a->dt);
 }
@@ -328,6 +337,7 @@ static const struct call {
     {"spar_fluid_get_total", make_total, IDLE, POINT | SETTINGS},
     {"spar_fluid_check_total", make_check_total, IDLE, POINT | SETTINGS},
     {"spar_step", make_step, IDLE, DT | SETTINGS},
+    {"spar_step_within", make_within, IDLE, DT | SETTINGS},
     {"spar_session_solve_static", make_equilibrium, FIRST, LOAD_STEPS | SETTINGS},
     {"spar_session_start", make_start, FIRST, DT | SETTINGS},
     {"spar_step_begin_start", make_begin_start, FIRST, DT | SETTINGS},
@@ -347,9 +357,9 @@ enum {
     COMMIT = 2,
     BEGIN = 5,
     STEP = 12,
-    STATIC = 13,
-    BEGIN_START = 15,
-    TRY = 18,
+    STATIC = 14,
+    BEGIN_START = 16,
+    TRY = 19,
     CALLS = sizeof calls / sizeof *calls
 };
 
@@ -530,7 +540,7 @@ static void end_both(scene *hit, scene *calm) {
 
 /* Trials, and the advice they give, want a whole state on each rank; that they are refused is a case of its own. */
 static int is_refused(const struct call *call) {
-    return touched && (call->has & CALLBACKS || call->make == make_apply);
+    return touched && (call->has & CALLBACKS || call->make == make_apply || call->make == make_within);
 }
 
 static int is_left_out(const struct call *call) {
@@ -754,6 +764,7 @@ static const struct setting {
     {"rtol of spar_session_set_coupling", NULL, NULL, NULL},
     {"max_iterations of spar_session_set_coupling", NULL, NULL, NULL},
     {"omega", NULL, NULL, NULL},
+    {"drift of spar_session_set_tolerance", NULL, NULL, NULL},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
     {"coupling.norm", "coupling.norm", "loads", "motion"},
@@ -797,6 +808,8 @@ static int apply_number(spar_session *s, int k, int other) {
         return spar_session_set_predictor(s, other ? 0 : 1);
     case 13:
         return spar_session_set_relaxation(s, other ? 0.9 : 1);
+    case 14:
+        return spar_session_set_tolerance(s, other ? 1e9 : 0, 0);
     default:
         return spar_session_set_coupling(s, other && k == 9 ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_IQN_ILS,
                                          other && k == 10 ? 1e-9 : 0, other && k == 11 ? 1e-7 : 1e-8,
@@ -817,8 +830,8 @@ static void unequal_setting(const struct call *call, int k, int bad, scene *hit,
         apply(hit, k, 1);
     }
     /* to want all of the state again is refused by itself, where it was not kept */
-    int refuses =
-        touched && strcmp(set[k].word, "ranks.state") == 0 && (call->make == make_begin || call->make == make_step);
+    int refuses = touched && (strcmp(set[k].word, "ranks.state") == 0 || strncmp(set[k].word, "drift", 5) == 0) &&
+                  (call->make == make_begin || call->make == make_step);
     expect(hit, call->make(hit, &a), refuses ? of_one(bad, SPAR_ERR_STATE) : SPAR_ERR_COMM, set[k].word);
     apply(hit, k, 1); /* as all ranks would have to do to be alike again: setting it may have an effect of its own */
     apply(hit, k, 0);

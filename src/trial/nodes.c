@@ -1,0 +1,199 @@
+/* What the nodes of a beam leave of error: its equations in more nodes, started from the shape that it has ((E3)
+   of docs/theory.md). */
+#include "../base/quiet.h"
+#include "../base/scene.h"
+#include "../comm/comm.h"
+#include "../math/basis.h"
+#include "../math/resample.h"
+#include "../member/body.h"
+#include "../session/pace.h"
+#include "../solve/fidelity.h"
+#include "../solve/solver.h"
+#include "remake.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MORE = 4, SLOWER = 2, CORRECTIONS = 5 };
+/* Nodes that are too few leave axial forces that are none, under which the tangent would say anything: first what is as
+   stiff as a step of the run and of ten of them show finds its place, with so much mass over dt^2 in the tangent; from
+   SLOWER on all of it, where the root holds the member. */
+static const double mass[CORRECTIONS] = {4, 0.04, 0, 0, 0};
+/* The inertia of the correction is left out, and with it that motion is larger than shape: so much in the mean. */
+static const double amplified = 1.7;
+
+/* In the unknowns of the finer beam: state, corrected, and what it was; loads. */
+typedef struct finer {
+    double *q, *v, *a, *begun, *load;
+} finer;
+
+static int finer_create(const spar_member *m, const double *load, finer *f) {
+    int64_t n = m->body->unique;
+    *f = (finer){spari_zalloc(7 * n, sizeof(double)), spari_zalloc(6 * n, sizeof(double)),
+                 spari_zalloc(6 * n, sizeof(double)), spari_zalloc(7 * n, sizeof(double)),
+                 spari_zalloc(6 * n, sizeof(double))};
+    SPARI_REQUIRE(m->session, f->q && f->v && f->a && f->begun && f->load, SPAR_ERR_MEMORY,
+                  "no memory for the finer nodes of '%s'", m->name);
+    spari_member_to_unique(m, 7, m->now.q, f->q);
+    spari_member_to_unique(m, 6, m->now.v, f->v);
+    spari_member_to_unique(m, 6, m->now.a, f->a);
+    spari_member_gather(m, load, f->load);
+    memcpy(f->begun, f->q, (size_t)(7 * n) * sizeof *f->q);
+    return SPAR_OK;
+}
+
+static void finer_free(finer *f) {
+    free(f->q);
+    free(f->v);
+    free(f->a);
+    free(f->begun);
+    free(f->load);
+}
+
+/* One correction of the shape by forces less loads, with cm times the mass where the root holds nothing; its size by
+   the member's length. 1: the tangent is singular. */
+static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, double cm, double *size) {
+    spari_body_residual(m->body, f->q, f->v, f->a, 1, s->r, NULL);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->r[i] -= f->load[i];
+    }
+    memset(s->r, 0, (size_t)spari_member_held(m) * sizeof *s->r);
+    if (spari_solver_factor(s, m, f->q, f->v, f->a, 1, cm, 0, NULL)) {
+        return 1;
+    }
+    memcpy(s->dx, s->r, (size_t)(6 * s->n) * sizeof *s->dx);
+    if (spari_linear_solve(s->linear, s->dx)) {
+        return 1;
+    }
+    double largest = 0;
+    const double longest = 0.8;
+    for (int i = 0; i < s->n; i++) {
+        double u[2] = {0, 0};
+        for (int k = 0; k < 6; k++) {
+            u[k / 3] += s->dx[6 * i + k] * s->dx[6 * i + k];
+        }
+        largest = fmax(largest, fmax(sqrt(u[0]) / m->body->length, sqrt(u[1])));
+    }
+    spari_static_shift(s->n, largest > longest ? longest / largest : 1, s->dx, f->q);
+    *size = largest;
+    return 0;
+}
+
+/* The member is the finer one. -1: there is no answer. */
+static double distance(const spar_member *m, const finer *f) {
+    spari_solver *s = m->solution;
+    double h = m->session->dt_last[0], sum = 0, size = INFINITY, last;
+    int held = spari_member_held(m) == 6;
+    if (!held && h <= 0) {
+        return -1;
+    }
+    for (int k = h > 0 ? 0 : SLOWER; k < (held ? CORRECTIONS : SLOWER); k++) {
+        last = size;
+        if (correct_shape(m, s, f, mass[k] > 0 ? mass[k] / (h * h) : 0, &size) || !isfinite(size)) {
+            return -1;
+        }
+        if (size < 1e-2 * last && k > SLOWER) {
+            break;
+        }
+    }
+    for (int i = 0; i < s->n; i++) {
+        for (int k = 0; k < 3; k++) {
+            double d = f->q[7 * i + k] - f->begun[7 * i + k];
+            sum += d * d;
+        }
+    }
+    return amplified * sqrt(sum / s->n);
+}
+
+/* Nodal loads [nodes][6] that the accelerations now answer to: what the equations in the nodes there are leave. */
+static int find_loads(const spar_member *m, double **load) {
+    const spari_body *body = m->body;
+    int64_t n = body->unique;
+    double *x = spari_zalloc(25 * n, sizeof *x), *r = x + 19 * n;
+    *load = spari_zalloc(6 * m->nodes, sizeof **load);
+    int status = x && *load ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        spari_member_to_unique(m, 7, m->now.q, x);
+        spari_member_to_unique(m, 6, m->now.v, x + 7 * n);
+        spari_member_to_unique(m, 6, m->now.a, x + 13 * n);
+        spari_body_residual(body, x, x + 7 * n, x + 13 * n, 1, r, NULL);
+        memset(r, 0, (size_t)spari_member_held(m) * sizeof *r);
+        spari_member_from_unique(m, 6, r, *load);
+        for (int64_t e = 1; e < m->elements; e++) { /* of the two nodes of a joint one has all of it */
+            memset(*load + 6 * e * m->per_element, 0, 6 * sizeof **load);
+        }
+        spari_member_even_loads(m, *load);
+    }
+    free(x);
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of '%s'", m->name);
+    return SPAR_OK;
+}
+
+/* For the time of the call the member is another one, which this rank solves. */
+static int find_nodes_error(spar_member *m, double *error) {
+    spari_remake wish = spari_remake_of(m);
+    int P = m->per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
+    double *load = NULL, *onto = spari_zalloc(6 * (int64_t)m->elements * n, sizeof *onto);
+    spar_member old;
+    finer f = {NULL, NULL, NULL, NULL, NULL};
+    int status = onto ? find_loads(m, &load) : spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
+    if (status == SPAR_OK) {
+        spari_resample_loads(m->elements, P, n, load, onto);
+        wish.per_element = n;
+        int owner = m->owner;
+        m->owner = spari_comm_rank(m->session->comm);
+        status = spari_member_remake(m, &wish, &old);
+        old.owner = owner;
+        status = status == SPAR_OK ? finer_create(m, onto, &f) : status;
+        *error = status == SPAR_OK ? distance(m, &f) : 0;
+        spari_member_restore(m, &old);
+    }
+    finer_free(&f);
+    free(load);
+    free(onto);
+    return status;
+}
+
+/* Whether there is anything to find: rigid ones have no error of this kind. */
+static int has_nodes(const spar_member *m) {
+    return m->kind == SPARI_BEAM && !m->external && m->row->solved && m->fidelity >= SPAR_FIDELITY_LINEAR;
+}
+
+static int is_judged(const spar_member *m) {
+    return m->fidelity == SPAR_FIDELITY_EXACT && m->per_element < SPARI_MAX_NODES;
+}
+
+int spar_member_get_error(spar_member *member, double *step, double *nodes) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    spar_member *m = member;
+    spar_session *s = m->session;
+    double found[2] = {0, 0};
+    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: '%s' is not committed; call spar_member_commit first", __func__,
+                  m->name);
+    SPARI_REQUIRE(
+        s, !step || spari_pace_is_set(s), SPAR_ERR_STATE,
+        "%s: errors of steps are not kept; call spar_session_set_tolerance first, or ask for that of the nodes",
+        __func__);
+    SPARI_REQUIRE(s, !s->standing && !s->trial, SPAR_ERR_STATE,
+                  "%s: a static solution, a start or a trial is under way; ask between steps", __func__);
+    SPARI_REQUIRE(s, !nodes || s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is under way; the error of the nodes is found between steps", __func__);
+    SPARI_REQUIRE(s, !m->away, SPAR_ERR_STATE, "%s: this rank does not know the motion of '%s' (ranks.state = touched)",
+                  __func__, m->name);
+    if (step) {
+        found[0] = s->phase >= SPARI_SOLVED ? spari_pace_error(m) : m->step_error;
+    }
+    if (nodes && has_nodes(m)) {
+        found[1] = -1;
+        SPARI_TRY(is_judged(m) ? spari_named(s, __func__, find_nodes_error(m, found + 1)) : SPAR_OK);
+    }
+    if (step) {
+        *step = found[0];
+    }
+    if (nodes) {
+        *nodes = found[1];
+    }
+    return SPAR_OK;
+}
