@@ -294,7 +294,7 @@ static void other_nodes(void **state) {
     const MPI_Comm world = MPI_COMM_WORLD;
     int turns[STEPS];
     for (int parts = 0; parts <= 3; parts += 3) {
-        for (int deal = -1; deal < DEALS; deal++) { /* -1: alone */
+        for (int deal = -1; deal < DEALS; deal += parts ? AT_RANDOM + 1 : 1) { /* -1: alone */
             static double before[7], q[7 * POINTS], loads[6 * POINTS], error[SPAR_TRY_LOAD + 1];
             double tip[7], x[7 * POINTS], y[6 * POINTS], report[SPAR_TRY_COUNT];
             int64_t n;

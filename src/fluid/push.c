@@ -150,6 +150,14 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
     if (reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for reproducible sums of its loads");
     }
+    if (s->n == 0) { /* the nodes are on other ranks */
+        int64_t n = 6 * m->nodes;
+        memset(fluid->load_new, 0, (size_t)n * sizeof *fluid->load_new);
+        if (reproducible) {
+            memset(fluid->bins[SPARI_OF_NEXT], 0, (size_t)n * sizeof(spari_bins));
+        }
+        return SPAR_OK;
+    }
     if (audit || !reproducible) {
         spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
                          audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,

@@ -2,8 +2,9 @@
    SPREAD_DEAL: even; empty, the last rank has no nodes; last, it has them all; each, one to a rank and the rest to the
    last; shuffled. SPREAD_BITS, 1: sums are reproducible. SPREAD_WRITE: a file for what came out, as the test asked for
    it, motion, loads and reactions of members, and what fluids gave for their nodes. SPREAD_AGAINST: such a file,
-   written on one process, to compare with: bit by bit where sums are reproducible, else within SPREAD_WITHIN of the
-   largest number of its kind so far in the test, or of 1. A test that fails on a rank ends all. */
+   written on one process, to compare with: bit by bit where sums are reproducible, else within SPREAD_WITHIN, or the
+   tolerance that the test's coupling is iterated to, of the largest number of its kind so far in the test, or of 1.
+   SPREAD_RTOL: couplings are iterated to this at least. A test that fails on a rank ends all. */
 #define SPREAD_ITSELF
 #include "spread.h"
 
@@ -18,27 +19,33 @@
 /* What is about one process alone. */
 static const struct {
     const char *test, *why;
+    int plain_sums; /* with these alone */
 } skipped[] = {
-    {"flexibility", "looks into the solver, which is on one rank"},
-    {"test_parallelogram", "hears the log of the rank that solves"},
-    {"map_hangs_together", "the basis is of this rank's nodes"},
-    {"poses_and_matrices", "so are matrices"},
-    {"bodies_carry_their_nodes", "so is the audit"},
-    {"loads_of_fluids_add", "so is the audit"},
-    {"loads_are_conserved", "so is the audit"},
-    {"life_of_weights", "so are the weights that a fluid gives"},
-    {"trials_keep_weights", "so are the weights that a fluid gives"},
-    {"fades_smoothly", "so are the distances by which motion fades"},
-    {"fades_from_the_line", "so are the distances by which motion fades"},
-    {"single_precision_at_the_edge", "messages name this rank's nodes"},
-    {"far_nodes_are_flagged_or_refused", "messages name this rank's nodes"},
-    {"bad_calls_are_refused", "messages name this rank's nodes"},
-    {"bad_weights_are_refused", "messages name this rank's nodes"},
-    {"bad_sections_are_refused", "messages name this rank's nodes"},
-    {"test_advice", "advice goes by costs, and these are of the ranks: other nodes"},
-    {"test_advice_of_fidelity", "so does this: other modes"},
-    {"test_apply_in_a_run", "so does this: other steps"},
-    {"control_points_of_their_own", "so are the sections of the blade element fluid"},
+    {"flexibility", "looks into the solver, which is on one rank", 0},
+    {"test_parallelogram", "hears the log of the rank that solves", 0},
+    {"map_hangs_together", "the basis is of this rank's nodes", 0},
+    {"poses_and_matrices", "so are matrices", 0},
+    {"bodies_carry_their_nodes", "so is the audit", 0},
+    {"loads_of_fluids_add", "so is the audit", 0},
+    {"loads_are_conserved", "so is the audit", 0},
+    {"test_capacities", "so is the audit", 0},
+    {"life_of_weights", "so are the weights that a fluid gives", 0},
+    {"trials_keep_weights", "so are the weights that a fluid gives", 0},
+    {"fades_smoothly", "so are the distances by which motion fades", 0},
+    {"fades_from_the_line", "so are the distances by which motion fades", 0},
+    {"single_precision_at_the_edge", "messages name this rank's nodes", 0},
+    {"far_nodes_are_flagged_or_refused", "messages name this rank's nodes", 0},
+    {"bad_calls_are_refused", "messages name this rank's nodes", 0},
+    {"bad_weights_are_refused", "messages name this rank's nodes", 0},
+    {"bad_sections_are_refused", "messages name this rank's nodes", 0},
+    {"test_advice", "applies advice, which goes by costs, and these are of the ranks: other nodes", 0},
+    {"test_advice_of_fidelity", "so does this: other modes", 0},
+    {"test_apply_in_a_run", "so does this: other steps", 0},
+    {"test_advice_is_kept", "so does this", 0},
+    {"test_advice_stays_stable", "so does this", 0},
+    {"control_points_of_their_own", "so are the sections of the blade element fluid", 0},
+    {"explicit_beam", "its run without a guess diverges, and rounding with it", 1},
+    {"explicit_after", "its run without added mass diverges, and rounding with it", 1},
 };
 
 /* What numbers are, and up to six arrays of a call that pulls. */
@@ -51,6 +58,7 @@ static const char *const deal_name[DEALS] = {"even", "empty", "last", "each", "s
 
 static int rank, size = 1, deal, bits;
 static int iterating; /* in a call that calls the fluid: what it pulls then is not yet what comes out */
+static int advising;  /* which trials are run goes by costs, and these are of the ranks */
 
 /* ---- who has which nodes ---- */
 
@@ -180,6 +188,7 @@ static const char *current = "";
 static uint64_t digest = 14695981039346656037u;
 static int64_t numbers, others;
 static double farthest, within, most_of[KINDS];
+static double iterated_to; /* the loosest tolerance of the test's couplings */
 static const char *farthest_in = "";
 static int farthest_kind;
 
@@ -205,7 +214,7 @@ static void compare(int kind, const double *x, int64_t n) {
         farthest_in = current;
         farthest_kind = kind;
     }
-    if (bits ? others > 0 : !(apart <= within * size_of)) {
+    if (bits ? others > 0 : !(apart <= fmax(within, iterated_to) * size_of)) {
         char text[160];
         snprintf(text, sizeof text, "%.3g of %.3g apart, on one process; %s, after %lld numbers", apart, size_of,
                  kind < PULLED ? kind_name[kind] : "what is pulled", (long long)numbers);
@@ -215,7 +224,7 @@ static void compare(int kind, const double *x, int64_t n) {
 }
 
 static void note(int kind, const double *x, int64_t n) {
-    if (!x) {
+    if (!x || advising) {
         return;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -289,10 +298,11 @@ int spread_run(const struct CMUnitTest *tests, size_t count, CMFixtureFunction s
     for (size_t k = 0; k < count; k++) {
         int skip = 0;
         for (size_t j = 0; j < sizeof skipped / sizeof *skipped; j++) {
-            skip |= strcmp(skipped[j].test, tests[k].name) == 0;
+            skip |= strcmp(skipped[j].test, tests[k].name) == 0 && (!skipped[j].plain_sums || !bits);
         }
         current = tests[k].name;
         memset(most_of, 0, sizeof most_of);
+        iterated_to = 0;
         if (!skip && _cmocka_run_group_tests(current, tests + k, 1, setup, teardown) != 0) {
             differ("failed");
         }
@@ -305,11 +315,7 @@ int spread_run(const struct CMUnitTest *tests, size_t count, CMFixtureFunction s
 
 int spread_session_create(spar_session **session) {
     int status = size > 1 ? spar_session_create_mpi(MPI_COMM_WORLD, session) : spar_session_create(session);
-    if (status == SPAR_OK && bits) {
-        status = spar_session_set_reproducible(*session, 1);
-        assert_int_equal(spar_session_set_option(*session, "advise.fluid_cost", "1e-6"), SPAR_OK); /* not by a clock */
-    }
-    return status;
+    return status == SPAR_OK && bits ? spar_session_set_reproducible(*session, 1) : status;
 }
 
 int spread_create(spar_member *member, const char *name, spar_fluid **fluid) {
@@ -702,17 +708,22 @@ int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_
 
 int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
                   spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
-    iterating++;
+    advising++;
     int status = verdict(spar_session_advise(session, tolerance, dt, steps, before, solve, context, capacity, advice));
-    iterating--;
-    if (status == SPAR_OK && bits && advice && capacity > SPAR_ADVICE_ERROR) { /* costs are those of the ranks */
-        note(TRIALS, advice, SPAR_ADVICE_ERROR + 1);
-    }
+    advising--;
     return status;
 }
 
 int spread_apply_advice(spar_session *session, double *dt) {
     return verdict(spar_session_apply_advice(session, dt));
+}
+
+/* What is iterated to a tolerance is known to that tolerance; with a tighter one it comes closer. */
+int spread_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
+    const char *text = getenv("SPREAD_RTOL");
+    rtol = text ? fmin(rtol, strtod(text, NULL)) : rtol;
+    iterated_to = scheme == SPAR_COUPLING_EXPLICIT ? iterated_to : fmax(iterated_to, rtol);
+    return spar_session_set_coupling(session, scheme, atol, rtol, max_iterations);
 }
 
 /* All ranks have read it; one removes it. */

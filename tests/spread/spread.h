@@ -61,6 +61,7 @@ int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_
 int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
                   spar_fluid_solver solve, void *context, int64_t capacity, double *advice);
 int spread_apply_advice(spar_session *session, double *dt);
+int spread_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
 int spread_remove(const char *path);
 
 #ifndef SPREAD_ITSELF
@@ -108,6 +109,7 @@ int spread_remove(const char *path);
 #define spar_session_report_effects spread_report_effects
 #define spar_session_advise spread_advise
 #define spar_session_apply_advice spread_apply_advice
+#define spar_session_set_coupling spread_set_coupling
 #define remove spread_remove
 #endif
 
