@@ -112,7 +112,7 @@ function find_count(   i, has) {
 
 function nodes(   i) {
     for (i = 1; i <= params; i++) if (P[i] == "which") return "to_c(which)"
-    return name ~ /force/ ? "to_c(SPAR_NODES_FORCE)" : "to_c(SPAR_NODES_MOTION)"
+    return name ~ /force|_states/ ? "to_c(SPAR_NODES_FORCE)" : "to_c(SPAR_NODES_MOTION)"
 }
 
 function declare(i,   type) {

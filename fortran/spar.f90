@@ -433,6 +433,13 @@ module spar
     procedure, private :: fluid_get_forces, fluid_get_forces_single_1
     generic :: get_forces => fluid_get_forces, fluid_get_forces_single_1
     procedure :: fail => fluid_fail
+    procedure :: set_states => fluid_set_states
+    procedure, private :: fluid_get_states, fluid_get_states_single_1
+    generic :: get_states => fluid_get_states, fluid_get_states_single_1
+    procedure, private :: fluid_pull_states, fluid_pull_states_single_1
+    generic :: pull_states => fluid_pull_states, fluid_pull_states_single_1
+    procedure, private :: fluid_push_states, fluid_push_states_single_1
+    generic :: push_states => fluid_push_states, fluid_push_states_single_1
     procedure, private :: fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
     generic :: pull_motion_f32 => fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
     procedure, private :: fluid_pull_sections_f32, fluid_pull_sections_f32_single_1
@@ -3475,6 +3482,71 @@ contains
 
     call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
   end subroutine fluid_fail
+
+  subroutine fluid_set_states(self, width, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: width
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_states(self%handle, width), self%session, stat, errmsg)
+  end subroutine fluid_set_states
+
+  subroutine fluid_get_states(self, width, dt, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: width
+    real(c_double), intent(inout), optional :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_get_states(self%handle, width, dt), self%session, stat, errmsg)
+  end subroutine fluid_get_states
+
+  subroutine fluid_pull_states(self, width, states, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int64_t), intent(in) :: width
+    real(c_double), contiguous, intent(inout) :: states(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'states', shape(states, kind=c_int64_t), [width, n])
+    if (allocated(fault)) then
+      call refuse('fluid%pull_states', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_states(self%handle, width, states), self%session, stat, errmsg)
+  end subroutine fluid_pull_states
+
+  subroutine fluid_push_states(self, width, states, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: width
+    real(c_double), contiguous, intent(in) :: states(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'states', shape(states, kind=c_int64_t), [width, n])
+    if (allocated(fault)) then
+      call refuse('fluid%push_states', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_push_states(self%handle, width, states), self%session, stat, errmsg)
+  end subroutine fluid_push_states
 
   subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -6912,6 +6984,42 @@ contains
     call fluid_get_forces(self, force=c_force, stat=stat, errmsg=errmsg)
     call take(c_force, force)
   end subroutine fluid_get_forces_single_1
+
+  subroutine fluid_get_states_single_1(self, width, dt, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: width
+    real(c_float), intent(inout) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_dt
+
+    allocate (c_dt, source=untouched)
+    call fluid_get_states(self, width=width, dt=c_dt, stat=stat, errmsg=errmsg)
+    call take(c_dt, dt)
+  end subroutine fluid_get_states_single_1
+
+  subroutine fluid_pull_states_single_1(self, width, states, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer(c_int64_t), intent(in) :: width
+    real(c_float), intent(inout) :: states(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_states(:,:)
+
+    allocate (c_states(ubound(states, 1, c_int64_t), ubound(states, 2, c_int64_t)), source=untouched)
+    call fluid_pull_states(self, width=width, states=c_states, stat=stat, errmsg=errmsg)
+    call take(c_states, states)
+  end subroutine fluid_pull_states_single_1
+
+  subroutine fluid_push_states_single_1(self, width, states, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: width
+    real(c_float), intent(in) :: states(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_push_states(self, width=width, states=real(states, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_push_states_single_1
 
   subroutine fluid_pull_motion_f32_single_1(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self

@@ -1046,6 +1046,37 @@ module spar_calls
       integer(c_int) :: answer
     end function spar_fluid_fail
 
+    function spar_fluid_set_states(fluid, width) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: width
+      integer(c_int) :: status
+    end function spar_fluid_set_states
+
+    function spar_fluid_get_states(fluid, width, dt) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), intent(inout), optional :: width
+      real(c_double), intent(inout), optional :: dt
+      integer(c_int) :: status
+    end function spar_fluid_get_states
+
+    function spar_fluid_pull_states(fluid, width, states) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: width
+      real(c_double), intent(inout), optional :: states(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_states
+
+    function spar_fluid_push_states(fluid, width, states) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: width
+      real(c_double), intent(in), optional :: states(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_states
+
     function spar_fluid_pull_motion_f32(fluid, theta, x, v) bind(c) result(status)
       import :: c_double, c_float, c_int, c_ptr
       type(c_ptr), value :: fluid

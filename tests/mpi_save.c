@@ -10,7 +10,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { NODES = 200 }; /* of each rank; many, so that what is not there lies beyond the file */
+/* NODES of each rank; many, so that what is not there lies beyond the file. STATES: numbers of the host's at each; with
+   them as many of a node stand in the file as BY_NODE. */
+enum { NODES = 200, STATES = 3, BY_NODE = 15 + 2 * STATES };
 
 typedef struct run {
     spar_session *session;
@@ -21,8 +23,7 @@ typedef struct run {
 
 static char file[2][40];
 
-/* Nodes of ranks first, first + 1, ... of a row of them along a beam. sections: those keep their forces; else all do.
- */
+/* Nodes of ranks first, first + 1, ... of a row of them along a beam. KEPT: forces, and numbers of the host's. */
 enum { KEPT, PLACES, SECTIONS };
 static void create(run *r, spar_session *s, int first, int ranks, int nodes, int kind) {
     double K[36], M[36];
@@ -47,6 +48,7 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
         OK(s, spar_fluid_set_force_nodes(r->fluid, r->n, x));
     }
     OK(s, spar_fluid_map(r->fluid));
+    OK(s, spar_fluid_set_states(r->fluid, kind == KEPT ? STATES : 0));
     free(x);
     free(xi);
 }
@@ -57,22 +59,28 @@ static spar_session *on_all(void) {
     return s;
 }
 
+/* Forces by velocities, by those at t^n, and by three numbers a node that follow the velocities slowly. */
 static void step(run *r, int count) {
-    double *v = calloc((size_t)(3 * r->n) + 1, sizeof *v), *f = calloc((size_t)(3 * r->n) + 1, sizeof *f);
+    double *z = calloc((size_t)(STATES * r->n) + 1, sizeof *z), *v = calloc((size_t)(3 * r->n) + 1, sizeof *v),
+           *f = calloc((size_t)(3 * r->n) + 1, sizeof *f);
     for (int k = 0, done; k < count; k++) {
         OK(r->session, spar_step_begin(r->session, 0.02));
         OK(r->session, spar_step_solve(r->session));
         OK(r->session, spar_fluid_pull_motion(r->fluid, 1, NULL, v));
         OK(r->session, spar_fluid_pull_forces(r->fluid, 0, f));
+        OK(r->session, spar_fluid_pull_states(r->fluid, STATES, z));
         for (int64_t i = 0; i < 3 * r->n; i++) {
-            f[i] = 0.5 * f[i] - 0.1 * v[i] + 0.01 * (double)(i % 3);
+            z[i] = 0.8 * z[i] + 0.2 * v[i];
+            f[i] = 0.5 * f[i] - 0.1 * v[i] - 0.2 * z[i] + 0.01 * (double)(i % 3);
         }
+        OK(r->session, spar_fluid_push_states(r->fluid, STATES, z));
         OK(r->session, spar_fluid_push_forces(r->fluid, f, NULL));
         OK(r->session, spar_step_check(r->session, &done));
         OK(r->session, spar_step_accept(r->session));
     }
     free(v);
     free(f);
+    free(z);
 }
 
 static void look(const run *r, double seen[52]) {
@@ -140,7 +148,8 @@ static void expect_end(run *r, const double *end) {
 }
 
 /* Written by all, or through the first rank where another does not see the file; read by all, or through the first; on
-   the same ranks or on one. The forces that the file keeps move the beam afterwards. */
+   the same ranks or on one. The forces and states that the file keeps move the beam
+   afterwards. */
 static void same_file(void **state) {
     (void)state;
     run r;
@@ -162,7 +171,7 @@ static void same_file(void **state) {
     }
     assert_int_equal(n[0], n[1]);
     assert_memory_equal(bytes[0], bytes[1], (size_t)n[0]);
-    assert_true(n[0] > 8L * 15 * NODES * size); /* places and forces of all nodes are in it */
+    assert_true(n[0] > 8L * BY_NODE * NODES * size); /* places, forces and states of all nodes are in it */
     step(&r, 3);
     look(&r, end);
     for (int through_one = 0; through_one < 2; through_one++) {
@@ -294,13 +303,13 @@ static int load(const spar_session *s, const char *path) {
     return spar_session_load((spar_session *)(uintptr_t)s, path);
 }
 
-/* Each rank has a part of 15 doubles a node in the file. To save takes no more of a rank than two of its own parts, and
+/* Each rank has a part of 21 doubles a node in the file. To save takes no more of a rank than two of its own parts, and
    some buffers; to load likewise, also where a rank has nothing. The sanitizers keep what is freed. */
 static void memory(void **state) {
     (void)state;
     enum { MANY = 150000 };
     run r;
-    double own = 8.0 * 15 * MANY, before, took[2], most[2];
+    double own = 8.0 * BY_NODE * MANY, before, took[2], most[2];
     create(&r, on_all(), rank, 1, MANY, KEPT);
     step(&r, 1);
     for (int k = 0; k < 2; k++) {

@@ -186,6 +186,10 @@ call spar_fluid_get_forces int fluid|fluid|value| force|double|out|[n][3]
 call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
 call spar_fluid_push_forces_at int fluid|fluid|value| theta|double|value| force|double|in|[n][3] moment|double|in|[n][3]
 call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
+call spar_fluid_set_states int fluid|fluid|value| width|int64_t|value|
+call spar_fluid_get_states int fluid|fluid|value| width|int64_t|out| dt|double|out|
+call spar_fluid_pull_states int fluid|fluid|value| width|int64_t|value| states|double|out|[n][width]
+call spar_fluid_push_states int fluid|fluid|value| width|int64_t|value| states|double|in|[n][width]
 call spar_fluid_pull_motion_f32 int fluid|fluid|value| theta|double|value| x|float|out|[n][3] v|float|out|[n][3]
 call spar_fluid_pull_sections_f32 int fluid|fluid|value| theta|double|value| q|float|out|[n][4] omega|float|out|[n][3] accel|float|out|[n][3]
 call spar_fluid_pull_forces_f32 int fluid|fluid|value| theta|double|value| force|float|out|[n][3]

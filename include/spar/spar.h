@@ -1056,6 +1056,26 @@ SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const do
      status: in, a SPAR_ERR_*
      message: in, what, where, the cure; not empty, copied */
 SPAR_API int spar_fluid_fail(spar_fluid *fluid, int status, const char *message);
+/* Numbers of the host's own at each force node, for a model that remembers (wakes, stall, a friction): they go with the
+   run as loads do. Pulled are those at t^n, in every iteration the same; those pushed last become them when the step is
+   accepted, and are forgotten when it is rejected. They are saved and loaded (found by the nodes' places, also on other
+   ranks), and a trial leaves them as they were. Zeros at first, and when the nodes are mapped anew.
+     width: in, numbers a node, 0 to 1000, 0: none (default). As many as there are: they stay as they are
+   Between steps. */
+SPAR_API int spar_fluid_set_states(spar_fluid *fluid, int64_t width);
+/* Each NULL: not wanted.
+     width: out, numbers a node
+     dt: out, s, from those pulled to those pushed now: the step's, 0 between steps, before the first one, and where time
+           stands (a static solution, a balanced start): what is pushed there is a steady state */
+SPAR_API int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt);
+/* Those at t^n; before the first step, and where time stands, those there.
+     width: in, as set
+     states[n][width]: out, by force node */
+SPAR_API int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, double *states);
+/* Those at t^{n+1}, before the first step those at t = 0. Without a push those at t^n stay.
+     width: in, as set
+     states[n][width]: in, by force node */
+SPAR_API int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *states);
 /* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
 SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);
@@ -1235,7 +1255,7 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
                                        int *iterations);
 
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, joints with
-   their springs, solvers, the fluids' loads and node forces, quasi-Newton columns. A run that goes on from it ends with
+   their springs, solvers, the fluids' loads, node forces and states, quasi-Newton columns. A run that goes on from it ends with
    the same bits. Collective.
      path: in, rank 0's; on the other ranks it must be given and is not used. Ranks that see rank 0's file write and
            read their own parts of it, all at the same time; if any does not, all goes through rank 0, piece by piece,

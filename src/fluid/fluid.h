@@ -70,13 +70,22 @@ void spari_fluid_release_gone(spar_session *session);
 /* Whether nodes of it are sections. */
 int spari_fluid_has_sections(const spar_fluid *fluid);
 
-/* State for save and load, as doubles: loads and kept node forces, with the places of these nodes. */
+/* State for save and load, as doubles: loads, kept node forces and the host's own numbers, with the places of these
+   nodes. */
 int64_t spari_fluid_state_size(const spar_fluid *fluid);
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state);
+/* What a state has node by node: one block behind the other, of so many numbers a node each. */
+enum { SPARI_FLUID_BLOCKS = 7 };
+typedef struct spari_by_node {
+    int64_t nodes; /* 0: nothing is kept by node */
+    int blocks;
+    int64_t width[SPARI_FLUID_BLOCKS], all; /* all: their sum */
+} spari_by_node;
 /* Of its first SPARI_FLUID_HEAD words, as many as there are in all, on a member: how many go before what is node by
-   node, and how many nodes that has. 0: it is none. */
-enum { SPARI_FLUID_HEAD = 14 };
-int spari_fluid_is_state(const spar_member *member, const double *head, int64_t count, int64_t *loads, int64_t *nodes);
+   node, and what that is. 0: it is none. */
+enum { SPARI_FLUID_HEAD = 16 };
+int spari_fluid_is_state(const spar_member *member, const double *head, int64_t count, int64_t *loads,
+                         spari_by_node *by);
 
 /* Loads a fluid from the states of those of its name and member on all ranks of the saved run (or of one, where the
    ranks are the same), piece by piece. take: by their heads, whether that can be done, with the memory for it. */
@@ -84,8 +93,8 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
 /* The words of a state up to its nodes; the nodal loads, which are a sum, go to the fluid that `takes_loads`. 0:
  * broken. */
 int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loads);
-/* Of the n nodes of a state so many, with places and forces, rows[5][count][3]: found by their reference places. */
-void spari_fluid_take_nodes(spar_fluid *fluid, int64_t n, int64_t first, int64_t count, const double *rows);
+/* Of the nodes of a state so many, its blocks of them one behind the other: found by their reference places. */
+void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first, int64_t count, const double *rows);
 /* The first node here that was not among them, -1: all were; and a refusal, if one was not. */
 int64_t spari_fluid_untaken(spar_fluid *fluid);
 int spari_fluid_taken(spar_fluid *fluid, const char *call);

@@ -226,6 +226,22 @@ static int keeps_forces(const spar_fluid *fluid) {
            (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !m->effects_given);
 }
 
+/* What is kept by force node begins anew with zeros, all of it or nothing. */
+static int renew_by_node(spar_fluid *fluid, int64_t n) {
+    spari_states *made = fluid->states ? spari_states_create(n, fluid->states->width) : NULL;
+    int status = fluid->states && !made ? SPAR_ERR_MEMORY : SPAR_OK;
+    if (status == SPAR_OK && keeps_forces(fluid)) {
+        status = spari_fluid_renew_history(fluid, n);
+    }
+    if (status != SPAR_OK || !made) {
+        spari_states_free(made);
+        return status;
+    }
+    spari_states_free(fluid->states);
+    fluid->states = made;
+    return SPAR_OK;
+}
+
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     spari_node_set was = *set;
     *set = (spari_node_set){
@@ -256,10 +272,8 @@ int spar_fluid_map(spar_fluid *fluid) {
         }
     }
     spari_line_free(line);
-    if (status == SPAR_OK && fresh && keeps_forces(fluid)) {
-        if (spari_fluid_renew_history(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->n) != SPAR_OK) {
-            status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
-        }
+    if (status == SPAR_OK && fresh && renew_by_node(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->n) != SPAR_OK) {
+        status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
     }
     for (int which = 0; which < 2; which++) {
         if (status == SPAR_OK && made[which]) {

@@ -76,6 +76,7 @@ void spari_taking_free(spari_taking *t) {
         return;
     }
     spari_history_free(t->history);
+    spari_states_free(t->states);
     free(t->load);
     free(t->bins);
     free(t->end_bins);
@@ -100,6 +101,57 @@ spari_history *spari_history_create(int64_t n, int order) {
     return h;
 }
 
+void spari_states_free(spari_states *t) {
+    if (t) {
+        free(t->now);
+        free(t->next);
+    }
+    free(t);
+}
+
+spari_states *spari_states_create(int64_t n, int64_t width) {
+    spari_states *t = spari_zalloc(1, sizeof *t);
+    if (!t) {
+        return NULL;
+    }
+    t->n = n;
+    t->width = width;
+    t->now = spari_zalloc(n * width, sizeof *t->now);
+    t->next = spari_zalloc(n * width, sizeof *t->next);
+    if (!t->now || !t->next) {
+        spari_states_free(t);
+        return NULL;
+    }
+    return t;
+}
+
+spari_states *spari_states_copy(const spari_states *from) {
+    spari_states *t = spari_states_create(from->n, from->width);
+    if (t) {
+        t->pushed = from->pushed;
+        size_t size = (size_t)(t->n * t->width) * sizeof *t->now;
+        if (size > 0) {
+            memcpy(t->now, from->now, size);
+            memcpy(t->next, from->next, size);
+        }
+    }
+    return t;
+}
+
+void spari_states_begin(spari_states *t) {
+    if (t) {
+        t->pushed = 0;
+    }
+}
+
+void spari_states_accept(spari_states *t) {
+    if (t && t->pushed) {
+        double *was = t->now;
+        t->now = t->next, t->next = was;
+        t->pushed = 0;
+    }
+}
+
 void spari_fluid_free(spar_fluid *fluid) {
     if (!fluid) {
         return;
@@ -107,6 +159,7 @@ void spari_fluid_free(spar_fluid *fluid) {
     spari_node_set_clear(&fluid->set[0]);
     spari_node_set_clear(&fluid->set[1]);
     spari_history_free(fluid->history);
+    spari_states_free(fluid->states);
     spari_taking_free(fluid->taking);
     double *all[] = {fluid->modal, fluid->field[0], fluid->field[1],     fluid->reference,
                      fluid->load,  fluid->load_new, fluid->load_accepted};

@@ -394,6 +394,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     double w[3];
     spari_fluid_forget_refusal(fluid);
     spari_parts_begin(fluid);
+    spari_states_begin(fluid->states);
     fluid->asked |= fluid->asked & SPARI_ASKED_LOADS ? SPARI_HAD_LOADS : 0;
     if (!h) {
         return;
@@ -416,6 +417,7 @@ void spari_fluid_settle(spar_fluid *fluid) {
         fluid->parts->ended = 0;
     }
     spari_fluid_keep_loads(fluid);
+    spari_states_accept(fluid->states);
     if (h && h->n > 0) {
         memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
     }
@@ -426,6 +428,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     spari_fluid_forget_refusal(fluid);
     spari_parts_accept(fluid);
     spari_fluid_keep_loads(fluid);
+    spari_states_accept(fluid->states);
     if (!h || h->n == 0) {
         return;
     }
@@ -442,6 +445,7 @@ void spari_fluid_reject(spar_fluid *fluid) {
     spari_parts_begin(fluid);
     fluid->asked &= fluid->asked & SPARI_HAD_LOADS ? ~0 : ~SPARI_ASKED_LOADS;
     spari_fluid_revert_loads(fluid);
+    spari_states_begin(fluid->states);
     if (h) {
         h->pushed = 0;
     }

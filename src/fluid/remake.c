@@ -106,6 +106,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->load = f->load_new = f->load_accepted = NULL;
     memset(f->bins, 0, sizeof f->bins);
     f->history = NULL;
+    f->states = NULL;
     f->taking = NULL;
     if (same_nodes) {
         int64_t n = 6 * f->member->nodes;
@@ -129,6 +130,10 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         spari_history_free(f->history); /* the map has begun it with zeros */
     }
     if (old->parts && spari_parts_prepare(f) != SPAR_OK) {
+        return no_memory_for_trial(f);
+    }
+    f->states = old->states ? spari_states_copy(old->states) : NULL;
+    if (old->states && !f->states) {
         return no_memory_for_trial(f);
     }
     int order = f->member->session->predictor;
@@ -258,6 +263,9 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
     }
     if (f->history != old->history) {
         spari_history_free(f->history);
+    }
+    if (f->states != old->states) {
+        spari_states_free(f->states);
     }
 }
 

@@ -12,9 +12,20 @@
 /* A state: these, then load and load_accepted [nodes][6] if mapped; then their reproducible sums, bit by bit, if it has
    them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6] and, if it has them, the sums
    of these; then, if node forces are
-   kept, the nodes' places, their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros where the predictor did not
-   look so far back. */
-enum { S_NODES, S_KEPT, S_PUSHED, S_PUSHES, S_MAPPED, S_PARTS, S_AUDIT, S_HEAD = SPARI_FLUID_HEAD };
+   kept, or numbers of the host's own, the nodes' places; their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros
+   where the predictor did not look so far back; the host's numbers at t^n and t^{n+1} [n][width]. */
+enum {
+    S_NODES,
+    S_KEPT,
+    S_PUSHED,
+    S_PUSHES,
+    S_MAPPED,
+    S_PARTS,
+    S_WIDTH,
+    S_STATES, /* numbers at t^{n+1} were pushed */
+    S_AUDIT,
+    S_HEAD = SPARI_FLUID_HEAD
+};
 
 enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of parts */
 
@@ -35,8 +46,26 @@ static int64_t state_loads(const spar_member *m, const double *head) {
     return state_ends(m, head) + (head[S_PARTS] != 0 ? state_pair(m, head) : 0);
 }
 
+static spari_by_node state_by_node(const double *head) {
+    spari_by_node by = {.nodes = (int64_t)head[S_NODES]};
+    if (head[S_KEPT] == 0 && head[S_WIDTH] == 0) {
+        return (spari_by_node){0};
+    }
+    for (int k = 0; k < (head[S_KEPT] != 0 ? 5 : 1); k++) {
+        by.width[by.blocks++] = 3;
+    }
+    for (int k = 0; k < 2 && head[S_WIDTH] != 0; k++) {
+        by.width[by.blocks++] = (int64_t)head[S_WIDTH];
+    }
+    for (int k = 0; k < by.blocks; k++) {
+        by.all += by.width[k];
+    }
+    return by;
+}
+
 static int64_t state_size(const spar_member *m, const double *head) {
-    return state_loads(m, head) + (head[S_KEPT] != 0 ? 15 * (int64_t)head[S_NODES] : 0);
+    const spari_by_node by = state_by_node(head);
+    return state_loads(m, head) + by.nodes * by.all;
 }
 
 static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
@@ -49,6 +78,9 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
     head[S_MAPPED] = !fluid->load ? 0 : fluid->bins[0] ? HAS_BINS : IS_MAPPED;
     const spari_parts *p = fluid->parts;
     head[S_PARTS] = p ? (p->ended ? PARTS_BEFORE : 0) + (p->theta > 0 ? PARTS_NOW : 0) : 0;
+    const spari_states *t = s ? fluid->states : NULL;
+    head[S_WIDTH] = t ? (double)t->width : 0;
+    head[S_STATES] = t && t->pushed;
     memcpy(head + S_AUDIT, fluid->audit, sizeof fluid->audit);
 }
 
@@ -69,6 +101,34 @@ static double *put_load_pair(double *at, int64_t n, const double *const value[2]
     return at;
 }
 
+static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by_node *by, double *at) {
+    const spari_history *h = fluid->history;
+    const spari_states *t = fluid->states;
+    double *places = spari_fluid_places(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, places, SPAR_ERR_MEMORY, "no memory to save what it keeps by node");
+    const double *all[SPARI_FLUID_BLOCKS] = {places};
+    int blocks = 1;
+    if (h) {
+        const double *forces[] = {h->after, h->past[0], h->past[1], h->past[2]};
+        memcpy(all + blocks, forces, sizeof forces);
+        blocks += 4;
+    }
+    if (t) {
+        all[blocks] = t->now, all[blocks + 1] = t->next;
+    }
+    for (int k = 0; k < by->blocks; k++) {
+        size_t n = (size_t)(by->nodes * by->width[k]);
+        if (all[k]) {
+            memcpy(at, all[k], n * sizeof *at);
+        } else {
+            memset(at, 0, n * sizeof *at);
+        }
+        at += n;
+    }
+    free(places);
+    return SPAR_OK;
+}
+
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     const spari_parts *p = fluid->parts;
     if (p && p->theta != 0 && p->theta != 1) {
@@ -76,7 +136,6 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
             fluid, SPAR_ERR_STATE, call,
             "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1", p->theta);
     }
-    const spari_history *h = fluid->history;
     state_head(fluid, state);
     double *at = state + S_HEAD;
     int64_t loads = 6 * fluid->member->nodes;
@@ -88,21 +147,8 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
         at = put_load_pair(at, loads, (const double *const[]){p->end[0], p->end[1]},
                            (const spari_bins *const[]){fluid->bins[SPARI_OF_BEGIN], fluid->bins[SPARI_OF_END]});
     }
-    if (state[S_KEPT] != 0) {
-        size_t n = 3 * (size_t)h->n;
-        double *places = spari_fluid_places(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
-        SPARI_FLUID_REQUIRE(fluid, places, SPAR_ERR_MEMORY, "no memory to save the node forces");
-        const double *all[] = {places, h->after, h->past[0], h->past[1], h->past[2]};
-        for (int k = 0; k < 5 && n > 0; k++, at += n) {
-            if (all[k]) {
-                memcpy(at, all[k], n * sizeof *at);
-            } else {
-                memset(at, 0, n * sizeof *at);
-            }
-        }
-        free(places);
-    }
-    return SPAR_OK;
+    const spari_by_node by = state_by_node(state);
+    return by.nodes > 0 ? put_by_node(fluid, call, &by, at) : SPAR_OK;
 }
 
 /* ---- what is being put together ---- */
@@ -112,13 +158,14 @@ void spari_fluid_give_up(spar_fluid *fluid) {
     fluid->taking = NULL;
 }
 
-int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count, int64_t *loads, int64_t *nodes) {
+int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count, int64_t *loads, spari_by_node *by) {
     if (!spari_is_count(head[S_NODES]) || !spari_is_count(head[S_PUSHES]) || !spari_is_count(head[S_PARTS]) ||
-        head[S_PARTS] > PARTS_BEFORE + PARTS_NOW || count != state_size(m, head)) {
+        !spari_is_count(head[S_WIDTH]) || head[S_PARTS] > PARTS_BEFORE + PARTS_NOW ||
+        head[S_WIDTH] > SPARI_MOST_STATES || count != state_size(m, head)) {
         return 0;
     }
     *loads = state_loads(m, head);
-    *nodes = head[S_KEPT] != 0 ? (int64_t)head[S_NODES] : 0;
+    *by = state_by_node(head);
     return 1;
 }
 
@@ -128,6 +175,8 @@ static void sum_heads(spari_taking *t, int count, const double *const *heads) {
         const double *head = heads[k];
         t->head[S_KEPT] = t->head[S_KEPT] != 0 || head[S_KEPT] != 0;
         t->head[S_PUSHED] = t->head[S_PUSHED] != 0 || head[S_PUSHED] != 0;
+        t->head[S_STATES] = t->head[S_STATES] != 0 || head[S_STATES] != 0;
+        t->head[S_WIDTH] = fmax(t->head[S_WIDTH], head[S_WIDTH]);
         t->head[S_PUSHES] += head[S_PUSHES];
         t->head[S_MAPPED] = t->head[S_MAPPED] != 0 || head[S_MAPPED] != 0;
         t->head[S_PARTS] = (int)t->head[S_PARTS] | (int)head[S_PARTS];
@@ -166,18 +215,38 @@ static int compare_heights(const void *a, const void *b) {
     return left < right ? -1 : left > right ? 1 : *x < *y ? -1 : *x > *y;
 }
 
-/* Room for node forces, and what finds them. */
+/* Room for what is kept by node, and what finds it. */
 static int take_nodes_room(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
-    t->history = spari_history_create(s->n, fluid->member->session->predictor);
+    int kept = t->head[S_KEPT] != 0, width = (int)t->head[S_WIDTH];
+    t->n = s->n;
+    t->history = kept ? spari_history_create(s->n, fluid->member->session->predictor) : NULL;
+    t->states = width > 0 ? spari_states_create(s->n, width) : NULL;
     t->places = spari_fluid_places(fluid, s);
     t->sorted = spari_zalloc(s->n, sizeof *t->sorted);
     t->found = spari_zalloc(s->n, 1);
-    SPARI_FLUID_REQUIRE_OF(fluid, call, t->history && t->places && t->sorted && t->found, SPAR_ERR_MEMORY,
-                           "no memory for the node forces");
+    SPARI_FLUID_REQUIRE_OF(fluid, call,
+                           (t->history || !kept) && (t->states || width == 0) && t->places && t->sorted && t->found,
+                           SPAR_ERR_MEMORY, "no memory for what it keeps by node");
     for (int64_t i = 0; i < s->n; i++) {
         t->sorted[i] = t->places + 3 * i;
     }
     qsort(t->sorted, (size_t)s->n, sizeof *t->sorted, compare_heights);
+    return SPAR_OK;
+}
+
+/* The saved run had as many numbers a node on all ranks, and as many as are kept here, if any are. */
+static int check_widths(const spar_fluid *fluid, const char *call, int count, const double *const *heads,
+                        const spari_nodes *s) {
+    double width = fluid->taking->head[S_WIDTH];
+    for (int k = 0; k < count; k++) {
+        SPARI_FLUID_REQUIRE_OF(fluid, call, heads[k][S_NODES] == 0 || heads[k][S_WIDTH] == width, SPAR_ERR_ARGUMENT,
+                               "the ranks of the saved run kept %g and %g numbers a node (spar_fluid_set_states); "
+                               "have them keep the same",
+                               width, heads[k][S_WIDTH]);
+    }
+    double here = fluid->states && s && s->n > 0 ? (double)fluid->states->width : width;
+    SPARI_FLUID_REQUIRE_OF(fluid, call, here == width, SPAR_ERR_ARGUMENT,
+                           "it keeps %g numbers a node (spar_fluid_set_states), and the saved run %g", here, width);
     return SPAR_OK;
 }
 
@@ -193,7 +262,8 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
     SPARI_FLUID_REQUIRE_OF(
         fluid, call, !fluid->history || !s || s->n == 0 || t->head[S_KEPT] != 0, SPAR_ERR_ARGUMENT,
         "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
-    return t->head[S_KEPT] != 0 && s ? take_nodes_room(fluid, call, t, s) : SPAR_OK;
+    SPARI_TRY(check_widths(fluid, call, count, heads, s));
+    return (t->head[S_KEPT] != 0 || t->head[S_WIDTH] != 0) && s ? take_nodes_room(fluid, call, t, s) : SPAR_OK;
 }
 
 /* ---- loads ---- */
@@ -267,7 +337,7 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
     return 1;
 }
 
-/* ---- node forces ---- */
+/* ---- what is kept by node ---- */
 
 /* How far apart the same place may be found: places are put together from feet and arms, which are rounded otherwise on
    another processor, or in other company. */
@@ -280,11 +350,11 @@ static double distance_between(const double *a, const double *b) {
     return fmax(fabs(a[0] - b[0]), fmax(fabs(a[1] - b[1]), fabs(a[2] - b[2])));
 }
 
-/* The nearest node to this place, within reach of it, that has forces or has none yet; -1: there is none. */
+/* The nearest node to this place, within reach of it, that has its own or has none yet; -1: there is none. */
 static int64_t find_node(const spar_fluid *fluid, const double *place, int found) {
     const spari_taking *t = fluid->taking;
     double nearest = place_reach(fluid, place), height = height_of(place), most = 3 * nearest;
-    int64_t low = 0, high = t->history->n, n = high, best = -1;
+    int64_t low = 0, high = t->n, n = high, best = -1;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
         if (height_of(t->sorted[middle]) < height - most) {
@@ -304,51 +374,81 @@ static int64_t find_node(const spar_fluid *fluid, const double *place, int found
     return best;
 }
 
-static void put_forces(spari_taking *t, int64_t to, const double *const from[4]) {
+/* What one node has in the blocks behind the places: its forces, then the host's numbers. */
+typedef struct taken_node {
+    const double *force[4], *state[2];
+} taken_node;
+
+static void put_node(spari_taking *t, int64_t to, const taken_node *from) {
     for (int k = 0; k < 4; k++) {
-        double *row = k == 0 ? t->history->after : t->history->past[k - 1];
-        if (row) {
-            memcpy(row + 3 * to, from[k], 3 * sizeof *row);
+        double *row = !t->history ? NULL : k == 0 ? t->history->after : t->history->past[k - 1];
+        if (row && from->force[k]) {
+            memcpy(row + 3 * to, from->force[k], 3 * sizeof *row);
+        }
+    }
+    for (int k = 0; k < 2 && t->states; k++) {
+        size_t width = (size_t)t->states->width;
+        if (from->state[k]) {
+            memcpy((k == 0 ? t->states->now : t->states->next) + (size_t)to * width, from->state[k],
+                   width * sizeof(double));
         }
     }
     t->found[to] = 1;
 }
 
-void spari_fluid_take_nodes(spar_fluid *fluid, int64_t n, int64_t first, int64_t count, const double *rows) {
+/* Node i of `count` whose blocks lie one behind the other. */
+static taken_node node_of_blocks(const double *head, const double *rows, int64_t count, int64_t i) {
+    const spari_by_node by = state_by_node(head);
+    taken_node from = {{NULL}, {NULL}};
+    int forces = head[S_KEPT] != 0 ? 4 : 0;
+    const double *at = rows + 3 * count;
+    for (int k = 1; k < by.blocks; k++) {
+        const double **to = k <= forces ? from.force + (k - 1) : from.state + (k - 1 - forces);
+        *to = at + by.width[k] * i;
+        at += by.width[k] * count;
+    }
+    return from;
+}
+
+void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first, int64_t count, const double *rows) {
     spari_taking *t = fluid->taking;
-    int64_t here = t->places ? t->history->n : 0;
+    int64_t here = t->places ? t->n : 0, n = (int64_t)head[S_NODES];
     for (int64_t i = 0; i < count && here > 0; i++) {
         const double *place = rows + 3 * i, *own = n == here ? t->places + 3 * (first + i) : NULL;
         /* the same nodes in the same order, places that are there twice among them: no search */
         int alike = n == here && !t->found[first + i] && distance_between(place, own) <= place_reach(fluid, own);
         int64_t to = alike ? first + i : find_node(fluid, place, 0);
         if (to >= 0) {
-            put_forces(
-                t, to,
-                (const double *const[4]){place + 3 * count, place + 6 * count, place + 9 * count, place + 12 * count});
+            const taken_node from = node_of_blocks(head, rows, count, i);
+            put_node(t, to, &from);
         }
     }
 }
 
-/* A node at a place that was there fewer times has the forces of another one there. */
-static int share_forces(spar_fluid *fluid, int64_t to) {
+/* A node at a place that was there fewer times has what another one there has. */
+static int share_node(spar_fluid *fluid, int64_t to) {
     spari_taking *t = fluid->taking;
-    int64_t from = find_node(fluid, t->places + 3 * to, 1);
-    const double *all[4] = {NULL};
-    for (int k = 0; k < 4 && from >= 0; k++) {
+    int64_t i = find_node(fluid, t->places + 3 * to, 1);
+    if (i < 0) {
+        return 0;
+    }
+    taken_node from = {{NULL}, {NULL}};
+    for (int k = 0; k < 4 && t->history; k++) {
         const double *row = k == 0 ? t->history->after : t->history->past[k - 1];
-        all[k] = row ? row + 3 * from : NULL;
+        from.force[k] = row ? row + 3 * i : NULL;
     }
-    if (from >= 0) {
-        put_forces(t, to, all);
+    if (t->states) {
+        from.state[0] = t->states->now + i * t->states->width;
+        from.state[1] = t->states->next + i * t->states->width;
     }
-    return from >= 0;
+    put_node(t, to, &from);
+    return 1;
 }
 
 int64_t spari_fluid_untaken(spar_fluid *fluid) {
     const spari_taking *t = fluid->taking;
-    for (int64_t i = 0; t->places && i < t->history->n; i++) {
-        if (!t->found[i] && !share_forces(fluid, i)) {
+    for (int64_t i = 0; t->places && i < t->n; i++) {
+        if (!t->found[i] && !share_node(fluid, i)) {
             return i;
         }
     }
@@ -405,9 +505,14 @@ void spari_fluid_load(spar_fluid *fluid) {
     if (fluid->load) {
         load_nodal(fluid);
     }
-    if (t->places) {
+    if (t->history) {
         spari_history_free(fluid->history);
         fluid->history = t->history, t->history = NULL;
+    }
+    if (t->states) {
+        spari_states_free(fluid->states);
+        fluid->states = t->states, t->states = NULL;
+        fluid->states->pushed = t->head[S_STATES] != 0;
     }
     if (fluid->history) {
         fluid->history->pushed = t->head[S_PUSHED] != 0;

@@ -32,6 +32,14 @@ typedef struct spari_history {
     double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
 } spari_history;
 
+/* Numbers of the host's own at the force nodes (states.c): at t^n, and at t^{n+1} once they were pushed in the step. */
+typedef struct spari_states {
+    int pushed;
+    int64_t n, width;
+    double *now, *next; /* [n][width] */
+} spari_states;
+enum { SPARI_MOST_STATES = 1000 };
+
 /* Loads over the parts of a step (parts.c). s runs from 0 at t^n to 1 at t^{n+1}. */
 typedef struct spari_parts {
     double theta;            /* where the last part ended; 0: none in this step */
@@ -53,10 +61,12 @@ typedef struct spari_taking {
     double *end;                   /* [2][nodes][6]: ends of parts, where there are any */
     spari_bins *end_bins;          /* of the same, where they are kept */
     int added;                     /* states with loads so far */
-    double *places;        /* [n][3] of the force nodes here; NULL: the states have no forces, or there are no nodes */
-    const double **sorted; /* [n] of them, by height */
-    char *found;           /* [n] */
-    spari_history *history;
+    int64_t n;
+    double *places;         /* [n][3] of the force nodes here; NULL: nothing is kept by node, or there are no nodes */
+    const double **sorted;  /* [n] of them, by height */
+    char *found;            /* [n] */
+    spari_history *history; /* NULL: forces are not kept */
+    spari_states *states;   /* NULL: there are none */
 } spari_taking;
 
 /* Reproducible sums of a fluid's loads: of load, load_new, load_accepted; of `mean`, end[0] and end[1] of its parts.
@@ -89,6 +99,7 @@ struct spar_fluid {
     double audit[SPAR_AUDIT_COUNT];
     spari_parts *parts;     /* of loads that come several times in a step; NULL: none ever did */
     spari_history *history; /* NULL: not kept */
+    spari_states *states;   /* NULL: there are none */
     spari_taking *taking;   /* of a file being loaded (restore.c); else NULL, or what was given up */
 };
 
@@ -155,6 +166,12 @@ void spari_fluid_revert_loads(spar_fluid *fluid);
 /* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
+/* Numbers for n nodes, zeros; NULL: no memory. begin, accept: of a step; states NULL: there are none. */
+spari_states *spari_states_create(int64_t n, int64_t width);
+spari_states *spari_states_copy(const spari_states *from);
+void spari_states_free(spari_states *states);
+void spari_states_begin(spari_states *states);
+void spari_states_accept(spari_states *states);
 void spari_taking_free(spari_taking *taking);
 /* Room for the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
 int spari_parts_prepare(spar_fluid *fluid);

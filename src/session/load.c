@@ -26,9 +26,10 @@ typedef struct fluid_record {
     int rank, member;
     int64_t name; /* where its name begins in the index */
     int64_t at, count;
-    int64_t loads, nodes; /* words before what is node by node; nodes */
-    const double *head;   /* [SPARI_FLUID_HEAD] */
-    int key;              /* alike for those of one name and member */
+    int64_t loads; /* words before what is node by node */
+    spari_by_node by;
+    const double *head; /* [SPARI_FLUID_HEAD] */
+    int key;            /* alike for those of one name and member */
 } fluid_record;
 
 typedef struct reading {
@@ -393,7 +394,7 @@ static int note_fluid(spar_session *s, reading *l, int rank) {
     r.head = (const double *)(const void *)spari_image_get(&l->index, SPARI_FLUID_HEAD);
     const spar_member *m = member_at(s, k);
     if (l->index.failed || !m || r.count < SPARI_FLUID_HEAD ||
-        !spari_fluid_is_state(m, r.head, r.count, &r.loads, &r.nodes)) {
+        !spari_fluid_is_state(m, r.head, r.count, &r.loads, &r.by)) {
         return spari_saved_broken(s);
     }
     r.member = (int)k;
@@ -615,14 +616,17 @@ static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64
             broken |= !spari_fluid_take_loads(f, words, l->exact || l->taker[r->key] == rank);
         }
     }
-    for (int64_t i = 0; i < r->nodes; i += PIECE_NODES) {
-        int64_t n = r->nodes - i < PIECE_NODES ? r->nodes - i : PIECE_NODES;
-        for (int k = 0; k < 5; k++) {
-            SPARI_TRY(fetch_piece(s, l, r, wanted, r->loads + 3 * (k * r->nodes + i), 3 * n, 3 * k * n));
+    const spari_by_node *by = &r->by;
+    int64_t most = by->all > 0 ? PIECE / by->all : 1;
+    for (int64_t i = 0; i < by->nodes; i += most) {
+        int64_t n = by->nodes - i < most ? by->nodes - i : most, before = 0;
+        for (int k = 0; k < by->blocks; before += by->width[k], k++) {
+            int64_t width = by->width[k];
+            SPARI_TRY(fetch_piece(s, l, r, wanted, r->loads + before * by->nodes + width * i, width * n, before * n));
         }
         for (spar_fluid *f = s->fluids; f && l->status == SPAR_OK; f = spari_fluid_next(f)) {
             if (takes(s, l, r, f, own)) {
-                spari_fluid_take_nodes(f, r->nodes, i, n, words);
+                spari_fluid_take_nodes(f, r->head, i, n, words);
             }
         }
     }

@@ -312,6 +312,42 @@ void do_spar_fluid_get_forces(call *c) {
     RUN(c, spar_fluid_get_forces(f->f, force));
 }
 
+void do_spar_fluid_set_states(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t width = arg_count(c, 0, 3);
+    RUN(c, spar_fluid_set_states(f->f, width));
+}
+
+void do_spar_fluid_get_states(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t *width = arg_out(c, sizeof(int64_t), 1);
+    double *dt = OUT_OR_NULL(c, 1);
+    RUN(c, spar_fluid_get_states(f->f, width, dt));
+}
+
+/* Most often as many numbers a node as there are. */
+static int64_t arg_width(call *c, const live_fluid *f) {
+    int64_t width = 0;
+    if (f->f) {
+        (void)spar_fluid_get_states(f->f, &width, NULL);
+    }
+    return odd(c) ? arg_count(c, 0, 3) : width;
+}
+
+void do_spar_fluid_pull_states(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t width = arg_width(c, f);
+    double *states = OUT(c, length(width) * fluid_count(f, SPAR_NODES_FORCE));
+    RUN(c, spar_fluid_pull_states(f->f, width, states));
+}
+
+void do_spar_fluid_push_states(call *c) {
+    live_fluid *f = arg_fluid(c);
+    int64_t width = arg_width(c, f);
+    double *states = arg_reals(c, length(width) * fluid_count(f, SPAR_NODES_FORCE), -1, 1);
+    RUN(c, spar_fluid_push_states(f->f, width, states));
+}
+
 void do_spar_fluid_pull_forces(call *c) {
     live_fluid *f = arg_fluid(c);
     double theta = arg_theta(c), *force = OUT(c, fluid_room(f, SPAR_NODES_FORCE));

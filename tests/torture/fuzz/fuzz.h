@@ -151,6 +151,10 @@ enum {
     CALL(spar_fluid_pull_force_places, 60, FUZZ_PURE)                                                                  \
     CALL(spar_fluid_get_places, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_get_forces, 30, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_set_states, 60, FUZZ_CHANGES)                                                                      \
+    CALL(spar_fluid_get_states, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_pull_states, 30, FUZZ_PURE)                                                                        \
+    CALL(spar_fluid_push_states, 60, FUZZ_PUSH)                                                                        \
     CALL(spar_fluid_set_layout, 50, FUZZ_CHANGES)                                                                      \
     CALL(spar_fluid_get_layout, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_projection, 50, FUZZ_CHANGES)                                                                  \

@@ -538,6 +538,9 @@ static void act_fluids(void) {
     CALL(spar_fluid_pull_force_places, sections, 0.5, out, w, q);
     CALL(spar_fluid_get_places, sections, SPAR_NODES_FORCE, out, w, q, NULL);
     CALL(spar_fluid_get_forces, sections, w);
+    CALL(spar_fluid_set_states, sections, 2);
+    CALL(spar_fluid_get_states, sections, &count, NULL);
+    CALL(spar_fluid_pull_states, sections, 2, out);
     CALL(spar_fluid_pull_poses, sections, 1, out, q, w, w, w, w);
     CALL(spar_fluid_pull_matrices, sections, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
     CALL(spar_fluid_check_matrices, sections, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
@@ -549,6 +552,7 @@ static void act_fluids(void) {
     }
     CALL(spar_step_begin, s, 0.02);
     CALL(spar_step_solve, s);
+    CALL(spar_fluid_push_states, sections, 2, out);
     (void)solve(s, 0, 0.02, 0, &h);
     CALL(spar_fluid_push_forces, sections, w, NULL);
     CALL(spar_fluid_push_forces_f32, sections, x32, NULL);
