@@ -401,7 +401,7 @@ static void test_refused(void **state) {
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_rotor(s.aero, bad, axis, 1.5, 63.0), "not finite");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_rotor(s.aero, hub, axis, 63.0, 63.0), "tip radius");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_rotor(s.aero, hub, axis, NAN, 63.0), "hub radius");
-    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_effects(s.aero, 256), "256");
+    REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_effects(s.aero, 2048), "2048");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_turn(s.aero, 0), "right-handed");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_set_blades(s.aero, 2), "2 blades in all");
     REFUSED(SPAR_ERR_ARGUMENT, spar_aero_create(2, (spar_fluid *[]){s.fluid[0], NULL}, &aero), "blade 1 is NULL");

@@ -187,7 +187,7 @@ static void test_rotor(void **state) {
                                      table[0]));
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     sum_loads(&c, root, data.length, all);
-    for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
+    for (int r = 0; r <= SPAR_AERO_ROW_TOWER; r++) {
         double change = 0, size = 0;
         OK(c.s, spar_aero_set_effects(c.aero, effects & ~bit[r]));
         OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
@@ -203,7 +203,7 @@ static void test_rotor(void **state) {
     OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
                                      table[0]));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
-        assert_true(table[r][SPAR_COLUMN_IN_FORCE] == (r >= SPAR_AERO_ROW_DRAG));
+        assert_true(table[r][SPAR_COLUMN_IN_FORCE] == (r >= SPAR_AERO_ROW_DRAG && r <= SPAR_AERO_ROW_TOWER));
     }
     OK(c.s, spar_aero_set_effects(c.aero, effects));
     OK(c.s, spar_aero_set_rotor(c.aero, rotor.hub, rotor.axis, 0, 63));

@@ -58,8 +58,10 @@ static scene scene_of(int effects) {
 
 static spari_element solve(const scene *s) {
     gsl_interp_accel accel = {0, 0, 0};
-    spari_section section = {3.5, cos(s->twist), sin(s->twist), spari_polar_share(polar)};
-    spari_centre station = {s->x, s->q, s->v, s->wind, spari_rotor_radius(&s->rotor, s->x), &accel};
+    spari_section section = {
+        .chord = 3.5, .cos_twist = cos(s->twist), .sin_twist = sin(s->twist), .table = spari_polar_share(polar)};
+    spari_centre station = {.x = s->x, .q = s->q, .v = s->v, .wind = s->wind, .accel = &accel};
+    station.loss_radius = spari_rotor_radius(&s->rotor, s->x);
     spari_element e;
     spari_element_solve(&s->rotor, &section, &station, 1.225, solver, &e);
     spari_table_release(section.table);

@@ -225,7 +225,7 @@ constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVI
 call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
 call spar_session_apply_advice int session|session|value| dt|double|out|
 call spar_member_get_advice int member|member|value| fidelity|int|out| modes|int64_t|out| nodes_per_element|int|out| points|int|out|
-constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32 SPAR_AERO_SHEAR=64 SPAR_AERO_TOWER=128
+constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32 SPAR_AERO_SHEAR=64 SPAR_AERO_TOWER=128 SPAR_AERO_INFLOW=256 SPAR_AERO_STALL=512 SPAR_AERO_UNSTEADY=1024
 constants SPAR_SHEAR_POWER=0 SPAR_SHEAR_LOG=1 SPAR_SHEAR_LINEAR=2
 constants SPAR_POLAR_LINEAR=0 SPAR_POLAR_AKIMA=1 SPAR_POLAR_CUBIC=2
 constants SPAR_AERO_FLAG_END=1 SPAR_AERO_FLAG_NO_ROOT=2 SPAR_AERO_FLAG_BEYOND_POLAR=4 SPAR_AERO_FLAG_TOWER=8
@@ -250,7 +250,7 @@ call spar_aero_get_rotor int aero|aero|value| thrust|double|out| torque|double|o
 call spar_aero_get_sections int aero|aero|value| alpha|double|out|[blades][n] cl|double|out|[blades][n] cd|double|out|[blades][n] a|double|out|[blades][n] a_tangential|double|out|[blades][n]
 call spar_aero_get_flags int aero|aero|value| flags|int|out|[blades][n] no_root|int64_t|out|
 call spar_aero_get_loads int aero|aero|value| per_length|double|out|[blades][n][6] force|double|out|[blades][n][3] moment|double|out|[blades][n][3]
-constants SPAR_AERO_ROW_INDUCTION=0 SPAR_AERO_ROW_TIP_LOSS=1 SPAR_AERO_ROW_HUB_LOSS=2 SPAR_AERO_ROW_SWIRL=3 SPAR_AERO_ROW_DRAG=4 SPAR_AERO_ROW_MOMENT=5 SPAR_AERO_ROW_SHEAR=6 SPAR_AERO_ROW_TOWER=7 SPAR_AERO_ROW_COUNT=8
+constants SPAR_AERO_ROW_INDUCTION=0 SPAR_AERO_ROW_TIP_LOSS=1 SPAR_AERO_ROW_HUB_LOSS=2 SPAR_AERO_ROW_SWIRL=3 SPAR_AERO_ROW_DRAG=4 SPAR_AERO_ROW_MOMENT=5 SPAR_AERO_ROW_SHEAR=6 SPAR_AERO_ROW_TOWER=7 SPAR_AERO_ROW_INFLOW=8 SPAR_AERO_ROW_STALL=9 SPAR_AERO_ROW_UNSTEADY=10 SPAR_AERO_ROW_COUNT=11
 call spar_aero_effect_name text row|int|value|
 call spar_aero_report_effects int aero|aero|value| session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]
 call spar_member_write_vtk int member|member|value| path|char|in|[]

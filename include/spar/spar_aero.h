@@ -1,8 +1,8 @@
 /* spar_aero.h: blade element with momentum theory, the fluid that comes with the library.
 
-   Quasi-steady: lift, drag and pitching moment from polars and the wind relative to the moving section, with or
-   without the induced velocity of momentum theory (Ning 2014, doi 10.1002/we.1636). It is made on the calls of spar.h
-   alone.
+   Lift, drag and pitching moment from polars and the wind relative to the moving section, with or without the induced
+   velocity of momentum theory (Ning 2014, doi 10.1002/we.1636); quasi-steady, but for the effects that remember. It is
+   made on the calls of spar.h alone.
 
    A section is a place of a fluid (spar_fluid_set_sections); its aerodynamic centre is the fluid's node. Its frame is
    the one spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x
@@ -24,14 +24,18 @@ typedef struct spar_aero spar_aero;   /* the blades of a rotor on this rank, or 
 
 /* Effects. What is off costs nothing. */
 enum {
-    SPAR_AERO_INDUCTION = 1, /* momentum theory; needs spar_aero_set_rotor. Without it the next three mean nothing. */
-    SPAR_AERO_TIP_LOSS = 2,  /* Prandtl's factor of the tip */
-    SPAR_AERO_HUB_LOSS = 4,  /* Prandtl's factor of the hub; none where hub_radius is 0 */
-    SPAR_AERO_SWIRL = 8,     /* tangential induction */
-    SPAR_AERO_DRAG = 16,     /* drag forces. Drag never takes part in the inductions (as AeroDyn's default). */
-    SPAR_AERO_MOMENT = 32,   /* pitching moments */
-    SPAR_AERO_SHEAR = 64,    /* wind by height; needs spar_aero_set_shear */
-    SPAR_AERO_TOWER = 128    /* the wind gives way to the tower; needs spar_aero_set_tower */
+    SPAR_AERO_INDUCTION = 1,  /* momentum theory; needs spar_aero_set_rotor. Without it the next three mean nothing. */
+    SPAR_AERO_TIP_LOSS = 2,   /* Prandtl's factor of the tip */
+    SPAR_AERO_HUB_LOSS = 4,   /* Prandtl's factor of the hub; none where hub_radius is 0 */
+    SPAR_AERO_SWIRL = 8,      /* tangential induction */
+    SPAR_AERO_DRAG = 16,      /* drag forces. Drag never takes part in the inductions (as AeroDyn's default). */
+    SPAR_AERO_MOMENT = 32,    /* pitching moments */
+    SPAR_AERO_SHEAR = 64,     /* wind by height; needs spar_aero_set_shear */
+    SPAR_AERO_TOWER = 128,    /* the wind gives way to the tower; needs spar_aero_set_tower */
+    SPAR_AERO_INFLOW = 256,   /* dynamic inflow: the induced velocity lags behind that of momentum theory (Oye) */
+    SPAR_AERO_STALL = 512,    /* dynamic stall: the point of separation lags behind the polar's (Oye) */
+    SPAR_AERO_UNSTEADY = 1024 /* thin airfoil: lift lags behind the downwash, as the wake is shed (Theodorsen), and the
+                                 air about the section is accelerated with it */
 };
 /* Laws of the wind over height. */
 enum { SPAR_SHEAR_POWER = 0, SPAR_SHEAR_LOG = 1, SPAR_SHEAR_LINEAR = 2 };
@@ -63,8 +67,8 @@ SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, doub
 /* NULL and a second call are legal. Sections that use the polar keep its table. */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
-/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve and spar_aero_read_aerodyn;
-   map them anew and the object must be made anew.
+/* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve, spar_aero_read_aerodyn and a
+   spar_aero_set_effects that asks for effects that remember; map them anew and the object must be made anew.
      blades: in, on this rank; 0 with NULL: a rank without blades
      sections[blades]: in, one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with
            the same number n >= 2 of sections, in order from root to tip at different places
@@ -149,7 +153,16 @@ SPAR_API int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3
 SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[3], double base_radius,
                                  double top_radius);
 /* SPAR_AERO_* or-ed. Default: drag; moments where a polar has any; all of momentum theory once the rotor is set; shear
-   and tower once these are. */
+   and tower once these are.
+   Inflow, stall and unsteady remember the steps before, each exact over a step for what comes in linearly in time
+   (docs/theory.md, (T27) to (T30)). They begin with the steady state: before the first step, in a static solution, at a
+   balanced start, and in the first step with them. What they remember are the fluids' states (spar_fluid_set_states,
+   whose numbers are theirs then): it goes through iterations, rejected steps, trials, save and load as these do.
+   Momentum theory takes the static polar's lift. Stall: lift alone; attached flow is the steepest line from the angle
+   without lift, 4 c / V the time. Unsteady: lift acts by the flow at three quarters of the chord, moments are pushed;
+   induced velocities count as steady. It asks for accelerations, so the start should be balanced (spar_session_start).
+   SPAR_ERR_STATE: a step is under way, where one of these three is asked for first, or the fluids have states of the
+   host's own. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
 /* Pulls the motion at theta, finds the loads in the wind, and pushes them.
      density: in, kg/m^3
@@ -157,9 +170,10 @@ SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
      theta: in, as of spar_fluid_pull_motion
    Loads per length are linear between the sections and nothing lies beyond the first and the last; each interval (as
    long as its ends are apart in the reference configuration) gives its ends the consistent shares L/6 (2 f1 + f2), L/6
-   (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before. No memory is taken. After a
-   failure the loads are as they were (and what the last solve found, but where it is SPAR_ERR_NUMERIC), and the check
-   of a step under way fails on all ranks unless a later solve succeeds. */
+   (f1 + 2 f2). Same input, same result: nothing is remembered from the solve before, but by inflow, stall and unsteady
+   from the step before: with these theta is 1 in a step. No memory is taken. After a failure the loads are as they were
+   (and what the last solve found, but where it is SPAR_ERR_NUMERIC), and the check of a step under way fails on all
+   ranks unless a later solve succeeds. */
 SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta);
 /* Of the blades on this rank in the last solve, needs set_rotor. Each NULL: not wanted.
      thrust: out, N, force along the axis
@@ -193,7 +207,10 @@ enum {
     SPAR_AERO_ROW_MOMENT = 5,
     SPAR_AERO_ROW_SHEAR = 6,
     SPAR_AERO_ROW_TOWER = 7,
-    SPAR_AERO_ROW_COUNT = 8
+    SPAR_AERO_ROW_INFLOW = 8,
+    SPAR_AERO_ROW_STALL = 9,
+    SPAR_AERO_ROW_UNSTEADY = 10,
+    SPAR_AERO_ROW_COUNT = 11
 };
 /* Name of a row, "tip loss"; static storage; "" for what is no row. */
 SPAR_API const char *spar_aero_effect_name(int row);

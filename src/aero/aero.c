@@ -8,9 +8,10 @@
 #include <string.h>
 
 /* What a solve without momentum theory of its own asking has. */
-enum { SPARI_AERO_ALL = 2 * SPAR_AERO_TOWER - 1 };
+enum { SPARI_AERO_ALL = 2 * SPAR_AERO_UNSTEADY - 1 };
 static const int momentum_effects = SPAR_AERO_INDUCTION | SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS | SPAR_AERO_SWIRL;
 static const int wind_effects = SPAR_AERO_SHEAR | SPAR_AERO_TOWER;
+static const int memory_effects = SPAR_AERO_INFLOW | SPAR_AERO_STALL | SPAR_AERO_UNSTEADY;
 
 static int64_t count(const spar_aero *aero) {
     return aero->blades * aero->n;
@@ -25,9 +26,10 @@ static void aero_free(spar_aero *aero) {
     if (aero->solver) {
         gsl_root_fsolver_free(aero->solver);
     }
-    void *all[] = {aero->fluid,  aero->section, aero->accel, aero->place, aero->length,  aero->loss_radius,
-                   aero->x,      aero->v,       aero->q,     aero->omega, aero->element, aero->force,
-                   aero->moment, aero->wind,    aero->met,   aero->inside};
+    void *all[] = {aero->fluid,  aero->section, aero->accel,   aero->place,  aero->length,  aero->loss_radius,
+                   aero->x,      aero->v,       aero->q,       aero->omega,  aero->element, aero->force,
+                   aero->moment, aero->wind,    aero->met,     aero->inside, aero->was,     aero->is,
+                   aero->a,      aero->omega_a, aero->attached};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         free(all[i]);
     }
@@ -181,10 +183,64 @@ static int have(double **x, int64_t n) {
     return *x != NULL;
 }
 
+/* Moments that are pushed. */
+static int has_moments(int effects) {
+    return (effects & (SPAR_AERO_MOMENT | SPAR_AERO_UNSTEADY)) != 0;
+}
+
+/* Memory of what remembers. */
+static int have_memory(spar_aero *aero, int effects) {
+    int64_t all = count(aero);
+    int moving = (effects & SPAR_AERO_UNSTEADY) != 0;
+    aero->was = aero->was ? aero->was : spari_zalloc(all, sizeof *aero->was);
+    aero->is = aero->is ? aero->is : spari_zalloc(all, sizeof *aero->is);
+    return aero->was && aero->is &&
+           (!moving || (have(&aero->omega, 3 * all) && have(&aero->a, 3 * all) && have(&aero->omega_a, 3 * all)));
+}
+
+/* What the sections remember goes with the fluids. As long as none does they have no numbers, and nothing is lost where
+   one of them cannot. */
+static int keep_states(const spar_aero *aero, const char *caller) {
+    for (int b = 0; b < aero->blades; b++) {
+        int64_t width;
+        SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &width, NULL));
+        SPARI_REQUIRE(aero->session, width == 0 || width == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
+                      "%s: fluid '%s' has %lld states a node of the host's own (spar_fluid_set_states); these effects "
+                      "need them",
+                      caller, spar_fluid_get_name(aero->fluid[b]), (long long)width);
+        SPARI_TRY(spar_fluid_set_states(aero->fluid[b], SPARI_MEMORY_NUMBERS));
+    }
+    return SPAR_OK;
+}
+
+/* Its polar is another one. */
+static void forget_attached(spar_aero *aero, int64_t i) {
+    if (aero->attached) {
+        aero->attached[i].known = 0;
+    }
+}
+
+/* Attached flow of the sections that have polars. */
+static int find_attached(spar_aero *aero) {
+    aero->attached = aero->attached ? aero->attached : spari_zalloc(aero->n, sizeof *aero->attached);
+    for (int64_t i = 0; aero->attached && i < aero->n; i++) {
+        spari_attached *flow = aero->attached + i;
+        if (aero->section[i].table && !flow->known) {
+            spari_table_find_attached(aero->section[i].table, &flow->zero, &flow->slope);
+            flow->known = 1;
+        }
+    }
+    return aero->attached != NULL;
+}
+
 /* Puts effects in force, with the memory that they and a rotor need. */
 static int adopt(spar_aero *aero, int effects, const char *caller) {
     int64_t all = count(aero);
-    int whole = !(effects & SPAR_AERO_MOMENT) || have(&aero->moment, 3 * all);
+    int whole = !has_moments(effects) || have(&aero->moment, 3 * all);
+    if (effects & memory_effects) {
+        whole = have_memory(aero, effects) && whole;
+    }
+    whole = (!(effects & SPAR_AERO_STALL) || find_attached(aero)) && whole;
     if (effects & wind_effects) {
         aero->inside = aero->inside ? aero->inside : spari_zalloc(all, sizeof *aero->inside);
         whole = whole && have(&aero->met, 3 * all) && aero->inside;
@@ -201,6 +257,9 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
         }
     }
     SPARI_REQUIRE(aero->session, whole, SPAR_ERR_MEMORY, "%s: no memory for the effects", caller);
+    if ((effects & memory_effects) && !(aero->rotor.effects & memory_effects)) {
+        SPARI_TRY(spari_named(aero->session, caller, keep_states(aero, caller)));
+    }
     aero->rotor.effects = effects;
     return SPAR_OK;
 }
@@ -221,10 +280,13 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     }
     spari_section old = aero->section[i];
     aero->section[i] = (spari_section){chord, cos(twist), sin(twist), spari_polar_share(polar)};
+    forget_attached(aero, i);
     int status = adopt(aero, implied_effects(aero), __func__);
     if (status != SPAR_OK) {
         spari_table_release(aero->section[i].table);
         aero->section[i] = old;
+        forget_attached(aero, i);
+        (void)(aero->attached && find_attached(aero));
         return status;
     }
     spari_table_release(old.table);
@@ -438,9 +500,11 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
 static int pull_centres(spar_aero *aero, double theta) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = b * aero->n;
-        double *omega = aero->rotor_given ? aero->omega + 3 * at : NULL;
+        int moving = (aero->rotor.effects & SPAR_AERO_UNSTEADY) != 0;
+        double *omega = aero->rotor_given || moving ? aero->omega + 3 * at : NULL;
         SPARI_TRY(spar_fluid_pull_poses(aero->fluid[b], theta, aero->x + 3 * at, aero->q + 4 * at, aero->v + 3 * at,
-                                        omega, NULL, NULL));
+                                        omega, moving ? aero->a + 3 * at : NULL,
+                                        moving ? aero->omega_a + 3 * at : NULL));
     }
     return SPAR_OK;
 }
@@ -487,19 +551,70 @@ static void flag_inside(spar_aero *aero) {
     }
 }
 
+/* What the sections remember of t^n, and the time since. A rank without blades has none. */
+static int recall(spar_aero *aero, double theta, double *dt, const char *call) {
+    *dt = 0.0;
+    for (int b = 0; b < aero->blades; b++) {
+        SPARI_TRY(spar_fluid_get_states(aero->fluid[b], NULL, dt));
+        SPARI_TRY(
+            spar_fluid_pull_states(aero->fluid[b], SPARI_MEMORY_NUMBERS, (double *)(void *)(aero->was + b * aero->n)));
+    }
+    SPARI_REQUIRE(aero->session, theta >= 1.0 || *dt <= 0.0, SPAR_ERR_ARGUMENT,
+                  "%s: theta is %g; effects that remember (inflow, stall, unsteady) go from t^n to t^{n+1}: give 1",
+                  call, theta);
+    for (int64_t k = 0; k < count(aero); k++) {
+        aero->is[k] = aero->was[k];
+        aero->is[k].begun = 0.0;
+    }
+    return SPAR_OK;
+}
+
+static int remember(const spar_aero *aero) {
+    for (int b = 0; b < aero->blades; b++) {
+        SPARI_TRY(spar_fluid_push_states(aero->fluid[b], SPARI_MEMORY_NUMBERS,
+                                         (const double *)(const void *)(aero->is + b * aero->n)));
+    }
+    return SPAR_OK;
+}
+
+/* What section i of a blade, k of all, needs of the step before. */
+static spari_past past_of(const spar_aero *aero, int64_t i, int64_t k, double dt) {
+    spari_past past = {.step = {dt, aero->was + k, aero->is + k}};
+    past.attached = aero->attached ? aero->attached + i : NULL;
+    if (aero->rotor.effects & SPAR_AERO_UNSTEADY) {
+        past.omega = aero->omega + 3 * k;
+        past.a = aero->a + 3 * k;
+        past.omega_a = aero->omega_a + 3 * k;
+    }
+    return past;
+}
+
+static void solve_element(spar_aero *aero, int64_t i, int64_t k, double density, const double *inflow,
+                          const spari_past *past) {
+    double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
+    const spari_centre station = {
+        aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss, aero->accel + k, past};
+    spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
+}
+
 static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     SPARI_TRY(check_solve(aero, density, inflow, theta, call));
     aero->solved = 0;
     SPARI_TRY(pull_centres(aero, theta));
-    int moments = (aero->rotor.effects & SPAR_AERO_MOMENT) != 0, changed = (aero->rotor.effects & wind_effects) != 0;
+    double dt = 0.0;
+    int moments = has_moments(aero->rotor.effects), remembers = (aero->rotor.effects & memory_effects) != 0,
+        changed = (aero->rotor.effects & wind_effects) != 0;
     inflow = changed ? meet_wind(aero, inflow) : inflow;
+    SPARI_TRY(remembers ? recall(aero, theta, &dt, call) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;
-            double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
-            spari_centre station = {aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss,
-                                    aero->accel + k};
-            spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
+            if (remembers) {
+                const spari_past past = past_of(aero, i, k, dt);
+                solve_element(aero, i, k, density, inflow, &past);
+            } else {
+                solve_element(aero, i, k, density, inflow, NULL);
+            }
         }
         lump(aero, b, 0, aero->force);
         if (moments) {
@@ -515,6 +630,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
         int64_t at = 3 * b * aero->n;
         SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));
     }
+    SPARI_TRY(remembers ? remember(aero) : SPAR_OK);
     aero->used = aero->rotor;
     aero->rotor_used = aero->rotor_given;
     aero->solved = 1;
@@ -549,7 +665,7 @@ static void sum_rotor(const spar_aero *aero, double *thrust, double *torque, dou
         spari_cross(arm, f, turn);
         *thrust += spari_dot(rotor->axis, f);
         *torque += spari_dot(rotor->axis, turn);
-        if (rotor->effects & SPAR_AERO_MOMENT) {
+        if (has_moments(rotor->effects)) {
             *torque += spari_dot(rotor->axis, aero->moment + 3 * k);
         }
     }
@@ -636,7 +752,7 @@ int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force
     if (force && bytes > 0) {
         memcpy(force, aero->force, bytes);
     }
-    if (moment && bytes > 0 && (aero->used.effects & SPAR_AERO_MOMENT)) {
+    if (moment && bytes > 0 && has_moments(aero->used.effects)) {
         memcpy(moment, aero->moment, bytes);
     } else if (moment && bytes > 0) {
         memset(moment, 0, bytes);

@@ -21,13 +21,16 @@ struct spar_aero {
     double *length;           /* [blades][n - 1] */
     double *loss_radius;      /* [blades][n], of the first rotor; NULL: no loss asked for so far */
     double *x, *v, *q;
-    double *omega;          /* NULL: no rotor */
-    spari_element *element; /* [blades][n] */
-    double *force, *moment; /* moment: NULL before there is one to push */
-    spari_wind *wind;       /* NULL: neither shear nor tower described so far */
-    double *met;            /* [blades][n][3] wind with these; NULL: not in force so far */
-    int *inside;            /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
-    spari_rotor used;       /* in the last solve; rotor_used: it was given then */
+    double *omega;            /* NULL: no rotor, no unsteady airfoil so far */
+    double *a, *omega_a;      /* NULL: no unsteady airfoil so far */
+    spari_element *element;   /* [blades][n] */
+    double *force, *moment;   /* moment: NULL before there is one to push */
+    spari_memory *was, *is;   /* [blades][n] at t^n and at t^{n+1}; NULL: nothing that remembers so far */
+    spari_attached *attached; /* [n]; NULL: no dynamic stall so far */
+    spari_wind *wind;         /* NULL: neither shear nor tower described so far */
+    double *met;              /* [blades][n][3] wind with these; NULL: not in force so far */
+    int *inside;              /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
+    spari_rotor used;         /* in the last solve; rotor_used: it was given then */
     int rotor_used;
 };
 

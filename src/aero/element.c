@@ -84,10 +84,63 @@ static void induce(const spari_rotor *rotor, const spari_section *section, const
             element->flags |= SPAR_AERO_FLAG_NO_ROOT;
         }
     }
+    if (station->past && (rotor->effects & SPAR_AERO_INFLOW)) {
+        double quasi[2] = {wx - annulus.vx, wy - annulus.vy}, lagged[2];
+        double a = annulus.vx != 0.0 ? -quasi[0] / annulus.vx : 0.0;
+        double rate = spari_inflow_rate(a, fabs(spari_dot(rotor->axis, station->wind)), rotor->tip_radius);
+        spari_inflow_step(&station->past->step, rate, radius / rotor->tip_radius, quasi, lagged);
+        wx = annulus.vx + lagged[0];
+        wy = annulus.vy + lagged[1];
+    }
     element->a = annulus.vx != 0.0 ? 1.0 - wx / annulus.vx : 0.0;
     element->a_tangential = annulus.vy != 0.0 ? wy / annulus.vy - 1.0 : 0.0;
     flow[0] = wx * to_p + wy * to_s;
     flow[1] = wx * to_s - wy * to_p;
+}
+
+/* What the shed wake leaves of the downwash at three quarters of the chord, which takes the place of flow[1]. */
+static void shed(const spari_rotor *rotor, const spari_section *section, const spari_centre *station, const frame *f,
+                 double flow[2]) {
+    double half = 0.5 * section->chord, pitching = rotor->turn * spari_dot(station->past->omega, f->span);
+    double rate = hypot(flow[0], flow[1]) / half;
+    flow[1] = spari_wake_step(&station->past->step, rate, flow[1] + half * pitching);
+}
+
+/* Loads of the air that a thin airfoil accelerates (Theodorsen), per length: pi rho b^2 times the rate of the downwash
+   at half chord, there and across the chord; and what turning it about that place takes. stream: along the chord. */
+static void accelerate_air(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
+                           const frame *f, double density, double stream, double load[6]) {
+    double half = 0.5 * section->chord, arm[3], at_arm[3], carried[3], again[3], turned[3], rate = 0.0;
+    for (int i = 0; i < 3; i++) {
+        arm[i] = 0.5 * half * f->chord[i];
+    }
+    spari_cross(station->past->omega, arm, at_arm);
+    spari_cross(station->past->omega_a, arm, carried);
+    spari_cross(station->past->omega, at_arm, again);
+    spari_cross(station->past->omega, f->normal, turned);
+    for (int i = 0; i < 3; i++) {
+        double wind = station->wind[i] - station->v[i] - at_arm[i], a = station->past->a[i] + carried[i] + again[i];
+        rate += wind * turned[i] - a * f->normal[i];
+    }
+    double air = M_PI * density * half * half, pitching = rotor->turn * spari_dot(station->past->omega, f->span);
+    double faster = rotor->turn * spari_dot(station->past->omega_a, f->span);
+    double moment = -air * (0.5 * half * (rate + stream * pitching) + 0.125 * half * half * faster);
+    for (int i = 0; i < 3; i++) {
+        load[i] += air * rate * f->normal[i];
+        load[3 + i] += rotor->turn * moment * f->span[i];
+    }
+}
+
+/* Lift where the point of separation lags behind its place of steady flow. Beyond half a right angle from the angle
+   without lift there is less of it, beyond a right angle none: attached flow is nothing to be compared with. */
+static double lag_stall(const spari_section *section, const spari_centre *station, double alpha, double speed,
+                        double lift) {
+    const spari_attached *flow = station->past->attached;
+    double away = remainder(alpha - flow->zero, 2.0 * M_PI), attached = flow->slope * away;
+    double near = fmax(0.0, fmin(1.0, 2.0 - 4.0 * M_1_PI * fabs(away)));
+    double target = fabs(away) > 1e-6 ? spari_attached_part(lift / attached) : 1.0;
+    double part = spari_stall_step(&station->past->step, speed / (4.0 * section->chord), target);
+    return lift + near * (part - target) * spari_attached_gain(lift, attached);
 }
 
 void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
@@ -100,13 +153,21 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
     if (rotor->effects & SPAR_AERO_INDUCTION) {
         induce(rotor, section, station, &f, solver, flow, element);
     }
-    int beyond;
+    double stream = flow[0];
+    const spari_past *past = section->chord > 0.0 ? station->past : NULL;
+    int beyond, unsteady = past && (rotor->effects & SPAR_AERO_UNSTEADY);
+    if (unsteady) {
+        shed(rotor, section, station, &f, flow);
+    }
     element->alpha = atan2(flow[1], flow[0]);
     double place = spari_table_wrap(section->table, element->alpha, &beyond);
     element->flags |= beyond ? SPAR_AERO_FLAG_BEYOND_POLAR : 0;
     element->cl = spari_table_lift(section->table, place, station->accel);
     /* lift across the flow towards the suction side, drag along it */
     double speed = hypot(flow[0], flow[1]), scale = 0.5 * density * section->chord * speed;
+    if (past && (rotor->effects & SPAR_AERO_STALL) && past->attached->slope > 0.0) {
+        element->cl = lag_stall(section, station, element->alpha, speed, element->cl);
+    }
     double along = -element->cl * flow[1], across = element->cl * flow[0];
     if (rotor->effects & SPAR_AERO_DRAG) {
         element->cd = spari_table_drag(section->table, place, station->accel);
@@ -122,5 +183,8 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
         for (int i = 0; i < 3; i++) {
             element->load[3 + i] = moment * f.span[i];
         }
+    }
+    if (unsteady) {
+        accelerate_air(rotor, section, station, &f, density, stream, element->load);
     }
 }

@@ -3,6 +3,7 @@
 #define SPARI_ELEMENT_H
 
 #include "momentum.h"
+#include "unsteady.h"
 
 /* What the sections of a rotor share. */
 typedef struct spari_rotor {
@@ -18,10 +19,24 @@ typedef struct spari_section {
     spari_table *table; /* NULL: not set yet */
 } spari_section;
 
+/* Attached flow by a section's table: the angle without lift, the slope. */
+typedef struct spari_attached {
+    int known;
+    double zero, slope;
+} spari_attached;
+
+/* What effects that remember need of a section. */
+typedef struct spari_past {
+    spari_passage step;
+    const spari_attached *attached;    /* of dynamic stall */
+    const double *omega, *a, *omega_a; /* of an unsteady airfoil: angular velocity, accelerations of the centre */
+} spari_past;
+
 typedef struct spari_centre {
     const double *x, *q, *v, *wind; /* place, orientation, velocity of the aerodynamic centre; wind there */
     double loss_radius;             /* distance from the axis in the reference configuration */
     gsl_interp_accel *accel;
+    const spari_past *past; /* NULL: no such effect in force */
 } spari_centre;
 
 typedef struct spari_element {

@@ -217,6 +217,39 @@ double spari_table_moment(const spari_table *table, double place, gsl_interp_acc
     return look_up(table, SPARI_CM, place, accel);
 }
 
+/* Where lift is 0 between two rows, at the first of which it is not positive, at the second it is. */
+static double find_zero_lift(const spari_table *table, int64_t row) {
+    gsl_interp_accel accel = {0, 0, 0};
+    double low = table->alpha[row], high = table->alpha[row + 1];
+    for (int i = 0; i < 60; i++) {
+        double middle = 0.5 * (low + high);
+        if (spari_table_lift(table, middle, &accel) > 0.0) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return low;
+}
+
+void spari_table_find_attached(const spari_table *table, double *zero, double *slope) {
+    const double *alpha = table->alpha, *lift = table->value[SPARI_CL];
+    *zero = INFINITY;
+    *slope = 0.0;
+    for (int64_t i = 0; i + 1 < table->n; i++) {
+        if (lift[i] <= 0.0 && lift[i + 1] > 0.0) {
+            double found = find_zero_lift(table, i);
+            *zero = fabs(found) < fabs(*zero) ? found : *zero;
+        }
+    }
+    for (int64_t i = 0; i < table->n; i++) { /* nearer than 1e-3 the quotient is of roundings */
+        double away = alpha[i] - *zero;
+        if (fabs(away) > 1e-3 && fabs(away) < SPARI_TURN / 8.0) {
+            *slope = fmax(*slope, lift[i] / away);
+        }
+    }
+}
+
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);

@@ -24,4 +24,8 @@ double spari_table_lift(const spari_table *table, double place, gsl_interp_accel
 double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel);
 double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel);
 
+/* The line that lift lies on where the flow is attached: the angle without lift nearest to 0 that lift rises through,
+   and the steepest way from there to a row within half a right angle. *slope is 0 where there is none. */
+void spari_table_find_attached(const spari_table *table, double *zero, double *slope);
+
 #endif

@@ -24,6 +24,9 @@ static const aero_row rows[SPAR_AERO_ROW_COUNT] = {
     {"pitching moments", SPAR_AERO_MOMENT, 0},
     {"wind shear", SPAR_AERO_SHEAR, 0},
     {"tower shadow", SPAR_AERO_TOWER, 0},
+    {"dynamic inflow", SPAR_AERO_INFLOW, SPAR_AERO_INDUCTION},
+    {"dynamic stall", SPAR_AERO_STALL, 0},
+    {"unsteady airfoil", SPAR_AERO_UNSTEADY, 0},
 };
 
 const char *spar_aero_effect_name(int r) {
@@ -43,7 +46,7 @@ static int try_once(spar_session *s, const aero_trial *t, int compare, double re
     return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, SPAR_TRY_COUNT, report);
 }
 
-static int has_moments(const spar_aero *aero) {
+static int polars_have_moments(const spar_aero *aero) {
     int any = 0;
     for (int64_t i = 0; i < aero->n; i++) {
         any |= aero->section[i].table && spari_table_has_moment(aero->section[i].table);
@@ -58,7 +61,7 @@ static int is_in_force(const spar_aero *aero, int r) {
         return 0;
     }
     return rows[r].effect == SPAR_AERO_HUB_LOSS ? aero->rotor.hub_radius > 0
-                                                : rows[r].effect != SPAR_AERO_MOMENT || has_moments(aero);
+                                                : rows[r].effect != SPAR_AERO_MOMENT || polars_have_moments(aero);
 }
 
 /* On any rank: all of them make the same trials. status: of the arguments on this rank. */

@@ -202,7 +202,10 @@ void do_spar_aero_set_blades(call *c) {
 
 void do_spar_aero_set_effects(call *c) {
     live_aero *a = arg_aero(c);
-    int effects = arg_flags(c, 255);
+    if (a->a && a->orphan) {
+        return;
+    }
+    int effects = arg_flags(c, 2 * SPAR_AERO_UNSTEADY - 1);
     RUN(c, spar_aero_set_effects(a->a, effects));
 }
 

@@ -859,7 +859,7 @@ static void act_aero(void) {
         CALL(spar_aero_set_blades, w.aero, 3);
         CALL(spar_aero_set_shear, w.aero, SPAR_SHEAR_POWER, ground, up, 90, 0.2);
         CALL(spar_aero_set_tower, w.aero, ground, hub, 3, 2);
-        CALL(spar_aero_set_effects, w.aero, 2 * SPAR_AERO_TOWER - 1);
+        CALL(spar_aero_set_effects, w.aero, 2 * SPAR_AERO_UNSTEADY - 1);
         CALL(spar_aero_solve, w.aero, 1.225, w.inflow[0], 1);
         CALL(spar_aero_get_rotor, w.aero, &thrust, &torque, &power);
         note(&thrust, sizeof thrust);
