@@ -75,11 +75,12 @@ module spar
   integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
   integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
-      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512
+      SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, &
+      SPAR_EFFECT_FOUNDATION = 1024
   integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
-      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_COUNT = 4
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
   integer, parameter, public :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
       SPAR_WORK_COUNT = 4
   integer, parameter, public :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
@@ -101,7 +102,7 @@ module spar
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
       SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
-      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_COUNT = 13
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_FOUNDATION = 13, SPAR_ROW_COUNT = 14
   integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
@@ -236,6 +237,8 @@ module spar
     generic :: set_sections => member_set_sections, member_set_sections_single_1
     procedure, private :: member_set_masses, member_set_masses_single_1
     generic :: set_masses => member_set_masses, member_set_masses_single_1
+    procedure, private :: member_set_foundation, member_set_foundation_single_1
+    generic :: set_foundation => member_set_foundation, member_set_foundation_single_1
     procedure :: set_quadrature => member_set_quadrature
     procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_damping, member_set_damping_single_1
@@ -308,6 +311,8 @@ module spar
     generic :: get_added_mass => member_get_added_mass, member_get_added_mass_single_1, member_get_added_mass_single_2
     procedure, private :: member_get_masses, member_get_masses_single_1, member_get_masses_single_2
     generic :: get_masses => member_get_masses, member_get_masses_single_1, member_get_masses_single_2
+    procedure, private :: member_get_foundation, member_get_foundation_single_1, member_get_foundation_single_2
+    generic :: get_foundation => member_get_foundation, member_get_foundation_single_1, member_get_foundation_single_2
     procedure, private :: member_learn_added_mass, member_learn_added_mass_single_1
     generic :: learn_added_mass => member_learn_added_mass, member_learn_added_mass_single_1
     procedure, private :: member_get_learned_added_mass, member_get_learned_added_mass_single_1, &
@@ -1261,6 +1266,31 @@ contains
         status = spar_beam_get_masses(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_masses
+
+  ! n: stations; eta and stiffness are filled as far as they reach
+  subroutine member_get_foundation(self, n, eta, stiffness, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(stiffness)) call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), &
+        [3_c_int64_t, size(stiffness, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_foundation', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_beam_get_foundation(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_beam_get_foundation(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(stiffness)) &
+        status = spar_beam_get_foundation(self%handle, n, size(stiffness, 2, kind=c_int64_t), stiffness=stiffness)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_foundation
 
   subroutine member_learn_added_mass(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -2588,6 +2618,22 @@ contains
     end if
     call finish(spar_beam_set_masses(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, errmsg)
   end subroutine member_set_masses
+
+  subroutine member_set_foundation(self, eta, stiffness, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_foundation', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_foundation(self%handle, size(eta, kind=c_int64_t), eta, stiffness), self%session, stat, &
+        errmsg)
+  end subroutine member_set_foundation
 
   subroutine member_set_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -4401,6 +4447,39 @@ contains
     call take(c_mass, mass)
   end subroutine member_get_masses_single_2
 
+  subroutine member_get_foundation_single_1(self, n, eta, stiffness, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_stiffness(:,:)
+
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(stiffness)) allocate (c_stiffness(ubound(stiffness, 1, c_int64_t), ubound(stiffness, 2, c_int64_t)), &
+        source=untouched)
+    call member_get_foundation(self, n=n, eta=c_eta, stiffness=c_stiffness, stat=stat, errmsg=errmsg)
+    call take(c_eta, eta)
+    call take(c_stiffness, stiffness)
+  end subroutine member_get_foundation_single_1
+
+  subroutine member_get_foundation_single_2(self, n, no_eta, stiffness, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_stiffness(:,:)
+
+    allocate (c_stiffness(ubound(stiffness, 1, c_int64_t), ubound(stiffness, 2, c_int64_t)), source=untouched)
+    if (present(no_eta)) return
+    call member_get_foundation(self, n=n, stiffness=c_stiffness, stat=stat, errmsg=errmsg)
+    call take(c_stiffness, stiffness)
+  end subroutine member_get_foundation_single_2
+
   subroutine member_learn_added_mass_single_1(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: eta(:)
@@ -5546,6 +5625,17 @@ contains
 
     call member_set_masses(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
   end subroutine member_set_masses_single_1
+
+  subroutine member_set_foundation_single_1(self, eta, stiffness, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_foundation(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_set_foundation_single_1
 
   subroutine member_set_damping_single_1(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self

@@ -376,7 +376,8 @@ enum {
     SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
     SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
     SPAR_EFFECT_DEFAULT = 256,       /* all that is on where nothing is set; or-ed with what is wanted besides */
-    SPAR_EFFECT_MASSES = 512         /* bodies of spar_beam_set_masses */
+    SPAR_EFFECT_MASSES = 512,        /* bodies of spar_beam_set_masses */
+    SPAR_EFFECT_FOUNDATION = 1024    /* springs of spar_beam_set_foundation */
 };
 
 /* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
@@ -447,6 +448,22 @@ SPAR_API int spar_beam_set_masses(spar_member *beam, int64_t n, const double *et
 /* n: out, how many there are, NULL: not wanted; capacity: in, of the arrays; eta[capacity], mass[capacity][36]: out, 0
    behind the last, NULL: not wanted. Local. */
 SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass);
+/* A foundation: springs to the ground all along a beam, soil about a pile or a rail's bed. They pull the line back to
+   where it is in the reference configuration, with a force per unit length of stiffness times displacement, along axes
+   that stay; their tangent is exact. They take part in steps, statics, modes and eigenvalues, and are loads in what
+   spar_member_get_loads gives, in reactions and in the account of work; what they store is in
+   spar_member_get_energy. Replaces what was set before. Local, before commit.
+     n: in, stations, 0 to 10000, 0: none (default)
+     eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump
+     stiffness[n][3]: in, N/m^2, >= 0, along the section's axes in the reference configuration (x tangent, y, z); linear
+           in eta between stations, zero before the first and behind the last; n = 1: the same all along
+   SPAR_ERR_UNSUPPORTED at commit: the member is prescribed or external, or of a fidelity below exact (a linear one in
+   the frame of its root does not see the ground). */
+SPAR_API int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness);
+/* n: out, stations, NULL: not wanted; capacity: in, of the arrays; eta[capacity], stiffness[capacity][3]: out, 0 behind
+   the last, NULL: not wanted. Local. */
+SPAR_API int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,
+                                      double *stiffness);
 /* Integration along an element. Default: sections if there are more than two stations, else Gauss with as many points
    as nodes. Commit refuses a rule too coarse for the element. Local.
      rule: in, SPAR_QUADRATURE_GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points` Gauss points in
@@ -661,7 +678,8 @@ enum {
     SPAR_ENERGY_STRAIN = 1,
     SPAR_ENERGY_GRAVITY = 2,    /* potential, 0 in the reference configuration */
     SPAR_ENERGY_DISSIPATED = 3, /* by damping since t = 0, up to t^n */
-    SPAR_ENERGY_COUNT = 4
+    SPAR_ENERGY_FOUNDATION = 4, /* stored in the springs of spar_beam_set_foundation */
+    SPAR_ENERGY_COUNT = 5
 };
 /* energy[capacity]: out, by SPAR_ENERGY_*, NULL: not wanted. Members spar does not solve for give zeros. With
    LARGE_ROTATION off, and of linear and modal members, the quadratic forms of their equations; on a driven root only
@@ -1324,7 +1342,8 @@ enum {
     SPAR_ROW_ITERATION = 10,     /* size: added mass over mass, as the coupling sees it; without: explicit */
     SPAR_ROW_HALF_STEP = 11,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
     SPAR_ROW_MASSES = 12,        /* bodies on beams; size as of gravity: their weight and inertia */
-    SPAR_ROW_COUNT = 13
+    SPAR_ROW_FOUNDATION = 13,    /* springs along beams; size as of gravity */
+    SPAR_ROW_COUNT = 14
 };
 /* Columns of the same. */
 enum {

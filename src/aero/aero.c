@@ -552,7 +552,7 @@ static void flag_inside(spar_aero *aero) {
 }
 
 /* What the sections remember of t^n, and the time since. A rank without blades has none. */
-static int recall(spar_aero *aero, double theta, double *dt, const char *call) {
+static int recall_sections(spar_aero *aero, double theta, double *dt, const char *call) {
     *dt = 0.0;
     for (int b = 0; b < aero->blades; b++) {
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], NULL, dt));
@@ -569,7 +569,7 @@ static int recall(spar_aero *aero, double theta, double *dt, const char *call) {
     return SPAR_OK;
 }
 
-static int remember(const spar_aero *aero) {
+static int remember_sections(const spar_aero *aero) {
     for (int b = 0; b < aero->blades; b++) {
         SPARI_TRY(spar_fluid_push_states(aero->fluid[b], SPARI_MEMORY_NUMBERS,
                                          (const double *)(const void *)(aero->is + b * aero->n)));
@@ -605,7 +605,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
     int moments = has_moments(aero->rotor.effects), remembers = (aero->rotor.effects & memory_effects) != 0,
         changed = (aero->rotor.effects & wind_effects) != 0;
     inflow = changed ? meet_wind(aero, inflow) : inflow;
-    SPARI_TRY(remembers ? recall(aero, theta, &dt, call) : SPAR_OK);
+    SPARI_TRY(remembers ? recall_sections(aero, theta, &dt, call) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;
@@ -630,7 +630,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
         int64_t at = 3 * b * aero->n;
         SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));
     }
-    SPARI_TRY(remembers ? remember(aero) : SPAR_OK);
+    SPARI_TRY(remembers ? remember_sections(aero) : SPAR_OK);
     aero->used = aero->rotor;
     aero->rotor_used = aero->rotor_given;
     aero->solved = 1;

@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What a line has beside SPAR_LOAD_DEAD and SPAR_LOAD_FOLLOWER. */
+enum { SPARI_LINE_SPRINGS = 2 };
+
 /* One load along the line, at its own quadrature points: it may jump where sections do not. */
 typedef struct line_load {
     int *first;   /* [elements + 1] */
@@ -23,6 +26,12 @@ typedef struct line_load {
 struct spari_applied {
     double *follower;  /* [nodes][6], global axes at the reference; NULL: none */
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
+};
+
+/* Springs to the ground along the line: of each point load has the six entries (xx, xy, xz, yy, yz, zz) of its
+   stiffness, global axes, times weight and Jacobian. */
+struct spari_foundation {
+    line_load line;
 };
 
 static double *room_for(const spar_member *m) {
@@ -110,11 +119,63 @@ SPARI_APART static void line_forces(const spar_member *m, const line_load *line,
     }
 }
 
+static void symmetric_times(const double k[6], const double u[3], double f[3]) {
+    f[0] = k[0] * u[0] + k[1] * u[1] + k[2] * u[2];
+    f[1] = k[1] * u[0] + k[3] * u[1] + k[4] * u[2];
+    f[2] = k[2] * u[0] + k[4] * u[1] + k[5] * u[2];
+}
+
+/* out [P][6] -= factor * forces of the springs, q [P][7]; returns the work they have taken. */
+static double element_springs(const spar_member *m, int e, const double *q, double factor, double *out) {
+    const line_load *line = &m->foundation->line;
+    int P = m->per_element;
+    double energy = 0;
+    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+        const double *phi = line->phi + (int64_t)k * P;
+        double u[3] = {0}, f[3];
+        for (int l = 0; l < P; l++) {
+            for (int i = 0; i < 3; i++) {
+                u[i] += phi[l] * q[7 * l + i];
+            }
+        }
+        symmetric_times(line->load + 6 * (int64_t)k, u, f);
+        energy += 0.5 * spari_dot(u, f);
+        for (int l = 0; l < P && out; l++) {
+            for (int i = 0; i < 3; i++) {
+                out[6 * l + i] -= factor * phi[l] * f[i];
+            }
+        }
+    }
+    return energy;
+}
+
+/* S [6P][6P] += factor * stiffness of the springs */
+static void add_springs(const spar_member *m, int e, double factor, double *S) {
+    static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const line_load *line = &m->foundation->line;
+    int P = m->per_element;
+    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+        const double *phi = line->phi + (int64_t)k * P, *stiffness = line->load + 6 * (int64_t)k;
+        for (int i = 0; i < 3 * P; i++) {
+            for (int j = 0; j < 3 * P; j++) {
+                double share = factor * phi[i / 3] * phi[j / 3];
+                S[6 * P * (6 * (i / 3) + i % 3) + 6 * (j / 3) + j % 3] += share * stiffness[at[i % 3][j % 3]];
+            }
+        }
+    }
+}
+
 /* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes */
 static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
     const spari_applied *a = m->applied;
     int P = m->per_element;
     double z[SPARI_MAX_NODES][4], g[7 * SPARI_MAX_NODES] = {0};
+    if (m->foundation) {
+        (void)element_springs(m, e, q, factor, out);
+    }
+    if (!a) {
+        return;
+    }
     element_field(m, q, z);
     for (int k = 0; k < 2; k++) {
         if (a->line[k].first) {
@@ -164,6 +225,9 @@ void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
 
 int spari_applied_potential(const spar_member *m) {
     const spari_applied *a = m->applied;
+    if (!a) {
+        return 1;
+    }
     const line_load *dead = &a->line[SPAR_LOAD_DEAD];
     int moments = 0;
     for (int k = 0; dead->first && k < dead->first[m->elements]; k++) {
@@ -291,7 +355,10 @@ SPARI_APART static void line_tangent(const spar_member *m, const line_load *line
 void spari_applied_tangent(const spar_member *m, int e, const double *q, double factor, double *S) {
     const spari_applied *a = m->applied;
     int P = m->per_element;
-    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
+    if (m->foundation) {
+        add_springs(m, e, factor, S);
+    }
+    if (!a || !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
         return; /* linear about the reference: the loads stay as they are there */
     }
     double z[SPARI_MAX_NODES][4];
@@ -533,6 +600,16 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
     return count;
 }
 
+/* Stiffnesses along the section's axes, the columns of R, into the six entries of their matrix. */
+static void turn_springs(const double R[9], double k[6]) {
+    const double own[3] = {k[0], k[1], k[2]};
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (int i = 0; i < 6; i++) {
+        const double *a = R + 3 * row[i], *b = R + 3 * column[i];
+        k[i] = own[0] * a[0] * b[0] + own[1] * a[1] * b[1] + own[2] * a[2] * b[2];
+    }
+}
+
 static int line_build(const spar_member *m, int kind, int64_t n, const double *eta, const double *load,
                       line_load *line) {
     int E = m->elements, P = m->per_element, points = 0;
@@ -564,6 +641,9 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
                 to[b + c] = s[k].R[3 * c] * now[b] + s[k].R[3 * c + 1] * now[b + 1] + s[k].R[3 * c + 2] * now[b + 2];
             }
         }
+        if (kind == SPARI_LINE_SPRINGS) {
+            turn_springs(s[k].R, to);
+        }
         memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
     }
     free(s);
@@ -573,6 +653,54 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
         return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
     }
     return SPAR_OK;
+}
+
+/* ---- foundation ---- */
+
+void spari_foundation_free(spari_foundation *f) {
+    if (f) {
+        line_free(&f->line);
+    }
+    free(f);
+}
+
+void spari_foundation_nodal(const spar_member *m, const double *q, double factor, double *load) {
+    for (int e = 0; e < m->elements; e++) {
+        int64_t first = (int64_t)e * m->per_element;
+        (void)element_springs(m, e, q + 7 * first, factor, load + 6 * first);
+    }
+}
+
+double spari_foundation_energy(const spar_member *m, const double *q) {
+    double sum = 0;
+    for (int e = 0; e < m->elements; e++) {
+        sum += element_springs(m, e, q + 7 * (int64_t)e * m->per_element, 0, NULL);
+    }
+    return sum;
+}
+
+int spari_foundation_build(spar_member *m) {
+    const spari_beam *b = m->kind == SPARI_BEAM ? m->beam : NULL;
+    spari_foundation_free(m->foundation);
+    m->foundation = NULL;
+    if (!b || b->spring_count == 0 || !(m->effects & SPAR_EFFECT_FOUNDATION)) {
+        return SPAR_OK;
+    }
+    double *load = spari_zalloc(6 * b->spring_count, sizeof *load);
+    m->foundation = spari_zalloc(1, sizeof *m->foundation);
+    int status = load && m->foundation ? SPAR_OK : SPAR_ERR_MEMORY;
+    for (int64_t i = 0; status == SPAR_OK && i < b->spring_count; i++) {
+        memcpy(load + 6 * i, b->spring + 3 * i, 3 * sizeof *load);
+    }
+    status = status == SPAR_OK
+                 ? line_build(m, SPARI_LINE_SPRINGS, b->spring_count, b->spring_eta, load, &m->foundation->line)
+                 : spari_fail(m->session, status, "no memory for the foundation of '%s'", m->name);
+    free(load);
+    if (status != SPAR_OK) {
+        spari_foundation_free(m->foundation);
+        m->foundation = NULL;
+    }
+    return status;
 }
 
 static int check_line_load(const spar_member *m, const char *call, int kind, int64_t n, const double *eta,
@@ -597,6 +725,55 @@ static int check_line_load(const spar_member *m, const char *call, int kind, int
                       "%s: '%s': eta %lld (%.17g) is below the one before; two stations at one eta are a jump", call,
                       m->name, (long long)i, eta[i]);
     }
+    return SPAR_OK;
+}
+
+static int check_bed(const spar_member *m, const char *call, int64_t n, const double *eta, const double *k) {
+    spar_session *s = m->session;
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n, SPARI_LUMPS);
+    SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
+    SPARI_TRY(spari_need_finite(s, call, m->name, "stiffness", 3 * n, k));
+    for (int64_t i = 0; i < n; i++) {
+        SPARI_REQUIRE(s, eta[i] >= 0 && eta[i] <= 1 && (i == 0 || eta[i] >= eta[i - 1]), SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and does not fall; two stations at one eta are a "
+                      "jump",
+                      call, m->name, (long long)i, eta[i]);
+        SPARI_REQUIRE(s, k[3 * i] >= 0 && k[3 * i + 1] >= 0 && k[3 * i + 2] >= 0, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': a stiffness of station %lld is below 0; give numbers >= 0, N/m^2", call, m->name,
+                      (long long)i);
+    }
+    return SPAR_OK;
+}
+
+int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_beam(beam, __func__));
+    SPARI_TRY(check_bed(beam, __func__, n, eta, stiffness));
+    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(stiffness, 3 * n) : NULL};
+    if (n > 0 && (!copies[0] || !copies[1])) {
+        free(copies[0]), free(copies[1]);
+        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the springs", __func__, beam->name);
+    }
+    spari_beam *b = beam->beam;
+    free(b->spring_eta), free(b->spring);
+    b->spring_eta = copies[0], b->spring = copies[1];
+    b->spring_count = n;
+    return SPAR_OK;
+}
+
+int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness) {
+    SPARI_QUIET;
+    SPARI_TRY(spari_need_member(beam, __func__));
+    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
+                  beam->name);
+    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
+    const spari_beam *b = beam->beam;
+    if (n) {
+        *n = b->spring_count;
+    }
+    spari_fill(capacity, eta, b->spring_count, b->spring_eta);
+    spari_fill(3 * capacity, stiffness, 3 * b->spring_count, b->spring);
     return SPAR_OK;
 }
 

@@ -1,21 +1,25 @@
 /* Loads a member carries beside the dead ones at its nodes: follower loads at nodes, dead and follower loads along a
-   beam. Loads along the line enter by their virtual work on the element's own field (see body.h): a force through
-   delta u = sum phi_l delta u_l, a moment m through delta theta = 2 Im(delta Q Q*)/|Q|^2, so that the nodal 4-vector is
-   2 phi_l m Q/|Q|^2. Dead loads along a line have then a potential, and moments that follow turn with the section. */
+   beam, and the forces of springs to the ground along it (a foundation). Loads along the line enter by their virtual
+   work on the element's own field (see body.h): a force through delta u = sum phi_l delta u_l, a moment m through delta
+   theta = 2 Im(delta Q Q*)/|Q|^2, so that the nodal 4-vector is 2 phi_l m Q/|Q|^2. Dead loads along a line have then a
+   potential, and moments that follow turn with the section. */
 #ifndef SPARI_APPLIED_H
 #define SPARI_APPLIED_H
 
 #include "../base/image.h"
 #include "structure.h"
 
-/* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. For members with
- * `applied` only. */
+/* Whether there are any. */
+static inline int spari_carries_loads(const spar_member *member) {
+    return member->applied || member->foundation;
+}
+/* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. */
 double spari_applied_residual(const spar_member *member, const double *q, double factor, double *r);
 /* Its exact tangent, added to the tangent S [6P][6P] of element e. */
 void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
 /* load [nodes][6] += the loads at the motion q [nodes][7] of the public numbering. */
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
-/* Whether the loads have a potential: dead forces only. */
+/* Whether the loads have a potential: dead forces and springs only. */
 int spari_applied_potential(const spar_member *member);
 /* Into a file, and back in two passes: the first gets what it needs into member->applied_next (image->failed when it
  * cannot), the second takes it. */
@@ -25,5 +29,13 @@ void spari_applied_load(spar_member *member, spari_image *image);
 void spari_applied_free(spari_applied *applied);
 /* Gives m, the same member with other nodes, the loads of `from`. */
 int spari_applied_remake(const spar_member *from, spar_member *m);
+
+/* The springs along a beam by its description, where they are in force; nothing where there are none. */
+int spari_foundation_build(spar_member *member);
+void spari_foundation_free(spari_foundation *foundation);
+/* load [nodes][6] += factor * their forces at the motion q [nodes][7] of the public numbering. */
+void spari_foundation_nodal(const spar_member *member, const double *q, double factor, double *load);
+/* What they store there. */
+double spari_foundation_energy(const spar_member *member, const double *q);
 
 #endif

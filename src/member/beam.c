@@ -26,6 +26,8 @@ void spari_beam_free(spari_beam *beam) {
     free(beam->mass);
     free(beam->lump_eta);
     free(beam->lump);
+    free(beam->spring_eta);
+    free(beam->spring);
     free(beam);
 }
 

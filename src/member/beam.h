@@ -13,6 +13,9 @@ struct spari_beam {
     double *section_eta, *stiffness, *mass;
     int64_t lump_count; /* bodies that sit on it: eta and 6x6 mass of each */
     double *lump_eta, *lump;
+    int64_t
+        spring_count; /* stations of springs to the ground: eta and stiffness along the section's axes [3] of each */
+    double *spring_eta, *spring;
     int rule, points; /* rule -1: chosen by what the sections are */
     double mu[6];
     int damped;

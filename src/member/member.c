@@ -89,7 +89,7 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     if (s->phase != SPARI_IDLE && spari_added_shift(member)) {
         spari_added_correct(member, -1, load);
     }
-    if (member->applied) {
+    if (spari_carries_loads(member)) {
         spari_applied_nodal(member, member->after.q, load);
     }
     if (s->joints && member->kind == SPARI_POINT && !member->external) {

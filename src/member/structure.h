@@ -20,15 +20,16 @@ typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
-typedef struct spari_beam spari_beam;         /* src/member/beam.h: the description of a beam */
-typedef struct spari_assembly spari_assembly; /* src/solve/tied.h: members that joints tie together */
-typedef struct spari_work spari_work;         /* src/solve/work.h: the work done on a member */
-typedef struct spari_applied spari_applied;   /* src/member/applied.h: follower loads and loads along the line */
-typedef struct spari_remake spari_remake;     /* src/trial/remake.h: a member made anew for a trial */
-typedef struct spari_means spari_means;       /* src/member/means.h: accelerations over a step of several substeps */
-typedef struct spari_added spari_added;       /* src/member/added.h: a guess of the fluid's added mass */
-typedef struct spari_learned spari_learned;   /* src/member/learned.h: the same learned from iterations */
-typedef struct spari_body spari_body;         /* src/member/body.h: what of it is solved, on every rank */
+typedef struct spari_beam spari_beam;             /* src/member/beam.h: the description of a beam */
+typedef struct spari_assembly spari_assembly;     /* src/solve/tied.h: members that joints tie together */
+typedef struct spari_work spari_work;             /* src/solve/work.h: the work done on a member */
+typedef struct spari_applied spari_applied;       /* src/member/applied.h: follower loads and loads along the line */
+typedef struct spari_foundation spari_foundation; /* the same: springs along the line */
+typedef struct spari_remake spari_remake;         /* src/trial/remake.h: a member made anew for a trial */
+typedef struct spari_means spari_means;     /* src/member/means.h: accelerations over a step of several substeps */
+typedef struct spari_added spari_added;     /* src/member/added.h: a guess of the fluid's added mass */
+typedef struct spari_learned spari_learned; /* src/member/learned.h: the same learned from iterations */
+typedef struct spari_body spari_body;       /* src/member/body.h: what of it is solved, on every rank */
 
 /* How the deformation of a member is seen. */
 typedef enum spari_view {
@@ -92,6 +93,7 @@ struct spar_member {
     double *load_solved[2];
     spari_applied *applied;             /* follower and line loads; NULL: none */
     spari_applied *applied_next;        /* of a file being loaded */
+    spari_foundation *foundation;       /* springs along the line that are in force; NULL: none */
     int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     double step_error, speed;           /* where a tolerance is set: of the last step, m, and the largest so far, m/s */

@@ -149,7 +149,7 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     for (int e = 0; e < m->elements; e++) {
         int at = 6 * e * (m->per_element - 1) - spari_member_held(m);
         spari_turn_tangent(m->body, turning ? &turn : NULL, e, q, v, a, 1, S, mass);
-        if (m->applied) {
+        if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
         spari_eigen_add(at, (int)n, S, 1, free_unknowns, K);
@@ -198,7 +198,7 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
     }
     for (int e = 0; e < m->elements; e++) {
         spari_turn_pencil(m->body, w, turn.w, e, q, v, a, K, C, M);
-        if (m->applied) {
+        if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }
         spari_pencil_add(to, 6 * e * (m->per_element - 1) - spari_member_held(m), (int)n, n, K, C, M);

@@ -1,6 +1,7 @@
 /* Which row of the table a member has: see fidelity.h. */
 #include "fidelity.h"
 
+#include "../member/beam.h"
 #include "../member/edge.h"
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
@@ -29,6 +30,13 @@ int spari_fidelity_check(const spar_member *m) {
         m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved, SPAR_ERR_UNSUPPORTED,
         "member '%s' moves as it is told (external, or prescribed): it has no equations that an added mass could "
         "stand in; leave spar_member_set_added_mass and spar_member_learn_added_mass out",
+        m->name);
+    SPARI_REQUIRE(
+        m->session,
+        !m->beam || m->beam->spring_count == 0 || (spari_fidelity_of(m)->solved && row == table[SPAR_FIDELITY_EXACT]),
+        SPAR_ERR_UNSUPPORTED,
+        "member '%s' has springs along it (spar_beam_set_foundation), which a beam of fidelity exact alone can have; "
+        "keep SPAR_FIDELITY_EXACT, with LARGE_ROTATION off where it is to be linear",
         m->name);
     return row->check ? row->check(m) : SPAR_OK;
 }

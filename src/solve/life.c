@@ -232,7 +232,8 @@ static int check_complete(spar_member *m) {
 /* What is in force: what was asked for, or is implied, as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES;
+                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES |
+                        SPAR_EFFECT_FOUNDATION;
     int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
@@ -241,6 +242,7 @@ int spari_member_effects(const spar_member *m) {
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
     possible |= solved && massive && m->beam && m->beam->lump_count > 0 ? SPAR_EFFECT_MASSES : 0;
+    possible |= solved && m->beam && m->beam->spring_count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }
@@ -272,6 +274,8 @@ void spari_member_release(spar_member *m) {
     spari_applied_free(m->applied);
     spari_applied_free(m->applied_next);
     m->applied = m->applied_next = NULL;
+    spari_foundation_free(m->foundation);
+    m->foundation = NULL;
     if (m->solution) {
         m->row->free(m->solution);
     }
@@ -310,6 +314,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     m->added = NULL;
     m->means = NULL;
     m->applied = m->applied_next = NULL;
+    m->foundation = NULL;
     m->solution = NULL;
     m->body = NULL;
     m->assembly = NULL;
@@ -351,6 +356,7 @@ int spari_member_build(spar_member *m) {
     }
     if (m->row->solved) {
         SPARI_TRY(build_body(m));
+        SPARI_TRY(spari_foundation_build(m));
         SPARI_TRY(spari_added_create(m, m->row->whole));
         SPARI_REQUIRE(m->session, spari_learned_create(m) == SPAR_OK, SPAR_ERR_MEMORY,
                       "no memory for the added mass of '%s'", m->name);

@@ -49,7 +49,7 @@ void spari_reaction_at_root(const spar_member *m, double *room, double load[6]) 
     spari_member_to_unique(m, 6, m->after.v, v);
     spari_member_to_unique(m, 6, m->after.a, a);
     spari_body_residual(b, q, still && !b->D ? NULL : v, still ? NULL : a, 1, r, NULL);
-    if (m->applied) {
+    if (spari_carries_loads(m)) {
         spari_applied_residual(m, q, 1, r);
     }
     double tied[6] = {0};
@@ -91,7 +91,7 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
             memset(sum + 6 * i, 0, 6 * sizeof *sum); /* a joint counts once */
         }
     }
-    if (m->applied) {
+    if (spari_carries_loads(m)) {
         spari_applied_nodal(m, m->after.q, extra);
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             sum[i] -= extra[i];
@@ -147,6 +147,9 @@ int spar_member_get_energy(const spar_member *member, int64_t capacity, double *
     int status = member->row->energy ? member->row->energy(member, found) : SPAR_OK;
     SPARI_REQUIRE(member->session, status == SPAR_OK, status, "%s: no memory for '%s'", __func__, member->name);
     found[SPAR_ENERGY_DISSIPATED] = member->dissipated;
+    if (member->foundation) {
+        found[SPAR_ENERGY_FOUNDATION] = spari_foundation_energy(member, member->after.q);
+    }
     spari_fill(capacity, energy, SPAR_ENERGY_COUNT, found);
     return SPAR_OK;
 }

@@ -80,7 +80,7 @@ void spari_solver_load(spari_solver *solver, const double *state);
 /* Shared by the files of the solver */
 /* Loads that follow the body's own nodes or stand along its line are there. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
-    return member->applied && !solver->arms;
+    return (member->applied || member->foundation) && !solver->arms;
 }
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,

@@ -42,7 +42,7 @@ static double balance_at(const spari_solver *s, const spar_member *m, loading *l
         r[i] -= f * s->steps.load[i];
         scale = fmax(scale, fabs(f * s->steps.load[i]));
     }
-    if (m->applied) {
+    if (spari_carries_loads(m)) {
         scale = fmax(scale, spari_applied_residual(m, q, f, r));
     }
     return scale;
@@ -57,7 +57,7 @@ static void form_static_tangent(const spari_solver *s, const spar_member *m, loa
         } else {
             spari_body_tangent(s->body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
         }
-        if (m->applied) {
+        if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, f, s->body->matrix);
         }
         spari_linear_add(s->linear, e, s->body->matrix);

@@ -65,7 +65,7 @@ void spari_work_step(spar_member *m) {
     int64_t n = m->nodes;
     double d[6], reaction[6] = {0};
     memset(w->load, 0, (size_t)(6 * n) * sizeof *w->load);
-    if (m->applied) {
+    if (spari_carries_loads(m)) {
         spari_applied_nodal(m, m->now.q, w->load);
         spari_applied_nodal(m, m->after.q, w->load);
     }

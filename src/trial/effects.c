@@ -57,7 +57,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
 /* ---- sizes ---- */
 
 /* Terms of the balance of forces */
-enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, LOADS, TERMS };
+enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, FOUNDATION, LOADS, TERMS };
 
 /* Sum of the squares of nodal forces r [n][6], moments by the length. */
 static double squares(const double *r, int64_t n, double length) {
@@ -88,12 +88,34 @@ static double lump_squares(const spar_member *m, const double *q, const double *
     return squares(r, m->body->unique, length);
 }
 
+/* Adds the squares of the loads, and of the foundation's forces, which are terms of their own. loads: work of [6
+   nodes], with a foundation twice that. */
+static void load_squares(const spar_member *m, double *loads, double length, double sum[TERMS]) {
+    for (int64_t i = 0; i < 6 * m->nodes; i++) {
+        loads[i] = m->dead[i] + m->load_pushed[i];
+    }
+    if (spari_carries_loads(m)) {
+        spari_applied_nodal(m, m->now.q, loads);
+    }
+    for (int64_t i = 0; i < m->nodes && m->session->joints && !m->external; i++) {
+        spari_joints_on(m, i, loads + 6 * i);
+    }
+    if (m->foundation) {
+        double *springs = loads + 6 * m->nodes;
+        spari_foundation_nodal(m, m->now.q, 1, springs);
+        sum[FOUNDATION] += squares(springs, m->nodes, length);
+        minus(loads, springs, m->nodes);
+    }
+    sum[LOADS] += squares(loads, m->nodes, length);
+}
+
 /* Adds the squares of a member's terms at t^n. */
 static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_body plain = *m->body, *b = &plain;
     int64_t n = b->unique;
-    double *q = spari_zalloc(37 * n + 6 * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n, *none = a + 6 * n,
-           *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n, length = spari_member_length(m);
+    double *q = spari_zalloc(37 * n + (m->foundation ? 12 : 6) * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n,
+           *none = a + 6 * n, *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n,
+           length = spari_member_length(m);
     SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "no memory for the effects of '%s'", m->name);
     spari_member_to_unique(m, 7, m->now.q, q);
     spari_member_to_unique(m, 6, m->now.v, v);
@@ -134,16 +156,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     if (m->effects & SPAR_EFFECT_MASSES) {
         sum[MASSES] += lump_squares(m, q, v, a, r, rest, length);
     }
-    for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        loads[i] = m->dead[i] + m->load_pushed[i];
-    }
-    if (m->applied) {
-        spari_applied_nodal(m, m->now.q, loads);
-    }
-    for (int64_t i = 0; i < m->nodes && m->session->joints && !m->external; i++) {
-        spari_joints_on(m, i, loads + 6 * i);
-    }
-    sum[LOADS] += squares(loads, m->nodes, length);
+    load_squares(m, loads, length, sum);
     free(q);
     return SPAR_OK;
 }
@@ -197,12 +210,10 @@ static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) 
     for (int k = 0; k < TERMS; k++) {
         leading = fmax(leading, of->sum[k]);
     }
-    static const int row[] = {[INERTIA] = SPAR_ROW_INERTIA,
-                              [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC,
-                              [GRAVITY] = SPAR_ROW_GRAVITY,
-                              [DAMPING] = SPAR_ROW_DAMPING,
-                              [MASSES] = SPAR_ROW_MASSES};
-    for (int k = INERTIA; k <= MASSES; k++) {
+    static const int row[] = {
+        [INERTIA] = SPAR_ROW_INERTIA, [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC, [GRAVITY] = SPAR_ROW_GRAVITY,
+        [DAMPING] = SPAR_ROW_DAMPING, [MASSES] = SPAR_ROW_MASSES,         [FOUNDATION] = SPAR_ROW_FOUNDATION};
+    for (int k = INERTIA; k <= FOUNDATION; k++) {
         size[row[k]] = leading > 0 ? sqrt(of->sum[k] / leading) : 0;
     }
     size[SPAR_ROW_LARGE_ROTATION] = of->turn;
@@ -231,6 +242,7 @@ static const row rows[SPAR_ROW_COUNT] = {
     {"iteration", 0, 0},
     {"half step", 0, SPARI_MUTE_HALF_STEP},
     {"bodies on beams", SPAR_EFFECT_MASSES, 0},
+    {"foundation", SPAR_EFFECT_FOUNDATION, 0},
 };
 
 const char *spar_effect_name(int r) {

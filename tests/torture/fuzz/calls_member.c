@@ -197,6 +197,20 @@ void do_spar_beam_set_masses(call *c) {
     RUN(c, spar_beam_set_masses(m->m, n, eta, M));
 }
 
+void do_spar_beam_set_foundation(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t n = chance(c, 20) ? 0 : arg_count(c, 1, 3), room = length(n);
+    double *eta = arg_rising(c, room, 0, 1), *k = arg_reals(c, 3 * room, 0, 100);
+    RUN(c, spar_beam_set_foundation(m->m, n, eta, k));
+}
+
+void do_spar_beam_get_foundation(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);
+    double *eta = OUT_OR_NULL(c, length(capacity)), *k = OUT_OR_NULL(c, 3 * length(capacity));
+    RUN(c, spar_beam_get_foundation(m->m, n, capacity, eta, k));
+}
+
 void do_spar_beam_get_masses(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);

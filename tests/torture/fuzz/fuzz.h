@@ -95,6 +95,8 @@ enum {
     CALL(spar_beam_get_mass_damping, 20, FUZZ_PURE)                                                                    \
     CALL(spar_beam_set_masses, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_beam_get_masses, 20, FUZZ_PURE)                                                                          \
+    CALL(spar_beam_set_foundation, 40, FUZZ_CHANGES)                                                                   \
+    CALL(spar_beam_get_foundation, 20, FUZZ_PURE)                                                                      \
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_line_load, 100, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_modal_damping, 30, FUZZ_CHANGES)                                                                \
@@ -133,7 +135,7 @@ enum {
     CALL(spar_member_set_spring, 30, FUZZ_CHANGES)                                                                     \
     CALL(spar_line_set_spring, 50, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
-    CALL(spar_joint_drive, 60, FUZZ_CHANGES)                                                                           \
+    CALL(spar_joint_drive, 90, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
     CALL(spar_joint_get_motion, 20, FUZZ_PURE)                                                                         \
     CALL(spar_joint_get_load, 20, FUZZ_PURE)                                                                           \

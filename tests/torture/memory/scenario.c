@@ -474,6 +474,8 @@ static void act_fidelities(void) {
             CALL(spar_beam_get_mass_damping, m, work);
             CALL(spar_beam_set_masses, m, 2, eta, body);
             CALL(spar_beam_get_masses, m, &stations, 2, NULL, body);
+            CALL(spar_beam_set_foundation, m, what[k].kind == SPAR_FIDELITY_EXACT, eta, body);
+            CALL(spar_beam_get_foundation, m, &stations, 2, NULL, body);
             CALL(spar_member_learn_added_mass, m, 2, eta);
             CALL(spar_member_get_learned_added_mass, m, NULL, NULL, &stations, 2, NULL, guess);
         }
