@@ -80,15 +80,26 @@ void spari_tangent(const double psi[3], double t[9]) {
 }
 
 /* T^-1 = I - psi~/2 + (1 - (p/2) cot(p/2))/p^2 psi~^2 */
-void spari_tangent_inverse(const double psi[3], double t[9]) {
-    double p2 = spari_dot(psi, psi), b;
+static double inverse_of_second_order(const double psi[3]) {
+    double p2 = spari_dot(psi, psi), half;
     if (p2 < 1e-2) {
-        b = 1.0 / 12 + p2 * (1.0 / 720 + p2 * (1.0 / 30240 + p2 * (1.0 / 1209600 + p2 / 47900160)));
-    } else {
-        double half = 0.5 * sqrt(p2);
-        b = (1 - half * cos(half) / sin(half)) / p2;
+        return 1.0 / 12 + p2 * (1.0 / 720 + p2 * (1.0 / 30240 + p2 * (1.0 / 1209600 + p2 / 47900160)));
     }
-    spin_polynomial(psi, -0.5, b, t);
+    half = 0.5 * sqrt(p2);
+    return (1 - half * cos(half) / sin(half)) / p2;
+}
+
+void spari_tangent_inverse(const double psi[3], double t[9]) {
+    spin_polynomial(psi, -0.5, inverse_of_second_order(psi), t);
+}
+
+void spari_tangent_inverse_times(const double psi[3], const double x[3], double y[3]) {
+    double b = inverse_of_second_order(psi), once[3], twice[3];
+    spari_cross(psi, x, once);
+    spari_cross(psi, once, twice);
+    for (int i = 0; i < 3; i++) {
+        y[i] = x[i] - 0.5 * once[i] + b * twice[i];
+    }
 }
 
 static int is_negative(const double q[4]) {

@@ -65,6 +65,20 @@ static inline void spari_rotate_back(const double q[4], const double x[3], doubl
     spari_rotate(c, x, y);
 }
 
+/* y = R x; y may be x. Many vectors are turned for half of what spari_rotate takes. */
+static inline void spari_matrix_times(const double r[9], const double x[3], double y[3]) {
+    double a = r[0] * x[0] + r[1] * x[1] + r[2] * x[2], b = r[3] * x[0] + r[4] * x[1] + r[5] * x[2];
+    double c = r[6] * x[0] + r[7] * x[1] + r[8] * x[2];
+    y[0] = a, y[1] = b, y[2] = c;
+}
+
+/* y = R^T x; y may be x */
+static inline void spari_matrix_times_back(const double r[9], const double x[3], double y[3]) {
+    double a = r[0] * x[0] + r[3] * x[1] + r[6] * x[2], b = r[1] * x[0] + r[4] * x[1] + r[7] * x[2];
+    double c = r[2] * x[0] + r[5] * x[1] + r[8] * x[2];
+    y[0] = a, y[1] = b, y[2] = c;
+}
+
 /* row-major R(q), unit q */
 void spari_quat_matrix(const double q[4], double r[9]);
 /* unit quaternion of a proper rotation matrix, scalar part >= 0 */
@@ -77,6 +91,8 @@ void spari_quat_log(const double q[4], double psi[3]);
  * inverse */
 void spari_tangent(const double psi[3], double t[9]);
 void spari_tangent_inverse(const double psi[3], double t[9]);
+/* y = T^-1 x; y may be x */
+void spari_tangent_inverse_times(const double psi[3], const double x[3], double y[3]);
 
 /* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
    not depend on the signs that came in: the first node's leading component is made positive, each other follows its

@@ -213,24 +213,36 @@ static void turn_matrix(const double q[4], double T[9]) {
     }
 }
 
+/* The rotation vector of node i from its increment, and k = h^2 cv / 12 of what it changes by with the rates. */
+static double rotation_of(const spari_scheme *c, const spari_ends *e, const double *x, int i, double psi[3]) {
+    double turn[3];
+    spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+    for (int j = 0; j < 3; j++) {
+        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->h * c->h / 12 * turn[j]);
+    }
+    return c->still ? 0 : c->h * c->h * c->cv / 12;
+}
+
+/* y = (I - k w~)^-1 x, in closed form (I + k w~ + k^2 w w^T) / (1 + k^2 w.w); y may be x. */
+static void less_spin(double k, const double w[3], const double x[3], double y[3]) {
+    double f = 1 / (1 + k * k * spari_dot(w, w)), along = k * k * spari_dot(w, x), wx[3];
+    spari_cross(w, x, wx);
+    for (int m = 0; m < 3; m++) {
+        y[m] = f * (x[m] + k * wx[m] + along * w[m]);
+    }
+}
+
 /* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
-   d x = I - k omega^n~, k = h^2 cv / 12, in closed form: (I - k w~)^-1 = (I + k w~ + k^2 w w^T) / (1 + k^2 w.w). */
+   d x = I - k omega^n~, k = h^2 cv / 12. */
 void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x) {
-    const spari_state *from = &e->from, *to = &e->to;
-    double k = c->still ? 0 : c->h * c->h * c->cv / 12;
     for (int i = 0; i < s->n; i++) {
-        const double *w = from->v + 6 * i + 3;
-        double psi[3], turn[3], t[9], *out = s->tinv + 9 * i, f = 1 / (1 + k * k * spari_dot(w, w));
-        spari_cross(to->v + 6 * i + 3, w, turn);
-        for (int j = 0; j < 3; j++) {
-            psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->h * c->h / 12 * turn[j]);
-        }
+        double psi[3], t[9], *out = s->tinv + 9 * i, k = rotation_of(c, e, x, i, psi);
         spari_tangent_inverse(psi, t);
         for (int j = 0; j < 3; j++) {
-            double column[3] = {t[j], t[3 + j], t[6 + j]}, wt[3], along = k * k * spari_dot(w, column);
-            spari_cross(w, column, wt);
+            double column[3] = {t[j], t[3 + j], t[6 + j]};
+            less_spin(k, e->from.v + 6 * i + 3, column, column);
             for (int m = 0; m < 3; m++) {
-                out[3 * m + j] = f * (column[m] + k * wt[m] + along * w[m]);
+                out[3 * m + j] = column[m];
             }
         }
         if (e->root) {
@@ -239,23 +251,29 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
     }
 }
 
+/* The same of one node's turn dtheta, in the axes of the scheme: three vectors less than the matrix takes. */
+static void turn_increment(const spari_scheme *c, const spari_ends *e, const double *x, int i, double turn[3]) {
+    double psi[3], k = rotation_of(c, e, x, i, psi);
+    spari_tangent_inverse_times(psi, turn, turn);
+    less_spin(k, e->from.v + 6 * i + 3, turn, turn);
+}
+
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
 double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
                            double longest, double *x, double *dx) {
     const spari_state *to = &e->to;
-    double largest = 0, length = s->body->length;
+    double largest = 0, length = s->body->length, R[9];
+    if (e->root) {
+        spari_quat_matrix(e->root->q + 3, R);
+    }
     for (int i = 0; i < s->n; i++) {
-        const double *t = s->tinv + 9 * i;
-        double *d = dx + 6 * i, turn[3];
-        for (int k = 0; k < 3; k++) {
-            turn[k] = t[3 * k] * d[3] + t[3 * k + 1] * d[4] + t[3 * k + 2] * d[5];
-        }
-        memcpy(d + 3, turn, sizeof turn);
+        double *d = dx + 6 * i;
         for (int k = 0; k < 6 && e->root; k += 3) {
-            spari_rotate_back(e->root->q + 3, d + k, d + k);
+            spari_matrix_times_back(R, d + k, d + k);
         }
-        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(turn)));
+        turn_increment(c, e, x, i, d + 3);
+        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(d + 3)));
     }
     double cut = largest > longest ? longest / largest : 1;
     spari_scheme_correct(c, cut, 6 * s->n, dx, x, rates_of(to));
@@ -368,9 +386,11 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
         return "met numbers that are not finite";
     }
-    spari_alpha_operators(s, t->c, t->e, t->x);
-    if (!s->factored && spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
-        return "found a singular tangent";
+    if (!s->factored) {
+        spari_alpha_operators(s, t->c, t->e, t->x);
+        if (spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
+            return "found a singular tangent";
+        }
     }
     if (solve_turned(s, t->e->seen.q, s->r, s->dx)) {
         return "found a singular tangent";
@@ -393,6 +413,9 @@ static void end_alone(void *self, int iterations, int fresh) {
     const alpha_step *t = self;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
     t->s->factored = t->s->factored && serves_on(t->s, iterations, fresh);
+    if (!t->s->factored || t->s->h_leapt > 0) { /* for an answer (spari_solver_answer): what leaps take the room for */
+        spari_alpha_operators(t->s, t->c, t->e, t->x);
+    }
 }
 
 /* The state at the end of a substep. */

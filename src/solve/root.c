@@ -47,12 +47,13 @@ void spari_root_look_from(const spari_solver *solver, const spar_member *m, cons
 
 void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
     const spari_pose *root = e->root;
-    double W[3], A[3];
+    double W[3], A[3], R[9];
     if (!root) {
         return;
     }
-    spari_rotate_back(root->q + 3, root->v + 3, W);
-    spari_rotate_back(root->q + 3, root->a + 3, A);
+    spari_quat_matrix(root->q + 3, R);
+    spari_matrix_times_back(R, root->v + 3, W);
+    spari_matrix_times_back(R, root->a + 3, A);
     for (int i = 0; i < solver->n; i++) {
         const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
         double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
@@ -74,10 +75,10 @@ void spari_root_show(const spari_solver *solver, const spar_member *m, spari_end
             B[k] = a[k] + c2[k] + c3[k];
             B[3 + k] = a[3 + k] + A[k] + c1[k];
         }
-        spari_rotate(root->q + 3, d, d);
+        spari_matrix_times(R, d, d);
         for (int k = 0; k < 6; k += 3) {
-            spari_rotate(root->q + 3, V + k, V + k);
-            spari_rotate(root->q + 3, B + k, B + k);
+            spari_matrix_times(R, V + k, V + k);
+            spari_matrix_times(R, B + k, B + k);
         }
         for (int k = 0; k < 3; k++) {
             q[k] = root->q[k] + d[k] - arm[k];
