@@ -135,7 +135,7 @@ enum {
     CALL(spar_member_set_spring, 30, FUZZ_CHANGES)                                                                     \
     CALL(spar_line_set_spring, 50, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
-    CALL(spar_joint_drive, 90, FUZZ_CHANGES)                                                                           \
+    CALL(spar_joint_drive, 80, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
     CALL(spar_joint_get_motion, 20, FUZZ_PURE)                                                                         \
     CALL(spar_joint_get_load, 20, FUZZ_PURE)                                                                           \
