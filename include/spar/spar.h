@@ -1151,7 +1151,8 @@ SPAR_API int spar_step_check(spar_session *session, int *done);
 /* The clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed: its loads and the motion do not belong together
    (to accept what has not converged, see the option coupling.unconverged). */
 SPAR_API int spar_step_accept(spar_session *session);
-/* Back to t^n, as if the step had not begun. */
+/* Back to t^n, as if the step had not begun: state, loads, coupling. A tangent that was formed in it may serve on, so that
+   what follows is the same within Newton's tolerance and not to the bit. */
 SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
    success; anything else ends the step with SPAR_ERR_USER. Where it moves an external member or a point that joints
