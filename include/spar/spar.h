@@ -1083,8 +1083,8 @@ SPAR_API int spar_fluid_fail(spar_fluid *fluid, int status, const char *message)
 SPAR_API int spar_fluid_set_states(spar_fluid *fluid, int64_t width);
 /* Each NULL: not wanted.
      width: out, numbers a node
-     dt: out, s, from those pulled to those pushed now: the step's, 0 between steps, before the first one, and where time
-           stands (a static solution, a balanced start): what is pushed there is a steady state */
+     dt: out, s, from those pulled to those pushed now: the step's, 0 between steps, before the first one, and where
+           time stands (a static solution, a balanced start): what is pushed there is a steady state */
 SPAR_API int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt);
 /* Those at t^n; before the first step, and where time stands, those there.
      width: in, as set
@@ -1151,8 +1151,8 @@ SPAR_API int spar_step_check(spar_session *session, int *done);
 /* The clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed: its loads and the motion do not belong together
    (to accept what has not converged, see the option coupling.unconverged). */
 SPAR_API int spar_step_accept(spar_session *session);
-/* Back to t^n, as if the step had not begun: state, loads, coupling. A tangent that was formed in it may serve on, so that
-   what follows is the same within Newton's tolerance and not to the bit. */
+/* Back to t^n, as if the step had not begun: state, loads, coupling. A tangent that was formed in it may serve on, so
+   that what follows is the same within Newton's tolerance and not to the bit. */
 SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
    success; anything else ends the step with SPAR_ERR_USER. Where it moves an external member or a point that joints
@@ -1274,8 +1274,8 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
                                        int *iterations);
 
 /* The whole state of the run to and from one file, between steps or within one: clock, histories, members, joints with
-   their springs, solvers, the fluids' loads, node forces and states, quasi-Newton columns. A run that goes on from it ends with
-   the same bits. Collective.
+   their springs, solvers, the fluids' loads, node forces and states, quasi-Newton columns. A run that goes on from it
+   ends with the same bits. Collective.
      path: in, rank 0's; on the other ranks it must be given and is not used. Ranks that see rank 0's file write and
            read their own parts of it, all at the same time; if any does not, all goes through rank 0, piece by piece,
            to the same bytes. No rank has more in memory than what is its own, twice
