@@ -164,9 +164,13 @@ static void sample_member(const sampled *s, const nodal *at) {
     }
 }
 
-static int sample_sections(const sampled *s, const spar_member *m) {
+static int no_memory(spar_session *session, const spar_member *m, const char *call) {
+    return spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, spar_member_get_name(m));
+}
+
+static int sample_sections(const sampled *s, const spar_member *m, spar_session *session, const char *call) {
     double *force = spari_zalloc(6 * s->n, sizeof *force);
-    int status = force ? spar_beam_get_section(m, s->n, s->eta, NULL, force, NULL, NULL) : SPAR_ERR_MEMORY;
+    int status = force ? spar_beam_get_section(m, s->n, s->eta, NULL, force, NULL, NULL) : no_memory(session, m, call);
     for (int64_t i = 0; i < s->n && status == SPAR_OK; i++) {
         put_columns(s, INNER, 3, i, force + 6 * i);
         put_columns(s, INNER + 3, 3, i, force + 6 * i + 3);
@@ -233,13 +237,11 @@ static int write_picture(const spar_member *member, nodal *at, spar_session *ses
     s.eta = spari_zalloc(s.n, sizeof *s.eta);
     s.node = spari_zalloc(n, sizeof *s.node);
     s.end = spari_zalloc(at->elements, sizeof *s.end);
-    int status =
-        work && s.table && s.eta && s.node && s.end
-            ? fill_nodal(member, at)
-            : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, spar_member_get_name(member));
+    int all = work && s.table && s.eta && s.node && s.end;
+    int status = all ? fill_nodal(member, at) : no_memory(session, member, call);
     if (status == SPAR_OK) {
         sample_member(&s, at);
-        status = at->inner ? sample_sections(&s, member) : SPAR_OK;
+        status = at->inner ? sample_sections(&s, member, session, call) : SPAR_OK;
     }
     if (status == SPAR_OK) {
         status = write_member(&s, at, session, path, call);

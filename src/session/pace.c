@@ -128,10 +128,11 @@ double spari_pace_judge(const spar_session *s) {
 }
 
 int spari_pace_check(const spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !spari_pace_is_set(s) || !(s->touched && spari_comm_size(s->comm) > 1), SPAR_ERR_STATE,
-                  "%s: a tolerance (spar_session_set_tolerance) needs the motion of all members on every rank: leave "
-                  "the option ranks.state at all, or set no tolerance",
-                  call);
+    SPARI_REQUIRE(
+        s, !spari_pace_is_set(s) || !(s->touched && spari_comm_size(s->comm) > 1), SPAR_ERR_STATE,
+        "%s: a tolerance (drift of spar_session_set_tolerance) needs the motion of all members on every rank: "
+        "leave the option ranks.state at all, or set no tolerance",
+        call);
     return SPAR_OK;
 }
 

@@ -48,7 +48,6 @@ static int check_learning(spar_session *s, const char *call) {
 }
 
 static int check_begin(spar_session *s, const char *call, double dt) {
-
     if (s->phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
     }

@@ -378,7 +378,7 @@ static void act_step(void) {
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
-    double pace[SPAR_PACE_COUNT];
+    double pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6};
     int64_t step, node;
     int done = 0, iteration;
     spar_member *owner;
@@ -388,6 +388,8 @@ static void act_step(void) {
     spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
     CALL(spar_member_set_root, b, SPAR_ROOT_DRIVEN);
     CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+    CALL(spar_beam_set_foundation, b, 2, eta, ground);
+    CALL(spar_beam_get_foundation, b, &node, 2, NULL, ground);
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
@@ -474,8 +476,6 @@ static void act_fidelities(void) {
             CALL(spar_beam_get_mass_damping, m, work);
             CALL(spar_beam_set_masses, m, 2, eta, body);
             CALL(spar_beam_get_masses, m, &stations, 2, NULL, body);
-            CALL(spar_beam_set_foundation, m, what[k].kind == SPAR_FIDELITY_EXACT, eta, body);
-            CALL(spar_beam_get_foundation, m, &stations, 2, NULL, body);
             CALL(spar_member_learn_added_mass, m, 2, eta);
             CALL(spar_member_get_learned_added_mass, m, NULL, NULL, &stations, 2, NULL, guess);
         }
