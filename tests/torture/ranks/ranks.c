@@ -253,11 +253,11 @@ static int make_start(scene *c, const arguments *a) {
 }
 static int make_within(scene *c, const arguments *a) {
     double step = a->dt; /* a tolerance that any step keeps, on all ranks that are here, and none afterwards */
-    if (spar_session_set_tolerance(c->session, 1e9, 0) != SPAR_OK) {
-        return SPAR_ERR_STATE;
-    }
+    int set_now = spar_session_set_tolerance(c->session, 1e9, 0) == SPAR_OK; /* not within a step */
     int status = spar_step_within(c->session, &step, NULL, a->solve, c, NULL);
-    (void)spar_session_set_tolerance(c->session, 0, 0);
+    if (set_now) {
+        (void)spar_session_set_tolerance(c->session, 0, 0);
+    }
     return status;
 }
 static int make_begin_start(scene *c, const arguments *a) {
@@ -830,8 +830,10 @@ static void unequal_setting(const struct call *call, int k, int bad, scene *hit,
         apply(hit, k, 1);
     }
     /* to want all of the state again is refused by itself, where it was not kept */
-    int refuses = touched && (strcmp(set[k].word, "ranks.state") == 0 || strncmp(set[k].word, "drift", 5) == 0) &&
+    int state = strcmp(set[k].word, "ranks.state") == 0;
+    int refuses = touched && (state || strncmp(set[k].word, "drift", 5) == 0) &&
                   (call->make == make_begin || call->make == make_step);
+    refuses |= state && call->make == make_within; /* a tolerance needs all of the state */
     expect(hit, call->make(hit, &a), refuses ? of_one(bad, SPAR_ERR_STATE) : SPAR_ERR_COMM, set[k].word);
     apply(hit, k, 1); /* as all ranks would have to do to be alike again: setting it may have an effect of its own */
     apply(hit, k, 0);
@@ -889,7 +891,8 @@ static void unequal_settings(void) {
     for (int i = COMMIT; i < CALLS; i++) {
         for (int k = 0; k < SET; k++) {
             for (int bad = 0; bad < size; bad++) {
-                if ((calls[i].has & SETTINGS) == 0 || is_left_out(calls + i) || !taken(6)) {
+                int sets_it = calls[i].make == make_within && strncmp(set[k].word, "drift", 5) == 0; /* alike, itself */
+                if ((calls[i].has & SETTINGS) == 0 || sets_it || is_left_out(calls + i) || !taken(6)) {
                     continue;
                 }
                 if (calls[i].stage == IDLE) {
@@ -1070,7 +1073,7 @@ static void failing_memory(const struct call *call, int bad, scene *hit, scene *
         }
         if (all) {
             if (call->stage != OPEN && (call->stage != IDLE || call->make == make_begin || call->make == make_step ||
-                                        call->make == make_apply)) {
+                                        call->make == make_within || call->make == make_apply)) {
                 MUST(calm->session, call->make(calm, &a));
             }
             return;
