@@ -750,23 +750,14 @@ int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, co
     SPARI_QUIET;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_TRY(check_bed(beam, __func__, n, eta, stiffness));
-    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(stiffness, 3 * n) : NULL};
-    if (n > 0 && (!copies[0] || !copies[1])) {
-        free(copies[0]), free(copies[1]);
-        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the springs", __func__, beam->name);
-    }
     spari_beam *b = beam->beam;
-    free(b->spring_eta), free(b->spring);
-    b->spring_eta = copies[0], b->spring = copies[1];
-    b->spring_count = n;
-    return SPAR_OK;
+    return spari_keep_stations(beam, __func__, "springs", n, 3, eta, stiffness, &b->spring_count, &b->spring_eta,
+                               &b->spring);
 }
 
 int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_member(beam, __func__));
-    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
-                  beam->name);
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
     const spari_beam *b = beam->beam;
     if (n) {

@@ -66,8 +66,8 @@ int spari_rigid_build(spar_member *member, spari_body **body);
 
 /* m, c, J of a 6x6 mass matrix in the order (axial, shear y, shear z, torsion, bending y, bending z); 0 if it has that
    form, else a text that says what is wrong. */
+const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]);
 /* The same turned by R (row-major, local to global) into a row of spari_body.mass. */
 void spari_mass_place(const double R[9], const double M[36], double out[10]);
-const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]);
 
 #endif

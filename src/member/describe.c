@@ -337,12 +337,6 @@ int spar_member_set_owner(spar_member *member, int rank) {
 
 /* ---- what has been said ---- */
 
-static int need_a_beam(const spar_member *m, const char *call) {
-    SPARI_TRY(spari_need_member(m, call));
-    SPARI_REQUIRE(m->session, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
-    return SPAR_OK;
-}
-
 static void hand_int(int *to, int from) {
     if (to) {
         *to = from;
@@ -350,21 +344,21 @@ static void hand_int(int *to, int from) {
 }
 
 int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element) {
-    SPARI_TRY(need_a_beam(beam, __func__));
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     hand_int(elements, beam->elements);
     hand_int(nodes_per_element, beam->per_element);
     return SPAR_OK;
 }
 
 int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points) {
-    SPARI_TRY(need_a_beam(beam, __func__));
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     hand_int(rule, spari_beam_rule(beam->beam));
     hand_int(points, beam->beam->points);
     return SPAR_OK;
 }
 
 int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
-    SPARI_TRY(need_a_beam(beam, __func__));
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     if (mu) {
         memcpy(mu, beam->beam->mu, sizeof beam->beam->mu);
     }
@@ -372,7 +366,7 @@ int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
 }
 
 int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
-    SPARI_TRY(need_a_beam(beam, __func__));
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     if (alpha) {
         *alpha = beam->beam->drag;
     }

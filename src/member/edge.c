@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 int spari_need_member(const spar_member *member, const char *call) {
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", call);
@@ -36,10 +37,28 @@ int spari_need_here(const spar_member *member, const char *call, int away) {
     return SPAR_OK;
 }
 
-int spari_need_beam(spar_member *member, const char *call) {
-    SPARI_TRY(spari_need_open(member, call));
+int spari_need_any_beam(const spar_member *member, const char *call) {
+    SPARI_TRY(spari_need_member(member, call));
     SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,
                   member->name);
+    return SPAR_OK;
+}
+
+int spari_need_beam(spar_member *member, const char *call) {
+    SPARI_TRY(spari_need_open(member, call));
+    return spari_need_any_beam(member, call);
+}
+
+int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
+                        const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value) {
+    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(value, width * n) : NULL};
+    if (n > 0 && (!copies[0] || !copies[1])) {
+        free(copies[0]), free(copies[1]);
+        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the %s", call, beam->name, what);
+    }
+    free(*kept_eta), free(*kept_value);
+    *kept_eta = copies[0], *kept_value = copies[1];
+    *kept = n;
     return SPAR_OK;
 }
 

@@ -12,8 +12,14 @@ int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
 /* Committed, and this rank knows enough of it: less than `away` (SPARI_*_AWAY) is missing. */
 int spari_need_here(const spar_member *member, const char *call, int away);
+/* A beam, committed or not. */
+int spari_need_any_beam(const spar_member *member, const char *call);
 /* A beam, not committed yet. */
 int spari_need_beam(spar_member *member, const char *call);
+/* n stations, `width` numbers at each, copied in the place of what eta and value hold; `what` they are: for the
+   message. Where there is no memory all stays. */
+int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
+                        const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value);
 /* Entry of a collective call on one member: as spari_enter_alike. */
 int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
 /* x[n] must be there and finite; `what` names it. */

@@ -63,23 +63,13 @@ int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const 
     SPARI_QUIET;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_TRY(check_lumps(beam, __func__, n, eta, mass));
-    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(mass, 36 * n) : NULL};
-    if (n > 0 && (!copies[0] || !copies[1])) {
-        free(copies[0]), free(copies[1]);
-        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the bodies", __func__, beam->name);
-    }
     spari_beam *b = beam->beam;
-    free(b->lump_eta), free(b->lump);
-    b->lump_eta = copies[0], b->lump = copies[1];
-    b->lump_count = n;
-    return SPAR_OK;
+    return spari_keep_stations(beam, __func__, "bodies", n, 36, eta, mass, &b->lump_count, &b->lump_eta, &b->lump);
 }
 
 int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_member(beam, __func__));
-    SPARI_REQUIRE(beam->session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
-                  beam->name);
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
     SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
     const spari_beam *b = beam->beam;
     if (n) {
