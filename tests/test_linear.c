@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "base/crew.h"
 #include "solve/linear.h"
 
 #include <math.h>
@@ -155,6 +156,188 @@ static void test_products(void **unused) {
     }
 }
 
+/* ---- long chains, cut in their middle ---- */
+
+/* A chain of random blocks, and all its entries A [n][n]; unknown `held` is taken out. */
+typedef struct long_chain {
+    int n, block, overlap;
+    double *A;
+    spari_linear *s;
+} long_chain;
+
+static long_chain chain_create(int elements, int block, int overlap, int held) {
+    int n = elements * (block - overlap) + overlap;
+    long_chain c = {n, block, overlap, calloc((size_t)n * (size_t)n, sizeof(double)),
+                    spari_linear_create(elements, block, overlap)};
+    double *S = calloc((size_t)(block * block), sizeof *S);
+    for (int e = 0; e < elements; e++) {
+        for (int i = 0; i < block * block; i++) {
+            S[i] = uniform();
+            c.A[n * (e * (block - overlap) + i / block) + e * (block - overlap) + i % block] += S[i];
+        }
+        spari_linear_add(c.s, e, S);
+    }
+    for (int i = 0; i < n; i++) {
+        c.A[n * i + held] = c.A[n * held + i] = i == held;
+    }
+    spari_linear_fix(c.s, held);
+    free(S);
+    return c;
+}
+
+static void chain_free(long_chain *c) {
+    spari_linear_free(c->s);
+    free(c->A);
+}
+
+/* The same in one piece. */
+static spari_linear *chain_uncut(const long_chain *c) {
+    int64_t step;
+    spari_linear *s = spari_linear_create_banded(c->n, c->block - 1);
+    double *entry = spari_linear_entries(s, &step);
+    for (int i = 0; i < c->n; i++) {
+        for (int j = i > c->block - 1 ? i - c->block + 1 : 0; j < c->n && j < i + c->block; j++) {
+            entry[i + step * j] = c->A[c->n * i + j];
+        }
+    }
+    return s;
+}
+
+/* What x leaves of A x - b, of n max|A| max|x|. */
+static double left_of(const long_chain *c, const double *x, const double *b) {
+    double left = 0, big = 0, most = 0;
+    for (int i = 0; i < c->n; i++) {
+        double sum = -b[i];
+        for (int j = 0; j < c->n; j++) {
+            sum += c->A[c->n * i + j] * x[j];
+            big = fmax(big, fabs(c->A[c->n * i + j]));
+        }
+        left = fmax(left, fabs(sum));
+        most = fmax(most, fabs(x[i]));
+    }
+    return left / (c->n * big * most);
+}
+
+/* Rows and columns as they were put in; what is left of A x = b, a digit more where a half's last pivots, which have
+   the rows of their half alone to choose from, are small; the sign of the determinant as in one piece. */
+static void check_halves(int elements, int block, int overlap, int held) {
+    long_chain c = chain_create(elements, block, overlap, held);
+    double *x = calloc(4 * (size_t)c.n, sizeof *x), *b = x + c.n, *row = b + c.n, *column = row + c.n;
+    for (int i = 0; i < c.n; i++) {
+        b[i] = x[i] = uniform();
+        spari_linear_read(c.s, i, row, column);
+        for (int j = 0; j < c.n; j++) {
+            assert_true(fabs(row[j] - c.A[c.n * i + j]) < 1e-15 && fabs(column[j] - c.A[c.n * j + i]) < 1e-15);
+        }
+    }
+    spari_linear *whole = chain_uncut(&c);
+    assert_int_equal(spari_linear_factor(c.s), 0);
+    assert_int_equal(spari_linear_factor(whole), 0);
+    assert_int_equal(spari_linear_sign(c.s), spari_linear_sign(whole));
+    assert_int_equal(spari_linear_solve(c.s, x), 0);
+    assert_true(left_of(&c, x, b) <= 1e-12);
+    spari_linear_free(whole);
+    chain_free(&c);
+    free(x);
+}
+
+/* Halves alike and not; held at an end, within a half, at the joint in the middle. */
+static void test_halves(void **unused) {
+    (void)unused;
+    for (int elements = 64; elements < 68; elements++) {
+        for (int block = 2; block <= 18; block += 4) {
+            int overlap = block > 6 ? 6 : block / 2, joint = elements / 2 * (block - overlap), end = joint + overlap;
+            check_halves(elements, block, overlap, 0);
+            check_halves(elements, block, overlap, joint);
+            check_halves(elements, block, overlap, end - 1);
+            check_halves(elements, block, overlap, end + 3);
+        }
+    }
+}
+
+/* Any number of threads, and factors that have been saved: the same bits. */
+static void test_halves_of_threads(void **unused) {
+    (void)unused;
+    enum { ELEMENTS = 70, BLOCK = 18, OVERLAP = 6, N = ELEMENTS * (BLOCK - OVERLAP) + OVERLAP };
+    double first[N], x[N];
+    for (int threads = 1; threads <= 4; threads++) {
+        srand(7);
+        spari_crew *crew = threads > 1 ? spari_crew_create(threads) : NULL;
+        long_chain c = chain_create(ELEMENTS, BLOCK, OVERLAP, 0), d = chain_create(ELEMENTS, BLOCK, OVERLAP, 0);
+        spari_linear_share(c.s, &crew);
+        for (int i = 0; i < N; i++) {
+            x[i] = sin(i);
+        }
+        assert_int_equal(spari_linear_factor(c.s), 0);
+        assert_int_equal(spari_linear_solve(c.s, x), 0);
+        if (threads == 1) {
+            memcpy(first, x, sizeof x);
+        }
+        assert_memory_equal(first, x, sizeof x);
+        int64_t size = spari_linear_state_size(c.s);
+        double *state = malloc((size_t)size * sizeof *state);
+        spari_linear_save(c.s, state);
+        assert_true(spari_linear_is_state(d.s, state));
+        spari_linear_load(d.s, state);
+        for (int i = 0; i < N; i++) {
+            x[i] = sin(i);
+        }
+        assert_int_equal(spari_linear_solve(d.s, x), 0);
+        assert_memory_equal(first, x, sizeof x);
+        state[size - 1] = OVERLAP + 1; /* the last row of the joint's went where there is none */
+        assert_false(spari_linear_is_state(d.s, state));
+        free(state);
+        chain_free(&c);
+        chain_free(&d);
+        spari_crew_free(crew);
+    }
+}
+
+/* Springs in a row, whose pivots are exact: singular with both ends free, and so is either half with a spring missing;
+   not a number, a solution beyond the numbers; definite or not. */
+static int springs(int missing, double of_last, int held, int *definite) {
+    enum { ELEMENTS = 64 };
+    const double S[4] = {1, -1, -1, 1}, none[4] = {0}, last[4] = {of_last, -of_last, -of_last, of_last};
+    spari_linear *s = spari_linear_create(ELEMENTS, 2, 1);
+    double x[ELEMENTS + 1];
+    assert_int_equal(spari_linear_watch(s), 0);
+    for (int e = 0; e < ELEMENTS; e++) {
+        spari_linear_add(s, e, e == missing ? none : e == ELEMENTS - 1 ? last : S);
+    }
+    if (held >= 0) {
+        spari_linear_fix(s, held);
+    }
+    *definite = spari_linear_definite(s);
+    int bad = spari_linear_factor(s);
+    for (int i = 0; i <= ELEMENTS; i++) { /* pulled at its last end: a mass's way is that of the springs before it */
+        x[i] = i == ELEMENTS;
+    }
+    if (!bad) {
+        assert_int_equal(spari_linear_solve(s, x), 0);
+        for (int i = 0; i <= ELEMENTS && held == 0; i++) {
+            assert_true(fabs(x[i] - (i == ELEMENTS ? i - 1 + 1 / of_last : i)) < 1e-12);
+        }
+        x[ELEMENTS - 5] = INFINITY;
+        assert_int_equal(spari_linear_solve(s, x), 1);
+    }
+    spari_linear_free(s);
+    return bad;
+}
+
+static void test_springs(void **unused) {
+    (void)unused;
+    int definite;
+    assert_int_equal(springs(-1, 1, 0, &definite), 0);
+    assert_int_equal(definite, 1);
+    assert_int_equal(springs(-1, 1, 32, &definite), 0);
+    assert_int_equal(springs(-1, -3, 0, &definite), 0);
+    assert_int_equal(definite, 0);
+    assert_int_equal(springs(-1, 1, -1, &definite), 1);
+    assert_int_equal(springs(10, 1, 0, &definite), 1);
+    assert_int_equal(springs(50, 1, 0, &definite), 1);
+    assert_int_equal(springs(-1, NAN, 0, &definite), 1);
+}
+
 /* A solution that is not finite is said so. */
 static void test_not_finite(void **unused) {
     (void)unused;
@@ -170,6 +353,7 @@ static void test_not_finite(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_dense),    cmocka_unit_test(test_band),       cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_halves),   cmocka_unit_test(test_springs),    cmocka_unit_test(test_halves_of_threads),
         cmocka_unit_test(test_products), cmocka_unit_test(test_not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

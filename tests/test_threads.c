@@ -35,9 +35,10 @@ enum { COUNTS = sizeof counts / sizeof *counts };
 
 /* ---- a scene with all that threads share out ---- */
 
-/* Beams of several sizes, two of them tied end to end, a rigid body, and fluid of many nodes on two beams. */
-enum { BEAMS = 6, STEPS = 4, MANY = 40000, FEW = 300, RECORD = 40 * STEPS + 12 * MANY };
-static const int elements[BEAMS] = {1, 3, 40, 2, 1, 30}, per_element[BEAMS] = {7, 4, 3, 5, 9, 4};
+/* Beams of several sizes, two of them tied end to end, one long and with a root that turns, a rigid body, and fluid of
+   many nodes on two beams. */
+enum { BEAMS = 6, STEPS = 4, MANY = 40000, FEW = 300, ROW = 48, RECORD = ROW * STEPS + 12 * MANY };
+static const int elements[BEAMS] = {1, 3, 40, 2, 1, 130}, per_element[BEAMS] = {7, 4, 3, 5, 9, 4};
 
 typedef struct whole_scene {
     spar_session *s;
@@ -85,6 +86,8 @@ static void whole_create(whole_scene *w, int threads, int late) {
         OK(w->s, spar_beam_set_damping(w->beam[i], mu));
         if (i == 4) {
             OK(w->s, spar_member_set_root(w->beam[i], SPAR_ROOT_FREE));
+        } else if (i == 5) {
+            OK(w->s, spar_member_set_root(w->beam[i], SPAR_ROOT_DRIVEN));
         }
         OK(w->s, spar_member_commit(w->beam[i]));
     }
@@ -134,16 +137,19 @@ static void whole_run(int threads, int late, double *record) {
     memset(record, 0, RECORD * sizeof *record);
     for (int step = 0; step < STEPS; step++) {
         int iterations;
-        double *at = record + 40 * step;
+        double *at = record + ROW * step;
+        const double turned[7] = {0, 0, 1e-3 * step, cos(0.02 * step), 0, sin(0.02 * step), 0},
+                     rate[6] = {0, 0, 0.2, 0, 8, 0}, none[6] = {0};
+        OK(w.s, spar_member_drive_root(w.beam[5], turned, rate, none));
         OK(w.s, spar_step(w.s, step == 2 ? 0.02 : 0.005, whole_fluid, &w, &iterations));
-        for (int i = 0; i < 5; i++) {
+        for (int i = 0; i < BEAMS; i++) {
             scene_tip(w.beam[i], at + 7 * i);
         }
-        at[35] = iterations;
-        OK(w.s, spar_fluid_get_audit(w.fluid[0], 4, at + 36));
+        at[42] = iterations;
+        OK(w.s, spar_fluid_get_audit(w.fluid[0], 4, at + 43));
     }
-    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 0.5, record + 40 * STEPS, record + 40 * STEPS + 3 * MANY));
-    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 1, record + 40 * STEPS + 6 * MANY, record + 40 * STEPS + 9 * MANY));
+    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 0.5, record + ROW * STEPS, record + ROW * STEPS + 3 * MANY));
+    OK(w.s, spar_fluid_pull_motion(w.fluid[0], 1, record + ROW * STEPS + 6 * MANY, record + ROW * STEPS + 9 * MANY));
     whole_destroy(&w);
 }
 
@@ -174,6 +180,50 @@ static void test_rounding_of_the_host(void **state) {
     }
     free(one);
     free(two);
+}
+
+/* A long beam alone, whose elements, nodes and halves are shared out with two threads already: on a root that turns,
+   and hanging on one that stands, at rest and then let go. */
+enum { LONG = 130, NODES = 4 * LONG };
+
+static void long_run(int threads, int driven, double motion[19 * NODES]) {
+    spar_session *s = scene_session();
+    spar_member *b = NULL;
+    double K[36], M[36];
+    const double g[3] = {0, -1, -9.81}, mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3}, none[6] = {0};
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    OK(s, spar_session_set_threads(s, threads));
+    OK(s, spar_session_set_gravity(s, g));
+    b = scene_beam(s, "long", LONG, 4, 3, K, M);
+    OK(s, spar_beam_set_damping(b, mu));
+    OK(s, spar_member_set_root(b, driven ? SPAR_ROOT_DRIVEN : SPAR_ROOT_FIXED));
+    OK(s, spar_member_commit(b));
+    if (!driven) {
+        OK(s, spar_session_solve_static(s, 2, NULL, NULL, NULL));
+    }
+    for (int step = 1; step <= STEPS; step++) {
+        const double turned[7] = {0, 0, 0, cos(0.005 * step), 0, sin(0.005 * step), 0}, rate[6] = {0, 0, 0, 0, 2, 0};
+        if (driven) {
+            OK(s, spar_member_drive_root(b, turned, rate, none));
+        }
+        OK(s, spar_member_set_load(b, NODES / 2, SPAR_LOAD_DEAD, (const double[6]){1, 20.0 * step, 3, 0, 0.5, 0}));
+        scene_run(s, step == 3 ? 0.02 : 0.005, 1); /* the third is much longer than the second */
+    }
+    OK(s, spar_member_get_motion(b, motion, motion + 7 * NODES, motion + 13 * NODES));
+    spar_session_destroy(&s);
+}
+
+static void test_long_beam(void **state) {
+    (void)state;
+    static double one[19 * NODES], more[19 * NODES];
+    for (int driven = 0; driven < 2; driven++) {
+        long_run(1, driven, one);
+        for (int i = 1; i < COUNTS; i++) {
+            long_run(counts[i], driven, more);
+            assert_memory_equal(one, more, sizeof one);
+        }
+    }
 }
 
 /* ---- maps ---- */
@@ -295,11 +345,8 @@ static void test_number(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_number),
-        cmocka_unit_test(test_same_feet),
-        cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_rounding_of_the_host),
+        cmocka_unit_test(test_number),    cmocka_unit_test(test_same_feet), cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_long_beam), cmocka_unit_test(test_rounding_of_the_host),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

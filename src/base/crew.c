@@ -189,6 +189,24 @@ void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *cont
     wait_for_hands(crew);
 }
 
+typedef struct crew_spread {
+    int64_t n, span;
+    spari_span work;
+    void *context;
+} crew_spread;
+
+static void do_span(void *context, int64_t item, int worker) {
+    const crew_spread *s = context;
+    int64_t from = item * s->span;
+    (void)worker;
+    s->work(s->context, from, from + s->span < s->n ? from + s->span : s->n);
+}
+
+void spari_crew_spans(spari_crew *crew, int64_t n, int64_t span, spari_span work, void *context) {
+    crew_spread s = {n, span, work, context};
+    spari_crew_run(crew, (n + span - 1) / span, do_span, &s);
+}
+
 int spari_crew_keep(spari_crew *crew, int64_t doubles) {
     if (!crew || doubles <= crew->kept) {
         return 0;

@@ -20,6 +20,18 @@ int spari_crew_threads(const spari_crew *crew);
 /* Items 0 to items - 1; returns when all are done. The surroundings (quiet.h) are those of the caller. From inside an
    item, and without a crew: one after the other in the calling thread. */
 void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *context);
+/* [from, to) of them. */
+typedef void (*spari_span)(void *context, int64_t from, int64_t to);
+/* 0 to n - 1 in spans of `span`, as run does items. What comes out of a number may depend on nothing but that number.
+ */
+void spari_crew_spans(spari_crew *crew, int64_t n, int64_t span, spari_span work, void *context);
+static inline void spari_crew_spread(spari_crew *crew, int64_t n, int64_t span, spari_span work, void *context) {
+    if (n <= span) {
+        work(context, 0, n);
+    } else {
+        spari_crew_spans(crew, n, span, work, context);
+    }
+}
 /* Whether run would share them out: there is a crew, and none of its items is under way in this thread. */
 int spari_crew_is_free(const spari_crew *crew);
 

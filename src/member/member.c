@@ -111,15 +111,28 @@ void spari_member_to_unique(const spar_member *m, int width, const double *nodes
     }
 }
 
+/* One view of nodes and the other. */
+typedef struct two_views {
+    const spar_member *m;
+    int width;
+    const double *from;
+    double *to;
+} two_views;
+
+static void nodes_of_unique(void *context, int64_t from, int64_t to) {
+    const two_views *t = context;
+    int P = t->m->per_element, width = t->width;
+    for (int64_t i = from; i < to; i++) {
+        memcpy(t->to + width * i, t->from + width * (i - i / P), (size_t)width * sizeof *t->to);
+    }
+}
+
 void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes) {
-    int P = m->per_element;
     if (m->elements == 1) {
         memcpy(nodes, unique, (size_t)(width * m->nodes) * sizeof *nodes);
         return;
     }
-    for (int64_t i = 0; i < m->nodes; i++) {
-        memcpy(nodes + width * i, unique + width * (i - i / P), (size_t)width * sizeof *nodes);
-    }
+    spari_member_spread(m, m->nodes, nodes_of_unique, &(two_views){m, width, unique, nodes});
 }
 
 void spari_member_publish(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to) {
@@ -128,15 +141,32 @@ void spari_member_publish(const spar_member *m, const double *q, const double *v
     spari_member_from_unique(m, 6, a, to->a);
 }
 
-void spari_member_gather(const spar_member *m, const double *nodal, double *unique) {
-    int P = m->per_element;
-    memset(unique, 0, (size_t)m->body->unique * 6 * sizeof *unique);
-    for (int64_t i = 0; i < m->nodes; i++) {
-        int64_t u = m->elements == 1 ? i : i - i / P;
+/* A joint of elements stands at the end of one and at the beginning of the next. */
+static void gather_nodes(void *context, int64_t from, int64_t to) {
+    const two_views *t = context;
+    int64_t steps = t->m->per_element - 1, last = t->m->elements * steps;
+    for (int64_t u = from; u < to; u++) {
+        int64_t e = u > 0 ? (u - 1) / steps : 0;
+        const double *load = t->from + 6 * (u + e);
+        double *sum = t->to + 6 * u;
+        int joint = u > 0 && u < last && u == (e + 1) * steps;
         for (int k = 0; k < 6; k++) {
-            unique[6 * u + k] += nodal[6 * i + k];
+            sum[k] = 0 + load[k];
+        }
+        for (int k = 0; k < 6 && joint; k++) {
+            sum[k] += load[6 + k];
         }
     }
+}
+
+void spari_member_gather(const spar_member *m, const double *nodal, double *unique) {
+    if (m->elements == 1) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++) {
+            unique[i] = 0 + nodal[i];
+        }
+        return;
+    }
+    spari_member_spread(m, m->body->unique, gather_nodes, &(two_views){m, 6, nodal, unique});
 }
 
 void spari_member_even_loads(const spar_member *m, double *load) {

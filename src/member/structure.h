@@ -3,6 +3,7 @@
 #ifndef SPARI_STRUCTURE_H
 #define SPARI_STRUCTURE_H
 
+#include "../base/crew.h"
 #include "../base/scene.h"
 
 #include <string.h>
@@ -154,6 +155,11 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
 }
 /* Loads of the nodes summed onto the unknowns' nodes. */
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
+/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them (base/crew.h). */
+enum { SPARI_MEMBER_SPAN = 512 };
+static inline void spari_member_spread(const spar_member *m, int64_t n, spari_span work, void *context) {
+    spari_crew_spread(m->session->crew, n, SPARI_MEMBER_SPAN, work, context);
+}
 /* Loads of the nodes [nodes][6] that move what they moved: halved between the two nodes of a joint of elements, without
    what the root holds. */
 void spari_member_even_loads(const spar_member *m, double *load);

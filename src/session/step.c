@@ -72,20 +72,32 @@ static int check_begin(spar_session *s, const char *call, double dt) {
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
-/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
-   docs/theory.md. */
-static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
+typedef struct load_extrapolation {
+    const spar_member *m;
+    int order;
     double w[3];
-    spari_predictor(order, dt, last, w);
-    for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        double f = w[0] * m->load_history[0][i];
-        for (int k = 1; k <= order; k++) {
-            f += w[k] * m->load_history[k][i];
+} load_extrapolation;
+
+static void predict_nodes_loads(void *context, int64_t from, int64_t to) {
+    const load_extrapolation *t = context;
+    const spar_member *m = t->m;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        double f = t->w[0] * m->load_history[0][i];
+        for (int k = 1; k <= t->order; k++) {
+            f += t->w[k] * m->load_history[k][i];
         }
         m->load_used[i] = f;
     }
+}
+
+/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
+   docs/theory.md. */
+static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
+    load_extrapolation t = {.m = m, .order = order};
+    spari_predictor(order, dt, last, t.w);
+    spari_member_spread(m, m->nodes, predict_nodes_loads, &t);
     if (m->added) {
-        spari_added_predict(m, w, dt);
+        spari_added_predict(m, t.w, dt);
     }
 }
 

@@ -40,9 +40,23 @@ static void place_node(const spari_scheme *c, const spari_state *from, const spa
     }
 }
 
-static spari_rates rates_of(const spari_state *s) {
-    return (spari_rates){s->v, s->a, s->b};
+/* Rates from node i on. */
+static spari_rates rates_of(const spari_state *s, int64_t i) {
+    return (spari_rates){s->v + 6 * i, s->a + 6 * i, s->b + 6 * i};
 }
+
+/* What is done node by node, in spans of them. */
+typedef struct alpha_nodes {
+    const spari_solver *s;
+    const spari_scheme *c;
+    const spari_ends *e;
+    double *x, *dx;
+    const double *q, *r;
+    spari_guess stays;
+    double cut;
+    int shifted;
+    const double *R; /* how a driven root is turned; NULL: there is none */
+} alpha_nodes;
 
 /* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
    jumps, the nodes that keep their places are left behind (root.c). `to` is not in use there. */
@@ -62,6 +76,19 @@ static void keep_shape(const spari_solver *s, const spar_member *member, spari_e
     }
 }
 
+static void predict_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    const spari_ends *e = t->e;
+    int64_t n = 6 * (to - from), at = 6 * from;
+    spari_scheme_predict(t->c, t->stays, (int)n, rates_of(&e->from, from), t->x + at, rates_of(&e->to, from));
+    if (t->shifted) {
+        spari_scheme_correct(t->c, 1, (int)n, t->dx + at, t->x + at, rates_of(&e->to, from));
+    }
+    for (int64_t i = from; i < to; i++) {
+        place_node(t->c, &e->from, &e->to, t->x, (int)i);
+    }
+}
+
 /* Starting values of Newton. */
 int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
                         spari_ends *e, double *x) {
@@ -72,13 +99,9 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
     if (shape) {
         keep_shape(s, member, e, s->dx);
     }
-    spari_scheme_predict(c, shape ? SPARI_KEEP_PLACE : stays, 6 * s->n, rates_of(&e->from), x, rates_of(&e->to));
-    if (shape) {
-        spari_scheme_correct(c, 1, 6 * s->n, s->dx, x, rates_of(&e->to));
-    }
-    for (int i = 0; i < s->n; i++) {
-        place_node(c, &e->from, &e->to, x, i);
-    }
+    alpha_nodes t = {.s = s, .c = c, .e = e, .x = x, .dx = s->dx, .shifted = shape};
+    t.stays = shape ? SPARI_KEEP_PLACE : stays;
+    spari_solver_spread(s, predict_span, &t);
     spari_root_show(s, member, e);
     return 1;
 }
@@ -134,6 +157,14 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
     }
 }
 
+static void less_loads(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    const double *load = t->s->steps.load;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        t->x[i] -= load[i];
+    }
+}
+
 /* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
  * relative to. */
 double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
@@ -141,9 +172,7 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     const spari_body *body = s->body;
     double scale =
         spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
-    for (int i = 0; i < 6 * s->n; i++) {
-        r[i] -= s->steps.load[i];
-    }
+    spari_solver_spread(s, less_loads, &(alpha_nodes){.s = s, .x = r});
     if (spari_solver_has_applied(s, member)) {
         scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
     }
@@ -157,12 +186,35 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     return scale;
 }
 
+static void see_turn(const spari_solver *s, const double *q, int64_t i) {
+    double back[4];
+    spari_quat_conj(s->kept_q + 4 * i, back);
+    spari_quat_mul(q + 7 * i + 3, back, s->turn + 4 * i);
+}
+
 /* How the nodes have turned since the kept tangent was formed. */
 void spari_alpha_see_turn(const spari_solver *s, const double *q) {
     for (int i = 0; i < s->n && !s->body->linear[0]; i++) {
-        double back[4];
-        spari_quat_conj(s->kept_q + 4 * i, back);
-        spari_quat_mul(q + 7 * i + 3, back, s->turn + 4 * i);
+        see_turn(s, q, i);
+    }
+}
+
+static void turn_nodes_back(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    for (int64_t i = from; i < to; i++) {
+        const double *turn = t->s->turn + 4 * i;
+        see_turn(t->s, t->q, i);
+        spari_rotate_back(turn, t->r + 6 * i, t->dx + 6 * i);
+        spari_rotate_back(turn, t->r + 6 * i + 3, t->dx + 6 * i + 3);
+    }
+}
+
+static void turn_nodes_forth(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    for (int64_t i = from; i < to; i++) {
+        const double *turn = t->s->turn + 4 * i;
+        spari_rotate(turn, t->dx + 6 * i, t->dx + 6 * i);
+        spari_rotate(turn, t->dx + 6 * i + 3, t->dx + 6 * i + 3);
     }
 }
 
@@ -175,18 +227,12 @@ void spari_alpha_turn_back(const spari_solver *s, const double *q, const double 
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
         return;
     }
-    spari_alpha_see_turn(s, q);
-    for (int i = 0; i < s->n; i++) {
-        const double *turn = s->turn + 4 * i;
-        spari_rotate_back(turn, r + 6 * i, dx + 6 * i);
-        spari_rotate_back(turn, r + 6 * i + 3, dx + 6 * i + 3);
-    }
+    spari_solver_spread(s, turn_nodes_back, &(alpha_nodes){.s = s, .q = q, .r = r, .dx = dx});
 }
 
 void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
-    for (int i = 0; i < s->n && !s->body->linear[0]; i++) {
-        spari_rotate(s->turn + 4 * i, dx + 6 * i, dx + 6 * i);
-        spari_rotate(s->turn + 4 * i, dx + 6 * i + 3, dx + 6 * i + 3);
+    if (!s->body->linear[0]) {
+        spari_solver_spread(s, turn_nodes_forth, &(alpha_nodes){.s = s, .dx = dx});
     }
 }
 
@@ -258,28 +304,42 @@ static void turn_increment(const spari_scheme *c, const spari_ends *e, const dou
     less_spin(k, e->from.v + 6 * i + 3, turn, turn);
 }
 
+static void take_increments(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    double largest = 0, length = t->s->body->length;
+    for (int64_t i = from; i < to; i++) {
+        double *d = t->dx + 6 * i;
+        for (int k = 0; k < 6 && t->R; k += 3) {
+            spari_matrix_times_back(t->R, d + k, d + k);
+        }
+        turn_increment(t->c, t->e, t->x, (int)i, d + 3);
+        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(d + 3)));
+    }
+    t->s->most[from / SPARI_SPAN] = largest;
+}
+
+static void correct_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    int64_t at = 6 * from;
+    spari_scheme_correct(t->c, t->cut, (int)(6 * (to - from)), t->dx + at, t->x + at, rates_of(&t->e->to, from));
+    for (int64_t i = from; i < to; i++) {
+        place_node(t->c, &t->e->from, &t->e->to, t->x, (int)i);
+    }
+}
+
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
    relative to the member's length for translations, in radians for rotations. */
 double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
                            double longest, double *x, double *dx) {
-    const spari_state *to = &e->to;
-    double largest = 0, length = s->body->length, R[9];
+    double R[9];
+    alpha_nodes t = {.s = s, .c = c, .e = e, .x = x, .dx = dx, .R = e->root ? R : NULL};
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
     }
-    for (int i = 0; i < s->n; i++) {
-        double *d = dx + 6 * i;
-        for (int k = 0; k < 6 && e->root; k += 3) {
-            spari_matrix_times_back(R, d + k, d + k);
-        }
-        turn_increment(c, e, x, i, d + 3);
-        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(d + 3)));
-    }
-    double cut = largest > longest ? longest / largest : 1;
-    spari_scheme_correct(c, cut, 6 * s->n, dx, x, rates_of(to));
-    for (int i = 0; i < s->n; i++) {
-        place_node(c, &e->from, to, x, i);
-    }
+    spari_solver_spread(s, take_increments, &t);
+    double largest = spari_solver_most(s);
+    t.cut = largest > longest ? longest / largest : 1;
+    spari_solver_spread(s, correct_span, &t);
     spari_root_show(s, member, e);
     return largest;
 }
@@ -302,20 +362,35 @@ void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const
     }
 }
 
-double spari_alpha_size(const spari_solver *s, const double *x) {
-    double largest = 0;
-    for (int i = 0; i < s->n; i++) {
-        largest = fmax(largest, fmax(spari_norm(x + 6 * i) / s->body->length, spari_norm(x + 6 * i + 3)));
+static void size_nodes(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    double largest = 0, length = t->s->body->length;
+    for (int64_t i = from; i < to; i++) {
+        const double *x = t->r + 6 * i;
+        largest = fmax(largest, fmax(spari_norm(x) / length, spari_norm(x + 3)));
     }
-    return largest;
+    t->s->most[from / SPARI_SPAN] = largest;
 }
 
-static double infinity_norm(const double *r, int n) {
+double spari_alpha_size(const spari_solver *s, const double *x) {
+    spari_solver_spread(s, size_nodes, &(alpha_nodes){.s = s, .r = x});
+    return spari_solver_most(s);
+}
+
+/* The largest of forces; infinite where one is no number. */
+static void size_forces(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
     double big = 0;
-    for (int i = 0; i < n; i++) {
-        big = fmax(big, fabs(r[i]));
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        double size = fabs(t->r[i]);
+        big = size <= big ? big : size < INFINITY ? size : INFINITY;
     }
-    return big;
+    t->s->most[from / SPARI_SPAN] = big;
+}
+
+static double size_of_forces(const spari_solver *s, const double *r) {
+    spari_solver_spread(s, size_forces, &(alpha_nodes){.s = s, .r = r});
+    return spari_solver_most(s);
 }
 
 /* A tangent serves on where a solution takes no more iterations than this. Where it takes more, another is formed for
@@ -382,8 +457,8 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     spari_solver *s = t->s;
     const spar_session *session = t->member->session;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
-    if (!isfinite(scale) || spari_first_nonfinite(s->r, 6 * (int64_t)s->n) >= 0) {
+    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r), noise = size_of_forces(s, s->r);
+    if (!isfinite(scale) || !isfinite(noise)) {
         return "met numbers that are not finite";
     }
     if (!s->factored) {
@@ -395,7 +470,6 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     if (solve_turned(s, t->e->seen.q, s->r, s->dx)) {
         return "found a singular tangent";
     }
-    double noise = infinity_norm(s->r, 6 * s->n);
     it->correction = spari_alpha_correct(s, t->member, t->c, t->e, longest, t->x, s->dx);
     s->newton++;
     it->tolerance = session->newton_atol + session->newton_rtol * (spari_alpha_size(s, t->x) + t->e->carried);

@@ -46,10 +46,17 @@ static int rigid_field(spar_member *m) {
     return SPAR_OK;
 }
 
+static void copy_nodes(void *context, int64_t first, int64_t end) {
+    const spari_motion *const *motion = context, *from = motion[0], *to = motion[1];
+    size_t n = (size_t)(end - first);
+    memcpy(to->q + 7 * first, from->q + 7 * first, n * 7 * sizeof *to->q);
+    memcpy(to->v + 6 * first, from->v + 6 * first, n * 6 * sizeof *to->v);
+    memcpy(to->a + 6 * first, from->a + 6 * first, n * 6 * sizeof *to->a);
+}
+
 static void copy_motion(const spar_member *m, const spari_motion *from, spari_motion *to) {
-    memcpy(to->q, from->q, (size_t)m->nodes * 7 * sizeof *to->q);
-    memcpy(to->v, from->v, (size_t)m->nodes * 6 * sizeof *to->v);
-    memcpy(to->a, from->a, (size_t)m->nodes * 6 * sizeof *to->a);
+    const spari_motion *motion[2] = {from, to};
+    spari_member_spread(m, m->nodes, copy_nodes, motion);
 }
 
 /* Before the first step those accelerations count that a balanced start begins with, not those that it has found. */
@@ -84,15 +91,31 @@ void spari_member_restart(spar_member *m) {
     }
 }
 
+/* Loads of one kind and of another. */
+typedef struct two_loads {
+    const double *a, *b;
+    double *to;
+} two_loads;
+
+static void copy_load_span(void *context, int64_t from, int64_t to) {
+    const two_loads *t = context;
+    memcpy(t->to + 6 * from, t->a + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->to);
+}
+
 /* a's loads become b's */
 static void copy_solved(spar_member *m, int a, int b) {
-    memcpy(m->load_solved[b], m->load_solved[a], (size_t)(6 * m->nodes) * sizeof(double));
+    spari_member_spread(m, m->nodes, copy_load_span, &(two_loads){.a = m->load_solved[a], .to = m->load_solved[b]});
+}
+
+static void add_load_span(void *context, int64_t from, int64_t to) {
+    const two_loads *t = context;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        t->to[i] = t->a[i] + t->b[i];
+    }
 }
 
 void spari_member_solved(spar_member *m, const double *fluid) {
-    for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        m->load_solved[1][i] = m->dead[i] + fluid[i];
-    }
+    spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->dead, fluid, m->load_solved[1]});
 }
 
 void spari_member_settle(spar_member *m) {

@@ -1,7 +1,8 @@
 /* Dense and banded systems, of a chain of blocks that overlap or of any entries, factored and solved. */
 #include "linear.h"
-#include "../base/blas.h"
 
+#include "../base/blas.h"
+#include "../base/crew.h"
 #include "../base/status.h"
 #include "../math/lanes.h"
 
@@ -26,15 +27,27 @@
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 
+/* Chains of so many elements and more are cut in the middle. */
+enum { LONG = 64 };
+
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
-   it got any. */
+   it got any.
+
+   A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
+   backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
+   what it adds to their own system: (S + S') x = b + b' (burning at both ends; van der Vorst, Parallel Computing 5,
+   1987). That takes no more operations than one half after the other, and two threads can do it. */
 struct spari_linear {
     int elements, block, overlap; /* of a chain; else 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    gsl_matrix *A; /* dense n x n, column by column, or banded n x (3 band + 1) as gsl_linalg_LU_band has it */
+    size_t size, inner;           /* those that stand in A, and those that are taken out in it: all n, unless cut */
+    gsl_matrix *A; /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
     int *swap;     /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
     gsl_vector_uint *band_swap; /* banded */
     gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
+    spari_linear *far, *joint;  /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
+    double *x;                  /* of a far half: [size] room */
+    spari_crew *const *crew;    /* spari_linear_share; NULL: nobody */
 };
 
 /* Room for the matrix, whose size is known. */
@@ -43,8 +56,8 @@ static spari_linear *with_room(spari_linear *s, int dense) {
         s->A = gsl_matrix_calloc(s->n, s->n);
         s->swap = spari_zalloc((int64_t)s->n, sizeof *s->swap);
     } else {
-        s->A = gsl_matrix_calloc(s->n, 3 * s->band + 1);
-        s->band_swap = gsl_vector_uint_alloc(s->n);
+        s->A = gsl_matrix_calloc(s->size, 3 * s->band + 1);
+        s->band_swap = gsl_vector_uint_alloc(s->size);
     }
     if (!s->A || (dense ? !s->swap : !s->band_swap)) {
         spari_linear_free(s);
@@ -53,15 +66,38 @@ static spari_linear *with_room(spari_linear *s, int dense) {
     return s;
 }
 
-spari_linear *spari_linear_create(int elements, int block, int overlap) {
+/* A chain that is not cut. */
+static spari_linear *make_chain(int elements, int block, int overlap) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
     s->elements = elements, s->block = block, s->overlap = overlap;
-    s->n = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
+    s->n = s->size = s->inner = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
     s->band = (size_t)block - 1;
     return with_room(s, elements == 1);
+}
+
+spari_linear *spari_linear_create(int elements, int block, int overlap) {
+    if (elements < LONG || overlap < 1) {
+        return make_chain(elements, block, overlap);
+    }
+    int near = elements / 2;
+    spari_linear *s = make_chain(near, block, overlap);
+    if (!s) {
+        return NULL;
+    }
+    s->far = make_chain(elements - near, block, overlap);
+    s->joint = make_chain(1, overlap, 0);
+    if (!s->far || !s->joint || !(s->far->x = spari_zalloc((int64_t)s->far->n, sizeof *s->far->x))) {
+        spari_linear_free(s);
+        return NULL;
+    }
+    s->elements = elements;
+    s->n += s->far->n - (size_t)overlap;
+    s->inner -= (size_t)overlap;
+    s->far->inner -= (size_t)overlap;
+    return s;
 }
 
 spari_linear *spari_linear_create_banded(int n, int band) {
@@ -69,12 +105,15 @@ spari_linear *spari_linear_create_banded(int n, int band) {
     if (!s) {
         return NULL;
     }
-    s->n = (size_t)n, s->band = (size_t)band;
+    s->n = s->size = s->inner = (size_t)n, s->band = (size_t)band;
     return with_room(s, 3 * s->band + 1 >= s->n);
 }
 
 void spari_linear_free(spari_linear *s) {
     if (s) {
+        spari_linear_free(s->far);
+        spari_linear_free(s->joint);
+        free(s->x);
         gsl_matrix_free(s->A);
         free(s->swap);
         gsl_vector_uint_free(s->band_swap);
@@ -83,8 +122,15 @@ void spari_linear_free(spari_linear *s) {
     }
 }
 
+void spari_linear_share(spari_linear *s, spari_crew *const *crew) {
+    s->crew = crew;
+}
+
 void spari_linear_zero(spari_linear *s) {
     gsl_matrix_set_zero(s->A);
+    if (s->far) {
+        gsl_matrix_set_zero(s->far->A);
+    }
 }
 
 /* entry (i, j): row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j there */
@@ -99,6 +145,16 @@ double *spari_linear_entries(const spari_linear *s, int64_t *step) {
 
 void spari_linear_add(spari_linear *s, int element, const double *S) {
     size_t first = (size_t)element * (size_t)(s->block - s->overlap), m = (size_t)s->block;
+    if (s->far && first >= s->inner) { /* S backwards too */
+        first = s->n - first - m;
+        for (size_t j = 0; j < m; j++) {
+            double *column = entry(s->far, first, first + j);
+            for (size_t i = 0; i < m; i++) {
+                column[i] += S[m * m - 1 - (m * i + j)];
+            }
+        }
+        return;
+    }
     for (size_t j = 0; j < m; j++) {
         double *column = entry(s, first, first + j);
         for (size_t i = 0; i < m; i++) {
@@ -107,45 +163,69 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
     }
 }
 
-/* The unknowns [from, to) that unknown i may have entries with */
+/* The unknowns [from, to) that unknown i may have entries with in A */
 static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) {
     *from = !s->swap && i > s->band ? i - s->band : 0;
-    *to = !s->swap && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
+    *to = !s->swap && i + s->band + 1 < s->size ? i + s->band + 1 : s->size;
+}
+
+/* Adds row and column of unknown i; unknown j is at step j. */
+static void read_part(const spari_linear *s, size_t i, double *row, double *column, int step) {
+    size_t from, to;
+    reach_of(s, i, &from, &to);
+    for (size_t j = from; j < to; j++) {
+        row[step * (int64_t)j] += *entry(s, i, j);
+        column[step * (int64_t)j] += *entry(s, j, i);
+    }
 }
 
 void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
-    size_t at = (size_t)i, from, to;
-    reach_of(s, at, &from, &to);
+    size_t at = (size_t)i, end = s->n - 1;
     memset(row, 0, s->n * sizeof *row);
     memset(column, 0, s->n * sizeof *column);
-    for (size_t j = from; j < to; j++) {
-        row[j] = *entry(s, at, j);
-        column[j] = *entry(s, j, at);
+    if (at < s->size) {
+        read_part(s, at, row, column, 1);
+    }
+    if (s->far && at >= s->inner) {
+        read_part(s->far, end - at, row + end, column + end, -1);
     }
 }
 
-void spari_linear_fix(spari_linear *s, int i) {
-    size_t at = (size_t)i, from, to;
-    reach_of(s, at, &from, &to);
+static void fix_part(spari_linear *s, size_t i, double diagonal) {
+    size_t from, to;
+    reach_of(s, i, &from, &to);
     for (size_t j = from; j < to; j++) {
-        *entry(s, at, j) = *entry(s, j, at) = 0;
+        *entry(s, i, j) = *entry(s, j, i) = 0;
     }
-    *entry(s, at, at) = 1;
+    *entry(s, i, i) = diagonal;
+}
+
+void spari_linear_fix(spari_linear *s, int i) {
+    size_t at = (size_t)i;
+    if (at < s->size) {
+        fix_part(s, at, 1);
+    }
+    if (s->far && at >= s->inner) {
+        fix_part(s->far, s->n - 1 - at, at >= s->size);
+    }
 }
 
 typedef struct linear_kernels {
     int (*factor_dense)(int64_t n, double least, double *A, int *swap);
-    int (*factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, unsigned *swap);
+    int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
+                       unsigned *swap);
     void (*dense)(int64_t n, const double *A, double *x);
-    void (*band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap, double *x);
+    void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
+                  double *x);
+    void (*back)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, double *x);
     void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
     void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);
 } linear_kernels;
 
 #define LINEAR_KERNELS(width)                                                                                          \
     (linear_kernels) {                                                                                                 \
-        factor_dense_##width, factor_band_##width, solve_dense_##width, solve_band_##width, take_columns_##width,      \
-            add_rows_##width                                                                                           \
+        factor_dense_##width, factor_band_##width, solve_dense_##width, forth_band_##width, back_band_##width,         \
+            take_columns_##width, add_rows_##width                                                                     \
     }
 
 static linear_kernels kernels_here(void) {
@@ -162,7 +242,7 @@ static linear_kernels kernels_here(void) {
     return LINEAR_KERNELS(plain);
 }
 
-int spari_linear_factor(spari_linear *s) {
+static int factor_part(spari_linear *s) {
     /* before: a search for the largest of what are no numbers may answer anything */
     if (spari_first_nonfinite(s->A->data, (int64_t)(s->A->size1 * s->A->tda)) >= 0) {
         return 1;
@@ -172,13 +252,13 @@ int spari_linear_factor(spari_linear *s) {
     if (s->swap) {
         bad = kernels_here().factor_dense((int64_t)s->n, least, s->A->data, s->swap);
     } else {
-        bad = kernels_here().factor_band((int64_t)s->n, (int64_t)s->band, least, s->A->data, (int64_t)s->A->tda,
-                                         s->band_swap->data);
+        bad = kernels_here().factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
+                                         (int64_t)s->A->tda, s->band_swap->data);
     }
     if (bad) {
         return 1;
     }
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 0; i < s->inner; i++) {
         double pivot = fabs(*entry(s, i, i));
         if (!(pivot > 0) || !isfinite(pivot)) {
             return 1;
@@ -187,9 +267,45 @@ int spari_linear_factor(spari_linear *s) {
     return 0;
 }
 
+/* ---- both halves ---- */
+
+typedef struct linear_halves {
+    spari_linear *s;
+    double *x;
+    int bad[2];
+} linear_halves;
+
+static void both(linear_halves *h, spari_task half) {
+    spari_crew_run(h->s->crew ? *h->s->crew : NULL, 2, half, h);
+}
+
+static void factor_half(void *context, int64_t item, int worker) {
+    linear_halves *h = context;
+    (void)worker;
+    h->bad[item] = factor_part(item ? h->s->far : h->s);
+}
+
+int spari_linear_factor(spari_linear *s) {
+    linear_halves h = {.s = s};
+    if (!s->far) {
+        return factor_part(s);
+    }
+    both(&h, factor_half);
+    if (h.bad[0] || h.bad[1]) {
+        return 1;
+    }
+    for (size_t i = 0; i < s->joint->n; i++) {
+        for (size_t j = 0; j < s->joint->n; j++) {
+            size_t a = s->inner + i, b = s->inner + j, end = s->n - 1;
+            *entry(s->joint, i, j) = *entry(s, a, b) + *entry(s->far, end - a, end - b);
+        }
+    }
+    return factor_part(s->joint);
+}
+
 int spari_linear_sign(const spari_linear *s) {
-    int sign = 1;
-    for (size_t i = 0; i < s->n; i++) {
+    int sign = s->far ? spari_linear_sign(s->far) * spari_linear_sign(s->joint) : 1;
+    for (size_t i = 0; i < s->inner; i++) {
         size_t from = s->swap ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
@@ -206,17 +322,24 @@ void spari_linear_unwatch(spari_linear *s) {
     s->symmetric = NULL;
 }
 
+/* Entry (i, j), wherever it stands. */
+static double value_at(const spari_linear *s, size_t i, size_t j) {
+    size_t end = s->n - 1;
+    double x = i < s->size && j < s->size ? *entry(s, i, j) : 0;
+    return s->far && i >= s->inner && j >= s->inner ? x + *entry(s->far, end - i, end - j) : x;
+}
+
 int spari_linear_definite(spari_linear *s) {
     size_t n = s->n, band = s->swap ? n - 1 : s->band;
     /* scaled to a unit diagonal, shifted by what rounding can do to it */
     const double symmetric = 1e-9, shift = 4e-15;
     for (size_t i = 0; i < n; i++) {
-        if (!(*entry(s, i, i) > 0)) {
+        if (!(value_at(s, i, i) > 0)) {
             return 0;
         }
         for (size_t j = i + 1; j < n && j <= i + band; j++) {
-            double size = sqrt(*entry(s, i, i) * fabs(*entry(s, j, j)));
-            if (fabs(*entry(s, i, j) - *entry(s, j, i)) > symmetric * size) {
+            double size = sqrt(value_at(s, i, i) * fabs(value_at(s, j, j)));
+            if (fabs(value_at(s, i, j) - value_at(s, j, i)) > symmetric * size) {
                 return -1;
             }
         }
@@ -225,8 +348,8 @@ int spari_linear_definite(spari_linear *s) {
     gsl_matrix_set_zero(L);
     for (size_t i = 0; i < n; i++) {
         for (size_t j = i; j < n && j <= i + band; j++) {
-            double size = sqrt(*entry(s, i, i) * *entry(s, j, j)),
-                   value = 0.5 * (*entry(s, i, j) + *entry(s, j, i)) / size + (i == j ? shift : 0);
+            double size = sqrt(value_at(s, i, i) * value_at(s, j, j)),
+                   value = 0.5 * (value_at(s, i, j) + value_at(s, j, i)) / size + (i == j ? shift : 0);
             if (s->swap) {
                 gsl_matrix_set(L, i, j, value);
                 gsl_matrix_set(L, j, i, value);
@@ -240,8 +363,65 @@ int spari_linear_definite(spari_linear *s) {
     return status == GSL_SUCCESS;
 }
 
+static void forth_part(const spari_linear *s, double *x) {
+    kernels_here().forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda,
+                         s->band_swap->data, x);
+}
+
+static void back_part(const spari_linear *s, double *x) {
+    kernels_here().back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, x);
+}
+
+static void forth_half(void *context, int64_t item, int worker) {
+    linear_halves *h = context;
+    const spari_linear *far = h->s->far;
+    (void)worker;
+    if (item == 0) {
+        forth_part(h->s, h->x);
+        return;
+    }
+    for (size_t i = 0; i < far->size; i++) {
+        far->x[i] = i < far->inner ? h->x[h->s->n - 1 - i] : 0;
+    }
+    forth_part(far, far->x);
+}
+
+static void back_half(void *context, int64_t item, int worker) {
+    linear_halves *h = context;
+    const spari_linear *far = h->s->far;
+    (void)worker;
+    if (item == 0) {
+        back_part(h->s, h->x);
+        h->bad[0] = spari_first_nonfinite(h->x, (int64_t)h->s->inner) >= 0;
+        return;
+    }
+    back_part(far, far->x);
+    h->bad[1] = spari_first_nonfinite(far->x, (int64_t)far->inner) >= 0;
+    for (size_t i = 0; i < far->inner; i++) {
+        h->x[h->s->n - 1 - i] = far->x[i];
+    }
+}
+
+static int solve_halves(spari_linear *s, double *x) {
+    linear_halves h = {.s = s, .x = x};
+    double *joint = x + s->inner, *end = s->far->x + s->far->size - 1;
+    both(&h, forth_half);
+    for (size_t i = 0; i < s->joint->n; i++) {
+        joint[i] += end[-(int64_t)i];
+    }
+    int bad = spari_linear_solve(s->joint, joint);
+    for (size_t i = 0; i < s->joint->n; i++) {
+        end[-(int64_t)i] = joint[i];
+    }
+    both(&h, back_half);
+    return bad || h.bad[0] || h.bad[1];
+}
+
 int spari_linear_solve(spari_linear *s, double *x) {
     int64_t n = (int64_t)s->n;
+    if (s->far) {
+        return solve_halves(s, x);
+    }
     if (s->swap) {
         for (int64_t i = 0; i < n; i++) {
             double there = x[s->swap[i] - 1];
@@ -250,7 +430,8 @@ int spari_linear_solve(spari_linear *s, double *x) {
         }
         kernels_here().dense(n, s->A->data, x);
     } else {
-        kernels_here().band(n, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, s->band_swap->data, x);
+        forth_part(s, x);
+        back_part(s, x);
     }
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }
@@ -263,39 +444,53 @@ void spari_linear_add_rows(int n, int count, const double *rows, double by, cons
     kernels_here().rows(n, count, rows, by, x, y);
 }
 
+static int64_t part_size(const spari_linear *s) {
+    return (int64_t)(s->A->size1 * s->A->size2 + s->inner);
+}
+
 int64_t spari_linear_state_size(const spari_linear *s) {
-    return (int64_t)(s->A->size1 * s->A->size2 + s->n);
+    return part_size(s) + (s->far ? part_size(s->far) + part_size(s->joint) : 0);
 }
 
 void spari_linear_save(const spari_linear *s, double *state) {
     for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
         memcpy(state, s->A->data + i * s->A->tda, s->A->size2 * sizeof *state);
     }
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 0; i < s->inner; i++) {
         state[i] = s->swap ? s->swap[i] : (double)gsl_vector_uint_get(s->band_swap, i);
+    }
+    if (s->far) {
+        spari_linear_save(s->far, state + s->inner);
+        spari_linear_save(s->joint, state + s->inner + part_size(s->far));
     }
 }
 
 int spari_linear_is_state(const spari_linear *s, const double *state) {
     double first = s->swap ? 1 : 0;
     state += s->A->size1 * s->A->size2;
-    for (size_t i = 0; i < s->n; i++) {
-        if (!(state[i] >= first && state[i] < first + (double)s->n)) {
+    for (size_t i = 0; i < s->inner; i++) {
+        if (!(state[i] >= first && state[i] < first + (double)s->inner)) {
             return 0;
         }
     }
-    return 1;
+    state += s->inner;
+    return !s->far ||
+           (spari_linear_is_state(s->far, state) && spari_linear_is_state(s->joint, state + part_size(s->far)));
 }
 
 void spari_linear_load(spari_linear *s, const double *state) {
     for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
         memcpy(s->A->data + i * s->A->tda, state, s->A->size2 * sizeof *state);
     }
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 0; i < s->inner; i++) {
         if (s->swap) {
             s->swap[i] = (int)state[i];
         } else {
             gsl_vector_uint_set(s->band_swap, i, (unsigned)state[i]);
         }
+    }
+    if (s->far) {
+        spari_linear_load(s->far, state + s->inner);
+        spari_linear_load(s->joint, state + s->inner + part_size(s->far));
     }
 }

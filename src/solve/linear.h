@@ -3,19 +3,22 @@
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
-#include <stdint.h>
+#include "../base/crew.h"
 
 typedef struct spari_linear spari_linear;
 
-/* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. NULL when there is no
- * memory. */
+/* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. A long chain is cut in
+   its middle: its halves are factored and solved apart, whoever does it, so that the bits are the same. NULL when there
+   is no memory. */
 spari_linear *spari_linear_create(int elements, int block, int overlap);
 /* n unknowns of which i and j have an entry where |i - j| <= band at most; dense where that takes no more room. */
 spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
+/* Who works on the halves of a long chain (base/crew.h), from now on; NULL: the calling thread. */
+void spari_linear_share(spari_linear *system, spari_crew *const *crew);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
-/* Entry (0, 0); (i, j), within the band, is i + step j further on. Factored, (i, i) is the pivot. */
+/* Of no chain: entry (0, 0); (i, j), within the band, is i + step j further on. Factored, (i, i) is the pivot. */
 double *spari_linear_entries(const spari_linear *system, int64_t *step);
 /* Row and column of unknown i, [unknowns] each. Before factoring. */
 void spari_linear_read(const spari_linear *system, int i, double *row, double *column);

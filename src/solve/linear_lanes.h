@@ -73,17 +73,29 @@ TARGET static void NAME(solve_dense)(int64_t n, const double *A, double *x) {
 }
 
 /* The same for a band with `band` entries on either side, and as many more above that exchanges of rows brought: row
-   swap[j] took the place of row j before column j was taken out. A(i, j) is at columns[step j + 2 band + i - j]. */
-TARGET static void NAME(solve_band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap,
-                                    double *x) {
+   swap[j] took the place of row j before column j was taken out. A(i, j) is at columns[step j + 2 band + i - j]. The
+   columns from `inner` on have not been: x is left with what the others leave of them, and has then their solution. */
+TARGET static void NAME(forth_band)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step,
+                                    const unsigned *swap, double *x) {
     const double *at = columns + 2 * band;
-    for (int64_t j = 0; j < n - 1; j++, at += step) {
+    int64_t end = inner < n ? inner : n - 1;
+    for (int64_t j = 0; j < end; j++, at += step) {
         double there = x[swap[j]];
         x[swap[j]] = x[j];
         x[j] = there;
         NAME(less_columns)(1, n - 1 - j < band ? n - 1 - j : band, at + 1, step, x + j, x + j + 1);
     }
-    for (int64_t j = n - 1; j >= 0; j--, at -= step) {
+}
+
+TARGET static void NAME(back_band)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step,
+                                   double *x) {
+    const double *at = columns + step * (n - 1) + 2 * band;
+    int64_t j = n - 1;
+    for (; j >= inner; j--, at -= step) {
+        int64_t above = j < 2 * band ? j : 2 * band, met = inner - (j - above);
+        NAME(less_columns)(1, met, at - above, step, x + j, x + j - above);
+    }
+    for (; j >= 0; j--, at -= step) {
         int64_t above = j < 2 * band ? j : 2 * band;
         x[j] /= *at;
         NAME(less_columns)(1, above, at - above, step, x + j, x + j - above);
@@ -155,13 +167,14 @@ TARGET static int NAME(factor_dense)(int64_t n, double least, double *A, int *sw
     return 0;
 }
 
-/* The same of a band as solve_band wants it: rows are exchanged from column j on. */
-TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step,
+/* The same of a band as forth_band and back_band want it: rows are exchanged from column j on, among the first `inner`.
+   The corner of the others is left with what it has beyond the first. */
+TARGET static int NAME(factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
                                     unsigned *swap) {
     for (int64_t j = 0; j < n; j++) {
         double *x = columns + step * j + 2 * band - j; /* x[i]: row i */
         int64_t end = j + band + 1 < n ? j + band + 1 : n;
-        for (int64_t k = j > 2 * band ? j - 2 * band : 0; k < j; k++) {
+        for (int64_t k = j > 2 * band ? j - 2 * band : 0; k < j && k < inner; k++) {
             double there = x[swap[k]];
             x[swap[k]] = x[k];
             x[k] = there;
@@ -170,7 +183,10 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, doubl
                 (1, n - 1 - k < band ? n - 1 - k : band, columns + step * k + 2 * band + 1, step, x + k, x + k + 1);
             }
         }
-        int64_t p = j + NAME(pivot_of)(end - j, least, x + j);
+        if (j >= inner) {
+            continue;
+        }
+        int64_t p = j + NAME(pivot_of)((end < inner ? end : inner) - j, least, x + j);
         swap[j] = (unsigned)p;
         double there = x[p];
         x[p] = x[j];

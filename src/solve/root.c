@@ -6,15 +6,24 @@
 
 #include <string.h>
 
-void spari_root_look_from(const spari_solver *solver, const spar_member *m, const spari_pose *root,
-                          const spari_state *s, spari_state *own) {
-    double W[3], A[3], back[4];
-    spari_quat_conj(root->q + 3, back);
-    spari_rotate_back(root->q + 3, root->v + 3, W);
-    spari_rotate_back(root->q + 3, root->a + 3, A);
-    for (int i = 0; i < solver->n; i++) {
+/* A root, its rates in its own axes, and nodes on either side of it. */
+typedef struct root_view {
+    const spar_member *m;
+    const spari_pose *root;
+    const spari_state *s;
+    const spari_ends *e;
+    spari_state *own;
+    double W[3], A[3], back[4], R[9];
+} root_view;
+
+static void look_at_nodes(void *context, int64_t from, int64_t to) {
+    const root_view *t = context;
+    const spari_pose *root = t->root;
+    const spari_state *s = t->s, *own = t->own;
+    const double *W = t->W, *A = t->A, *back = t->back;
+    for (int64_t i = from; i < to; i++) {
         double arm[3], d[3], c1[3], c2[3], c3[3], *v = own->v + 6 * i, *a = own->a + 6 * i, *q = own->q + 7 * i;
-        spari_member_arm(m, i, arm);
+        spari_member_arm(t->m, (int)i, arm);
         for (int k = 0; k < 3; k++) {
             d[k] = arm[k] + s->q[7 * i + k] - root->q[k];
         }
@@ -42,23 +51,28 @@ void spari_root_look_from(const spari_solver *solver, const spar_member *m, cons
             a[3 + k] -= c1[k];
         }
     }
-    memcpy(own->b, s->b, (size_t)(6 * solver->n) * sizeof *own->b);
+    memcpy(own->b + 6 * from, s->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *own->b);
 }
 
-void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
-    const spari_pose *root = e->root;
-    double W[3], A[3], R[9];
-    if (!root) {
-        return;
-    }
-    spari_quat_matrix(root->q + 3, R);
-    spari_matrix_times_back(R, root->v + 3, W);
-    spari_matrix_times_back(R, root->a + 3, A);
-    for (int i = 0; i < solver->n; i++) {
+void spari_root_look_from(const spari_solver *solver, const spar_member *m, const spari_pose *root,
+                          const spari_state *s, spari_state *own) {
+    root_view t = {.m = m, .root = root, .s = s, .own = own};
+    spari_quat_conj(root->q + 3, t.back);
+    spari_rotate_back(root->q + 3, root->v + 3, t.W);
+    spari_rotate_back(root->q + 3, root->a + 3, t.A);
+    spari_solver_spread(solver, look_at_nodes, &t);
+}
+
+static void show_nodes(void *context, int64_t from, int64_t to) {
+    const root_view *t = context;
+    const spari_pose *root = t->root;
+    const spari_ends *e = t->e;
+    const double *W = t->W, *A = t->A, *R = t->R;
+    for (int64_t i = from; i < to; i++) {
         const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
         double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
                                                   *B = e->seen.a + 6 * i;
-        spari_member_arm(m, i, arm);
+        spari_member_arm(t->m, (int)i, arm);
         for (int k = 0; k < 3; k++) {
             d[k] = arm[k] + e->to.q[7 * i + k];
         }
@@ -88,7 +102,18 @@ void spari_root_show(const spari_solver *solver, const spar_member *m, spari_end
         spari_quat_mul(root->q + 3, e->to.q + 7 * i + 3, q + 3);
         spari_quat_normalise(q + 3);
     }
-    memcpy(e->seen.b, e->to.b, (size_t)(6 * solver->n) * sizeof(double));
+    memcpy(e->seen.b + 6 * from, e->to.b + 6 * from, (size_t)(6 * (to - from)) * sizeof(double));
+}
+
+void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
+    root_view t = {.m = m, .root = e->root, .e = e};
+    if (!e->root) {
+        return;
+    }
+    spari_quat_matrix(e->root->q + 3, t.R);
+    spari_matrix_times_back(t.R, e->root->v + 3, t.W);
+    spari_matrix_times_back(t.R, e->root->a + 3, t.A);
+    spari_solver_spread(solver, show_nodes, &t);
 }
 
 /* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */

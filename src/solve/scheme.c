@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { START_PASSES = 4, LEAP_PASSES = 2 };
+enum { START_PASSES = 4, LEAP_PASSES = 2, SPAN = 4096 };
 
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
     double rho = member->session->rho_inf;
@@ -30,13 +30,32 @@ spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
     return c;
 }
 
+static void add_dead(void *context, int64_t from, int64_t to) {
+    const spari_steps *t = context;
+    for (int64_t i = from; i < to; i++) {
+        t->load0[i] += t->load[i];
+        t->load1[i] += t->load[i];
+    }
+}
+
 void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     spari_member_gather(member, member->load_history[0], steps->load0);
     spari_member_gather(member, member->load_used, steps->load1);
     spari_member_gather(member, member->dead, steps->load);
-    for (int i = 0; i < 6 * member->body->unique; i++) {
-        steps->load0[i] += steps->load[i];
-        steps->load1[i] += steps->load[i];
+    spari_crew_spread(member->session->crew, 6 * (int64_t)member->body->unique, SPAN, add_dead, steps);
+}
+
+/* Loads at the part s of a step. */
+typedef struct loads_within {
+    const spari_steps *t;
+    double s;
+} loads_within;
+
+static void mix_loads(void *context, int64_t from, int64_t to) {
+    const loads_within *w = context;
+    const spari_steps *t = w->t;
+    for (int64_t i = from; i < to; i++) {
+        t->load[i] = (1 - w->s) * t->load0[i] + w->s * t->load1[i];
     }
 }
 
@@ -85,9 +104,7 @@ int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t,
         part.s = (double)k / substeps;
         part.before = part.root;
         part.root = spari_drive_at(m, part.s, dt);
-        for (int i = 0; i < loads; i++) {
-            t->load[i] = (1 - part.s) * t->load0[i] + part.s * t->load1[i];
-        }
+        spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, part.s});
         spari_scheme_begin_added(m, part.s, t->load);
         before = power;
         SPARI_TRY(how->substep(self, m, &c, &part, &power));

@@ -35,6 +35,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) != NULL;
     ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
+    ok = ok && (s->most = spari_zalloc((n + SPARI_SPAN - 1) / SPARI_SPAN, sizeof(double)));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {
         spari_solver_free(s);
@@ -48,6 +49,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
         }
         carve(block, s->n, &s->own[k]);
     }
+    spari_linear_share(s->linear, body->crew);
     carve(s->block[0], s->n, &s->begin);
     carve(s->block[1], s->n, &s->from);
     carve(s->block[2], s->n, &s->to);
@@ -74,6 +76,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->kept_q);
     free(s->turn);
     free(s->best);
+    free(s->most);
     spari_linear_free(s->linear);
     spari_condensed_free(s->condensed);
     free(s);

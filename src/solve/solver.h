@@ -4,6 +4,7 @@
 #ifndef SPARI_SOLVER_H
 #define SPARI_SOLVER_H
 
+#include "../base/crew.h"
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "arms.h"
@@ -33,6 +34,7 @@ struct spari_solver {
     double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
     double h_leapt; /* 0: none */
     double *best;   /* static: state to go back to */
+    double *most;   /* [spans of nodes] the largest of each: spari_solver_most */
     spari_linear *linear;
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
     /* the factored tangent, kept while it contracts */
@@ -81,6 +83,20 @@ void spari_solver_load(spari_solver *solver, const double *state);
 /* Loads that follow the body's own nodes or stand along its line are there. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
     return (member->applied || member->foundation) && !solver->arms;
+}
+/* The solver's nodes in spans, by whoever there is to work on them: span number from / SPARI_SPAN writes to its own
+   nodes and most[number]. */
+enum { SPARI_SPAN = 256 };
+static inline void spari_solver_spread(const spari_solver *solver, spari_span work, void *context) {
+    spari_crew_spread(solver->body->crew ? *solver->body->crew : NULL, solver->n, SPARI_SPAN, work, context);
+}
+/* The largest of the spans'. */
+static inline double spari_solver_most(const spari_solver *solver) {
+    double most = solver->most[0];
+    for (int k = 1; k < (solver->n + SPARI_SPAN - 1) / SPARI_SPAN; k++) {
+        most = solver->most[k] > most ? solver->most[k] : most;
+    }
+    return most;
 }
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
