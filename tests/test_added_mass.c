@@ -397,7 +397,14 @@ typedef struct fin {
     spar_member *beam;
     spar_fluid *fluid;
     double weight[STRIPS], ratio, gust;
+    double noise; /* of a force, of itself */
+    unsigned long long seed;
 } fin;
+
+static double draw(unsigned long long *seed) {
+    *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (double)(*seed >> 11) * 0x1p-52 - 1;
+}
 
 static int fin_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
     fin *f = context;
@@ -410,6 +417,7 @@ static int fin_fluid(spar_session *s, double t, double dt, int iteration, void *
         double across[3] = {0, 0, -f->ratio * f->weight[k] * own[2]};
         spari_rotate(q + 4 * k, across, force + 3 * k);
         force[3 * k + 2] += f->gust * f->weight[k] * sin(3 * (t + dt));
+        force[3 * k + 2] *= 1 + f->noise * draw(&f->seed);
     }
     return spar_fluid_push_forces(f->fluid, force, NULL);
 }
@@ -532,6 +540,29 @@ static void beams(void **state) {
     }
 }
 
+/* A free beam in 8 modes and a fluid a hundred times as heavy, iterated to 1e-12: the first answer overshoots a
+   hundredfold, most of it along loads that no mode feels, and what rounding leaves of it is above that tolerance. Of 40
+   runs that differ by noise of rounding's size each gets through, in some 5 evaluations a step; where the columns
+   carried loads that move nothing three in forty ended with loads of 1e20 N. */
+static void modes_to_rounding(void **state) {
+    (void)state;
+    const fin_case c = {.fidelity = SPAR_FIDELITY_MODAL,
+                        .modes = 8,
+                        .root = SPAR_ROOT_FREE,
+                        .ratio = 100,
+                        .scheme = SPAR_COUPLING_IQN_ILS,
+                        .order = 1};
+    for (unsigned long long seed = 0; seed < 40; seed++) {
+        fin f;
+        int sum = 0;
+        fin_create(&f, &c);
+        f.noise = 1e-15, f.seed = seed;
+        assert_int_equal(fin_steps(&f, &c, 0.02, 15, &sum), SPAR_OK);
+        assert_true(sum <= 15 * 15);
+        spar_session_destroy(&f.session);
+    }
+}
+
 /* The same of an exact beam with small rotations, whose guess does not turn, and of one on a pin. */
 static void beams_held_otherwise(void **state) {
     (void)state;
@@ -621,6 +652,7 @@ int main(void) {
         cmocka_unit_test(energy),
         cmocka_unit_test(turning_body),
         cmocka_unit_test(beams),
+        cmocka_unit_test(modes_to_rounding),
         cmocka_unit_test(beams_held_otherwise),
         cmocka_unit_test(explicit_beam),
         cmocka_unit_test(substeps),

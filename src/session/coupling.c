@@ -369,12 +369,13 @@ static int image_loads(void *session, int64_t count, const double *loads, double
 int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     const spari_images images = {c->image, image_loads, s};
+    const spari_weighed w = weighed(c);
+    /* Before: a column of loads that move next to nothing would be one of those that move nothing, of any size. */
+    int felt = c->weighed && spari_coupling_scheme_of(s->scheme)->columns;
     stack(s);
+    SPARI_TRY(felt ? spari_weigh_felt(s, &w, c->settled, c->x) : SPAR_OK);
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
-    if (c->weighed && spari_coupling_scheme_of(s->scheme)->columns) {
-        const spari_weighed w = weighed(c);
-        SPARI_TRY(spari_weigh_felt(s, &w, c->x));
-    }
+    SPARI_TRY(felt ? spari_weigh_felt(s, &w, c->settled, c->x) : SPAR_OK);
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);

@@ -10,6 +10,8 @@
 #include "spread.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int spari_weighs_motion(const spar_session *s) {
@@ -76,13 +78,21 @@ static int answer_tied(spar_session *s, const spari_weighed *c, int64_t count, c
     return singular;
 }
 
-static double sum_products(const double *a, const double *b, const double *minus, int64_t n) {
-    double s = 0;
+/* The sum of (a - minus) b, minus NULL: nothing; and of what rounding may leave of one, the products' sizes. */
+static double sum_products(const double *a, const double *b, const double *minus, int64_t n, double *sizes) {
+    double s = 0, size = 0;
     for (int64_t i = 0; i < n; i++) {
-        s += (a[i] - (minus ? minus[i] : 0)) * b[i];
+        double product = (a[i] - (minus ? minus[i] : 0)) * b[i];
+        s += product;
+        size += fabs(product);
     }
+    *sizes += size;
     return s;
 }
+
+/* Of sums of products and of the images in them, over the products' sizes. Loads that move nothing may be many times
+   as large as those that do: they are in the sizes alone. */
+static const double ROUNDING = 1e-13;
 
 /* Whether x . S y is y . S x, here of g - x and g, but for rounding: without that it is no inner product, and columns
    that are square to each other in it can be nearly the same. A step's matrix is unsymmetric where beams turn far under
@@ -90,9 +100,11 @@ static double sum_products(const double *a, const double *b, const double *minus
    step: one that goes back and forth between two norms learns less than in either. */
 static int is_symmetric(const spari_weighed *c, int tied, const double *answer, const double *whole, double work,
                         double all) {
-    static const double LOPSIDED = 1e-5, TIED = 1e-4, ROUNDING = 1e-13;
-    double one = sum_products(c->g, answer, NULL, c->n), other = sum_products(c->g, whole, c->x, c->n);
-    return fabs(one - other) <= (tied ? TIED : LOPSIDED) * sqrt(fmax(work * all, 0)) + ROUNDING * all;
+    static const double LOPSIDED = 1e-5, TIED = 1e-4;
+    double sizes = 0, one = sum_products(c->g, answer, NULL, c->n, &sizes),
+           other = sum_products(c->g, whole, c->x, c->n, &sizes);
+    return fabs(one - other) <=
+           (tied ? TIED : LOPSIDED) * sqrt(fmax(work, 0) * fmax(all, 0)) + ROUNDING * fmax(all, sizes);
 }
 
 int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
@@ -113,10 +125,13 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
         c->image[0] = NAN;
     }
     SPARI_TRY(spari_comm_sum(spari_spread_core(s), c->image, images, SPAR_OK, s->message, sizeof s->message));
-    double work = sum_products(c->g, answer, c->x, c->n), all = sum_products(c->g, bare, c->shift, c->n);
-    double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n)) : all;
-    *ok = isfinite(work) && isfinite(all) && work >= 0 && (all > 0 || work == 0) &&
+    double works = 0, sizes = 0, work = sum_products(c->g, answer, c->x, c->n, &works),
+           all = sum_products(c->g, bare, c->shift, c->n, &sizes);
+    double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
+    *ok = isfinite(work) && isfinite(all) && work >= -ROUNDING * works && (all > 0 || work <= 0) &&
           is_symmetric(c, s->assemblies != NULL, answer, whole, work, both);
+    if (getenv("DBG"))
+        fprintf(stderr, "   weigh ok %d work %.3e works %.2e all %.3e\n", *ok, work, works, all);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
@@ -161,10 +176,9 @@ static int felt_of(const spari_weighed *c, spar_member *m, double unit, const do
     return status;
 }
 
-int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *x) {
+int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *off, double *x) {
     int rank = spari_comm_rank(s->comm), asked = 0, status = SPAR_OK, k = 0;
     int64_t at = 0;
-    double *off = c->image;
     memset(off, 0, (size_t)(c->n + 1) * sizeof *off);
     for (const spar_member *m = s->members; m; m = m->next) {
         asked = asked || (m->row->felt_here && !m->assembly);

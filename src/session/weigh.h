@@ -30,8 +30,8 @@ int spari_weigh_images(spar_session *session, const spari_weighed *w, int64_t co
                        double *image);
 
 /* x [n], stacked as w->g, keeps of x - g what moves something: loads that move nothing are those that came back. A
-   status. All ranks; a message only where an owner has to be asked (spari_fidelity's felt_here). Takes w->image. */
-int spari_weigh_felt(spar_session *session, const spari_weighed *w, double *x);
+   status. All ranks; a message only where an owner has to be asked (spari_fidelity's felt_here). room [n + 1]. */
+int spari_weigh_felt(spar_session *session, const spari_weighed *w, double *room, double *x);
 
 /* Explicit: how far the farthest node would be from where it is, m, under the loads pushed in place of those predicted:
    what another iteration would move. 0 of members that the library does not solve; infinite where the matrix is
