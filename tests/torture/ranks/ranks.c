@@ -3,11 +3,12 @@
    turn: all ranks answer what they should, nobody waits (a case of more than LIMIT seconds ends the program), and the
    next steps have the bits of a session beside it to which nothing has happened.
 
-       mpiexec -np 2 ranks [seconds] [seed] [all|touched] [call]
+       mpiexec -np 2 ranks [seconds] [seed] [all|touched|binned] [call]
 
    The short form takes a part of the cases, chosen by the seed, until the seconds are over; without seconds all of them
    are taken. touched: with the option ranks.state = touched, where rank 0 solves, the last one
-   has the fluid, and others touch nothing. call:
+   has the fluid, and others touch nothing. binned: with reproducible sums, and advice that
+   varies the nodes, so that the sums go over to other nodes. call:
    of the collective ones this alone. Library and tests are linked with --wrap=malloc,calloc,realloc, which is how an
    allocation fails here. */
 #include "scene.h"
@@ -23,7 +24,8 @@
 enum { LIMIT = 20, NODES = 4, STATE = 25 * NODES + 25 + 18 + 2, FAILURES = 20 };
 
 static const double dt = 0.02;
-static int rank, size, touched, wet;  /* wet: the rank that has the fluid's nodes */
+static int rank, size, wet; /* wet: the rank that has the fluid's nodes */
+static int touched, binned;
 static const char *asked;             /* the call under test; NULL: all */
 static char name[256];                /* of the case, for who has to look for it */
 static char saved[64], elsewhere[64]; /* files: of all ranks, and never written */
@@ -85,7 +87,8 @@ static void describe(scene *c) {
     MUST(s, spar_session_set_gravity(s, gravity));
     MUST(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-8, 60));
     MUST(s, spar_session_set_option(s, "ranks.state", touched ? "touched" : "all"));
-    MUST(s, spar_session_set_option(s, "advise.nodes", "keep"));
+    MUST(s, spar_session_set_reproducible(s, binned));
+    MUST(s, spar_session_set_option(s, "advise.nodes", binned ? "vary" : "keep"));
     MUST(s, spar_session_set_option(s, "advise.fidelity", "keep"));
     MUST(s, spar_session_set_option(s, "advise.coupling", "keep"));
     c->beam = scene_beam(s, "beam", 1, NODES, 10, K, M);
@@ -818,7 +821,8 @@ static int apply_number(spar_session *s, int k, int other) {
 }
 
 static void apply(scene *c, int k, int other) {
-    int value = touched && set[k].key && strcmp(set[k].key, "ranks.state") == 0 ? !other : other;
+    const char *turned = touched ? "ranks.state" : binned ? "advise.nodes" : ""; /* as it was, and the other way */
+    int value = set[k].key && strcmp(set[k].key, turned) == 0 ? !other : other;
     MUST(c->session, set[k].key ? set_option(c->session, set[k].key, value ? set[k].value : set[k].as_it_was)
                                 : apply_number(c->session, k, other));
 }
@@ -1281,6 +1285,7 @@ int main(int argc, char **argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     touched = argc > 3 && strcmp(argv[3], "touched") == 0;
+    binned = argc > 3 && strcmp(argv[3], "binned") == 0;
     wet = touched ? size - 1 : 0;
     asked = argc > 4 ? argv[4] : NULL;
     (void)signal(SIGALRM, too_long);
