@@ -76,7 +76,7 @@ module spar
   integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
       SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, &
-      SPAR_EFFECT_FOUNDATION = 1024
+      SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
   integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
@@ -102,7 +102,8 @@ module spar
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
       SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
-      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_FOUNDATION = 13, SPAR_ROW_COUNT = 14
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_FOUNDATION = 13, SPAR_ROW_PRETENSION = 14, &
+      SPAR_ROW_COUNT = 15
   integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
@@ -239,6 +240,8 @@ module spar
     generic :: set_masses => member_set_masses, member_set_masses_single_1
     procedure, private :: member_set_foundation, member_set_foundation_single_1
     generic :: set_foundation => member_set_foundation, member_set_foundation_single_1
+    procedure, private :: member_set_pretension, member_set_pretension_single_1
+    generic :: set_pretension => member_set_pretension, member_set_pretension_single_1
     procedure :: set_quadrature => member_set_quadrature
     procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_damping, member_set_damping_single_1
@@ -313,6 +316,8 @@ module spar
     generic :: get_masses => member_get_masses, member_get_masses_single_1, member_get_masses_single_2
     procedure, private :: member_get_foundation, member_get_foundation_single_1, member_get_foundation_single_2
     generic :: get_foundation => member_get_foundation, member_get_foundation_single_1, member_get_foundation_single_2
+    procedure, private :: member_get_pretension, member_get_pretension_single_1, member_get_pretension_single_2
+    generic :: get_pretension => member_get_pretension, member_get_pretension_single_1, member_get_pretension_single_2
     procedure, private :: member_learn_added_mass, member_learn_added_mass_single_1
     generic :: learn_added_mass => member_learn_added_mass, member_learn_added_mass_single_1
     procedure, private :: member_get_learned_added_mass, member_get_learned_added_mass_single_1, &
@@ -1291,6 +1296,31 @@ contains
         status = spar_beam_get_foundation(self%handle, n, size(stiffness, 2, kind=c_int64_t), stiffness=stiffness)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_foundation
+
+  ! n: stations; eta and force are filled as far as they reach
+  subroutine member_get_pretension(self, n, eta, force, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), &
+        [6_c_int64_t, size(force, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_pretension', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_beam_get_pretension(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_beam_get_pretension(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(force)) &
+        status = spar_beam_get_pretension(self%handle, n, size(force, 2, kind=c_int64_t), force=force)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_pretension
 
   subroutine member_learn_added_mass(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -2634,6 +2664,22 @@ contains
     call finish(spar_beam_set_foundation(self%handle, size(eta, kind=c_int64_t), eta, stiffness), self%session, stat, &
         errmsg)
   end subroutine member_set_foundation
+
+  subroutine member_set_pretension(self, eta, force, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'force', shape(force, kind=c_int64_t), [6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_pretension', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_pretension(self%handle, size(eta, kind=c_int64_t), eta, force), self%session, stat, &
+        errmsg)
+  end subroutine member_set_pretension
 
   subroutine member_set_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -4480,6 +4526,38 @@ contains
     call take(c_stiffness, stiffness)
   end subroutine member_get_foundation_single_2
 
+  subroutine member_get_pretension_single_1(self, n, eta, force, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_float), intent(inout) :: eta(:)
+    real(c_float), intent(inout), optional :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eta(:)
+    real(c_double), allocatable :: c_force(:,:)
+
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
+    if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t)), source=untouched)
+    call member_get_pretension(self, n=n, eta=c_eta, force=c_force, stat=stat, errmsg=errmsg)
+    call take(c_eta, eta)
+    call take(c_force, force)
+  end subroutine member_get_pretension_single_1
+
+  subroutine member_get_pretension_single_2(self, n, no_eta, force, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    type(absent), intent(in), optional :: no_eta
+    real(c_float), intent(inout) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_force(:,:)
+
+    allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t)), source=untouched)
+    if (present(no_eta)) return
+    call member_get_pretension(self, n=n, force=c_force, stat=stat, errmsg=errmsg)
+    call take(c_force, force)
+  end subroutine member_get_pretension_single_2
+
   subroutine member_learn_added_mass_single_1(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: eta(:)
@@ -5636,6 +5714,16 @@ contains
     call member_set_foundation(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), stat=stat, &
         errmsg=errmsg)
   end subroutine member_set_foundation_single_1
+
+  subroutine member_set_pretension_single_1(self, eta, force, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_pretension(self, eta=real(eta, c_double), force=real(force, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_pretension_single_1
 
   subroutine member_set_damping_single_1(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self

@@ -350,6 +350,23 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_get_foundation
 
+    function spar_beam_set_pretension(beam, n, eta, force) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*), force(*)
+      integer(c_int) :: status
+    end function spar_beam_set_pretension
+
+    function spar_beam_get_pretension(beam, n, capacity, eta, force) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), force(*)
+      integer(c_int) :: status
+    end function spar_beam_get_pretension
+
     function spar_beam_set_quadrature(beam, rule, points) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: beam
@@ -1566,7 +1583,7 @@ module spar_c
   integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_LARGE_ROTATION = 16, SPAR_EFFECT_FLUID_MOMENT = 32, &
       SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, &
-      SPAR_EFFECT_FOUNDATION = 1024
+      SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
   integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
@@ -1591,7 +1608,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_LARGE_ROTATION = 4, SPAR_ROW_FLUID_MOMENT = 5, SPAR_ROW_FLUID_VELOCITY = 6, &
       SPAR_ROW_FLUID_POSES = 7, SPAR_ROW_FLUID_HISTORY = 8, SPAR_ROW_PREDICTOR = 9, SPAR_ROW_ITERATION = 10, &
-      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_FOUNDATION = 13, SPAR_ROW_COUNT = 14
+      SPAR_ROW_HALF_STEP = 11, SPAR_ROW_MASSES = 12, SPAR_ROW_FOUNDATION = 13, SPAR_ROW_PRETENSION = 14, &
+      SPAR_ROW_COUNT = 15
   integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &

@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int lanes; /* of the bodies made next; 0: what the processor has */
+static int bodies; /* so far: every second one carries pretension */
+static int lanes;  /* of the bodies made next; 0: what the processor has */
 
 static double uniform(void) {
     return 2.0 * rand() / RAND_MAX - 1.0;
@@ -49,6 +50,7 @@ static spari_body *random_body(int elements, int P, int points, int damped, int 
     double x[24], bary[24], gx[24], gw[24];
     spari_gll(P, x, NULL, bary);
     assert_int_equal(spari_gauss(points, gx, gw), 0);
+    assert_true(bodies++ % 2 == 0 || spari_body_set_pre(b) == 0);
     b->lanes = lanes;
     b->length = 2.0 * elements;
     b->gravity[0] = 0.3, b->gravity[1] = -1.2, b->gravity[2] = -9.0;
@@ -69,6 +71,12 @@ static spari_body *random_body(int elements, int P, int points, int damped, int 
         if (damped) {
             random_spd(6, c);
             spari_slot_put(b->D, 36, slot, c);
+        }
+        for (int i = 0; i < 6 && b->pre; i++) {
+            c[i] = uniform();
+        }
+        if (b->pre) {
+            spari_slot_put(b->pre, 6, slot, c);
         }
         double m[10] = {2 + uniform(), 0.4 * uniform(), 0.4 * uniform(), 0.4 * uniform()};
         random_spd(3, c);
@@ -310,8 +318,8 @@ static double plain_point(const spari_body *b, int64_t slot, const spari_regime 
     memset(slope, 0, 7 * sizeof *slope);
     fields_one(how->moving, f, &s);
     if (b->C) {
-        strain_one(SPARI_BLOCK(b->tangent, 3, slot), SPARI_BLOCK(b->C, 36, slot),
-                   how->damped ? SPARI_BLOCK(b->D, 36, slot) : NULL, &s);
+        strain_one(SPARI_BLOCK(b->tangent, 3, slot), SPARI_BLOCK(b->C, 36, slot), &s);
+        beyond_strain_one(how->damped, b, slot, &s);
         elastic_forces_one(&s, value, slope);
         *power += how->damped ? w * s.damped : 0;
         size = spari_norm(s.s) + spari_norm(s.s + 3) / b->length;

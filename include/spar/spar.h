@@ -377,7 +377,8 @@ enum {
     SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
     SPAR_EFFECT_DEFAULT = 256,       /* all that is on where nothing is set; or-ed with what is wanted besides */
     SPAR_EFFECT_MASSES = 512,        /* bodies of spar_beam_set_masses */
-    SPAR_EFFECT_FOUNDATION = 1024    /* springs of spar_beam_set_foundation */
+    SPAR_EFFECT_FOUNDATION = 1024,   /* springs of spar_beam_set_foundation */
+    SPAR_EFFECT_PRETENSION = 2048    /* section forces of spar_beam_set_pretension */
 };
 
 /* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
@@ -457,13 +458,30 @@ SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t c
      eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump
      stiffness[n][3]: in, N/m^2, >= 0, along the section's axes in the reference configuration (x tangent, y, z); linear
            in eta between stations, zero before the first and behind the last; n = 1: the same all along
-   SPAR_ERR_UNSUPPORTED at commit: the member is prescribed or external, or of a fidelity below exact (a linear one in
-   the frame of its root does not see the ground). */
+   SPAR_ERR_UNSUPPORTED at commit: the member is prescribed, rigid or external, or linear or modal with a root that is
+   driven; or at the step, when joints move the root of a linear or modal one (its frame then moves against the ground).
+   Modes of a modal member are those on its springs. */
 SPAR_API int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness);
 /* n: out, stations, NULL: not wanted; capacity: in, of the arrays; eta[capacity], stiffness[capacity][3]: out, 0 behind
    the last, NULL: not wanted. Local. */
 SPAR_API int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,
                                       double *stiffness);
+/* Pretension: section forces that the beam carries in its reference configuration, where no strain is: of a cable, a
+   string, a shaft that was pulled, a section with tendons. They stay what they are in the section's axes, which turn,
+   and those of the strains are added to them: straight under a tension N a beam has the bending stiffness of EI and the
+   string's N besides, under -N it buckles. In steps, statics, modes and eigenvalues, section forces and energies. Where
+   neither roots, joints nor loads balance it, the beam takes the shape that does: an end that nothing holds lets the
+   tension go. A linear or modal member has the stiffness of what is given, balanced or not; a rigid or prescribed one,
+   which does not deform, leaves it out. Replaces what was set before. Local, before commit.
+     n: in, stations, 0 to 10000, 0: none (default)
+     eta[n]: in, strictly increasing in [0,1]
+     force[n][6]: in, N and N m: axial (> 0: tension), shear y, z, torsion, bending y, z, as of the stiffness; linear in
+           eta between stations, constant before the first and behind the last */
+SPAR_API int spar_beam_set_pretension(spar_member *beam, int64_t n, const double *eta, const double *force);
+/* n: out, stations, NULL: not wanted; capacity: in, of the arrays; eta[capacity], force[capacity][6]: out, 0 behind the
+   last, NULL: not wanted. Local. */
+SPAR_API int spar_beam_get_pretension(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,
+                                      double *force);
 /* Integration along an element. Default: sections if there are more than two stations, else Gauss with as many points
    as nodes. Commit refuses a rule too coarse for the element. Local.
      rule: in, SPAR_QUADRATURE_GAUSS or _LOBATTO with `points` in an element, _SECTIONS with `points` Gauss points in
@@ -477,11 +495,13 @@ SPAR_API int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *p
    stiffness. mu[6]: in, s, >= 0. Local. */
 SPAR_API int spar_beam_set_damping(spar_member *beam, const double mu[6]);
 /* Mass-proportional damping, the other half of Rayleigh's: mass times alpha times the velocity that the root sees, with
-   its own motion and turn taken off, so that a blade that turns as a whole is not braked. A mode at omega at rest has
-   alpha / (2 omega) of critical damping, and what spar_beam_set_damping gives it besides. As an outer force it takes
-   part in the root's reaction. The root is to be fixed or driven (SPAR_ERR_UNSUPPORTED at commit); of a rigid or
-   prescribed beam, which does not deform, and of one with INERTIA off it does nothing. Part of SPAR_EFFECT_DAMPING.
-   Local, before commit.
+   its own motion and turn taken off, so that a blade that turns as a whole is not braked. Where the root is free or
+   pinned, or joints move it, it is the velocity as it is, seen from axes that stand: a beam that flies is braked as by
+   a fluid about it, its momenta go down as exp(-alpha t). A mode at omega at rest has alpha / (2 omega) of critical
+   damping, and what spar_beam_set_damping gives it besides. As an outer force it takes part in the root's reaction. Of
+   a rigid or prescribed beam on a root that is fixed or driven, which does not deform, and of one with INERTIA off it
+   does nothing. SPAR_ERR_UNSUPPORTED at commit: the beam is rigid and its root free or pinned; at the step: it is
+   linear or modal and joints move its root. Part of SPAR_EFFECT_DAMPING. Local, before commit.
      alpha: in, 1/s, >= 0; 0 (default): none */
 SPAR_API int spar_beam_set_mass_damping(spar_member *beam, double alpha);
 /* alpha: out, 1/s, NULL: not wanted. Local. */
@@ -675,7 +695,7 @@ SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const dou
 /* Energies of a member, J. */
 enum {
     SPAR_ENERGY_KINETIC = 0,
-    SPAR_ENERGY_STRAIN = 1,
+    SPAR_ENERGY_STRAIN = 1,     /* 0 in the reference configuration; with pretension it may fall below */
     SPAR_ENERGY_GRAVITY = 2,    /* potential, 0 in the reference configuration */
     SPAR_ENERGY_DISSIPATED = 3, /* by damping since t = 0, up to t^n */
     SPAR_ENERGY_FOUNDATION = 4, /* stored in the springs of spar_beam_set_foundation */
@@ -1345,7 +1365,8 @@ enum {
     SPAR_ROW_HALF_STEP = 11,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
     SPAR_ROW_MASSES = 12,        /* bodies on beams; size as of gravity: their weight and inertia */
     SPAR_ROW_FOUNDATION = 13,    /* springs along beams; size as of gravity */
-    SPAR_ROW_COUNT = 14
+    SPAR_ROW_PRETENSION = 14,    /* section forces of the reference; size as of gravity */
+    SPAR_ROW_COUNT = 15
 };
 /* Columns of the same. */
 enum {

@@ -28,10 +28,11 @@ struct spari_applied {
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
 };
 
-/* Springs to the ground along the line: of each point load has the six entries (xx, xy, xz, yy, yz, zz) of its
-   stiffness, global axes, times weight and Jacobian. */
+/* Springs to the ground along the line, of which the tangent is constant: of each element, for its pairs of nodes
+   i <= j, j running, the six entries (xx, xy, xz, yy, yz, zz) of what node i is pulled back by when j moves, global
+   axes. */
 struct spari_foundation {
-    line_load line;
+    double *pair; /* [elements][P (P + 1) / 2][6] */
 };
 
 static double *room_for(const spar_member *m) {
@@ -125,54 +126,69 @@ static void symmetric_times(const double k[6], const double u[3], double f[3]) {
     f[2] = k[2] * u[0] + k[4] * u[1] + k[5] * u[2];
 }
 
+/* Doubles of an element's pairs. */
+static int64_t pairs_of(const spar_member *m) {
+    return 3 * (int64_t)m->per_element * (m->per_element + 1);
+}
+
 /* out [P][6] -= factor * forces of the springs, q [P][7]; returns the work they have taken. */
 static double element_springs(const spar_member *m, int e, const double *q, double factor, double *out) {
-    const line_load *line = &m->foundation->line;
+    const double *k = m->foundation->pair + pairs_of(m) * e;
     int P = m->per_element;
-    double energy = 0;
-    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
-        const double *phi = line->phi + (int64_t)k * P;
-        double u[3] = {0}, f[3];
-        for (int l = 0; l < P; l++) {
-            for (int i = 0; i < 3; i++) {
-                u[i] += phi[l] * q[7 * l + i];
-            }
-        }
-        symmetric_times(line->load + 6 * (int64_t)k, u, f);
-        energy += 0.5 * spari_dot(u, f);
-        for (int l = 0; l < P && out; l++) {
-            for (int i = 0; i < 3; i++) {
-                out[6 * l + i] -= factor * phi[l] * f[i];
+    double work = 0, back[3 * SPARI_MAX_NODES] = {0};
+    for (int i = 0; i < P; i++) {
+        for (int j = i; j < P; j++, k += 6) {
+            double f[3], g[3];
+            symmetric_times(k, q + 7 * j, f);
+            symmetric_times(k, q + 7 * i, g);
+            for (int c = 0; c < 3; c++) {
+                back[3 * i + c] += f[c];
+                back[3 * j + c] += i == j ? 0 : g[c];
             }
         }
     }
-    return energy;
+    for (int l = 0; l < P; l++) {
+        work += 0.5 * spari_dot(q + 7 * l, back + 3 * l);
+        for (int c = 0; c < 3 && out; c++) {
+            out[6 * l + c] -= factor * back[3 * l + c];
+        }
+    }
+    return work;
 }
 
-/* S [6P][6P] += factor * stiffness of the springs */
-static void add_springs(const spar_member *m, int e, double factor, double *S) {
-    static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-    const line_load *line = &m->foundation->line;
-    int P = m->per_element;
-    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
-        const double *phi = line->phi + (int64_t)k * P, *stiffness = line->load + 6 * (int64_t)k;
-        for (int i = 0; i < 3 * P; i++) {
-            for (int j = 0; j < 3 * P; j++) {
-                double share = factor * phi[i / 3] * phi[j / 3];
-                S[6 * P * (6 * (i / 3) + i % 3) + 6 * (j / 3) + j % 3] += share * stiffness[at[i % 3][j % 3]];
-            }
+/* block (3 x 3 of a matrix with rows of `stride`) += factor * k */
+static void add_springs_of(const double k[6], double factor, int stride, double *block) {
+    const double row[3][3] = {{k[0], k[1], k[2]}, {k[1], k[3], k[4]}, {k[2], k[4], k[5]}};
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            block[stride * r + c] += factor * row[r][c];
         }
     }
 }
 
-/* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes */
+void spari_foundation_tangent(const spar_member *m, int e, double factor, double *S) {
+    const double *k = m->foundation->pair + pairs_of(m) * e;
+    int P = m->per_element, stride = 6 * P;
+    for (int i = 0; i < P; i++) {
+        for (int j = i; j < P; j++, k += 6) {
+            add_springs_of(k, factor, stride, S + 6 * (stride * i + j));
+            if (j > i) {
+                add_springs_of(k, factor, stride, S + 6 * (stride * j + i));
+            }
+        }
+    }
+}
+
+/* Springs that are forces of their own: a linear member has them in its matrix. */
+static int springs_apart(const spar_member *m) {
+    return m->foundation && m->seen != SPARI_SEEN_LINEAR;
+}
+
+/* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes, without springs */
 static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
     const spari_applied *a = m->applied;
     int P = m->per_element;
     double z[SPARI_MAX_NODES][4], g[7 * SPARI_MAX_NODES] = {0};
-    if (m->foundation) {
-        (void)element_springs(m, e, q, factor, out);
-    }
     if (!a) {
         return;
     }
@@ -208,6 +224,9 @@ double spari_applied_residual(const spar_member *m, const double *q, double fact
         int64_t first = (int64_t)e * (P - 1);
         memset(out, 0, sizeof out);
         element_loads(m, e, q + 7 * first, factor, out);
+        if (springs_apart(m)) {
+            (void)element_springs(m, e, q + 7 * first, factor, out);
+        }
         for (int i = 0; i < 6 * P; i++) {
             r[6 * first + i] -= out[i];
             largest = fmax(largest, fabs(out[i]));
@@ -220,6 +239,9 @@ void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
     for (int e = 0; e < m->elements; e++) {
         int64_t first = (int64_t)e * m->per_element;
         element_loads(m, e, q + 7 * first, 1, load + 6 * first);
+    }
+    if (m->foundation) {
+        spari_foundation_nodal(m, q, 1, load);
     }
 }
 
@@ -356,7 +378,7 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
     const spari_applied *a = m->applied;
     int P = m->per_element;
     if (m->foundation) {
-        add_springs(m, e, factor, S);
+        spari_foundation_tangent(m, e, factor, S);
     }
     if (!a || !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
         return; /* linear about the reference: the loads stay as they are there */
@@ -659,7 +681,7 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
 
 void spari_foundation_free(spari_foundation *f) {
     if (f) {
-        line_free(&f->line);
+        free(f->pair);
     }
     free(f);
 }
@@ -679,6 +701,24 @@ double spari_foundation_energy(const spar_member *m, const double *q) {
     return sum;
 }
 
+/* The stiffness of points into pairs of nodes. */
+static void gather_pairs(const spar_member *m, const line_load *line, double *pair) {
+    int P = m->per_element;
+    for (int e = 0; e < m->elements; e++) {
+        for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+            const double *phi = line->phi + (int64_t)k * P, *stiffness = line->load + 6 * (int64_t)k;
+            double *to = pair + pairs_of(m) * e;
+            for (int i = 0; i < P; i++) {
+                for (int j = i; j < P; j++, to += 6) {
+                    for (int c = 0; c < 6; c++) {
+                        to[c] += phi[i] * phi[j] * stiffness[c];
+                    }
+                }
+            }
+        }
+    }
+}
+
 int spari_foundation_build(spar_member *m) {
     const spari_beam *b = m->kind == SPARI_BEAM ? m->beam : NULL;
     spari_foundation_free(m->foundation);
@@ -686,17 +726,22 @@ int spari_foundation_build(spar_member *m) {
     if (!b || b->spring_count == 0 || !(m->effects & SPAR_EFFECT_FOUNDATION)) {
         return SPAR_OK;
     }
+    line_load line = {0};
     double *load = spari_zalloc(6 * b->spring_count, sizeof *load);
     m->foundation = spari_zalloc(1, sizeof *m->foundation);
-    int status = load && m->foundation ? SPAR_OK : SPAR_ERR_MEMORY;
+    int status = load && m->foundation && (m->foundation->pair = spari_zalloc(pairs_of(m) * m->elements, sizeof *load))
+                     ? SPAR_OK
+                     : SPAR_ERR_MEMORY;
     for (int64_t i = 0; status == SPAR_OK && i < b->spring_count; i++) {
         memcpy(load + 6 * i, b->spring + 3 * i, 3 * sizeof *load);
     }
-    status = status == SPAR_OK
-                 ? line_build(m, SPARI_LINE_SPRINGS, b->spring_count, b->spring_eta, load, &m->foundation->line)
-                 : spari_fail(m->session, status, "no memory for the foundation of '%s'", m->name);
+    status = status == SPAR_OK ? line_build(m, SPARI_LINE_SPRINGS, b->spring_count, b->spring_eta, load, &line)
+                               : spari_fail(m->session, status, "no memory for the foundation of '%s'", m->name);
     free(load);
-    if (status != SPAR_OK) {
+    if (status == SPAR_OK) {
+        gather_pairs(m, &line, m->foundation->pair);
+        line_free(&line);
+    } else {
         spari_foundation_free(m->foundation);
         m->foundation = NULL;
     }

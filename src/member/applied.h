@@ -13,7 +13,8 @@
 static inline int spari_carries_loads(const spar_member *member) {
     return member->applied || member->foundation;
 }
-/* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. */
+/* r [unique][6] -= factor * loads at the state q [unique][7]; returns the largest entry taken off. A member that is
+   seen linear has its springs in its own matrix: they are left out. */
 double spari_applied_residual(const spar_member *member, const double *q, double factor, double *r);
 /* Its exact tangent, added to the tangent S [6P][6P] of element e. */
 void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
@@ -33,6 +34,8 @@ int spari_applied_remake(const spar_member *from, spar_member *m);
 /* The springs along a beam by its description, where they are in force; nothing where there are none. */
 int spari_foundation_build(spar_member *member);
 void spari_foundation_free(spari_foundation *foundation);
+/* Their stiffness, which is constant, added to the tangent S [6P][6P] of element e. */
+void spari_foundation_tangent(const spar_member *member, int e, double factor, double *S);
 /* load [nodes][6] += factor * their forces at the motion q [nodes][7] of the public numbering. */
 void spari_foundation_nodal(const spar_member *member, const double *q, double factor, double *load);
 /* What they store there. */

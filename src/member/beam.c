@@ -28,6 +28,8 @@ void spari_beam_free(spari_beam *beam) {
     free(beam->lump);
     free(beam->spring_eta);
     free(beam->spring);
+    free(beam->pre_eta);
+    free(beam->pre);
     free(beam);
 }
 
@@ -544,6 +546,15 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
         spari_beam_turn_section(R, section, turned);
         spari_slot_put(b->D, 36, slot, turned);
     }
+    if (b->pre) {
+        double own[6], pre[6];
+        spari_pretension_at(beam, eta, own);
+        for (int j = 0; j < 6; j++) {
+            const double *r = R + 3 * (j % 3), *x = own + j / 3 * 3;
+            pre[j] = r[0] * x[0] + r[1] * x[1] + r[2] * x[2];
+        }
+        spari_slot_put(b->pre, 6, slot, pre);
+    }
     if (b->mass) {
         double mass[10];
         spari_beam_section_at(beam, beam->mass, eta, section);
@@ -635,6 +646,10 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
             points[e] += spari_lumps_of(member, e);
         }
         b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
+        if (b && (member->effects & SPAR_EFFECT_PRETENSION) && spari_body_set_pre(b)) {
+            spari_body_free(b);
+            b = NULL;
+        }
         status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
         if (b) {
             b->crew = &member->session->crew;
@@ -654,11 +669,12 @@ int spari_beam_drag(const spar_member *member, spari_body *body) {
     if (member->beam->drag == 0 || !body->D || !body->mass) {
         return SPAR_OK;
     }
-    double *place = spari_zalloc(3 * (int64_t)body->unique, sizeof *place);
+    int given = spari_member_root_is_given(member);
+    double *place = given ? spari_zalloc(3 * (int64_t)body->unique, sizeof *place) : NULL;
     for (int i = 0; place && i < body->unique; i++) {
         memcpy(place + 3 * (int64_t)i, spari_member_place(member, i), 3 * sizeof *place);
     }
-    if (!place || spari_body_set_drag(body, member->beam->drag, place)) {
+    if ((given && !place) || spari_body_set_drag(body, member->beam->drag, place)) {
         free(place);
         return no_memory_for(member, "its damping");
     }

@@ -16,6 +16,8 @@ struct spari_beam {
     int64_t
         spring_count; /* stations of springs to the ground: eta and stiffness along the section's axes [3] of each */
     double *spring_eta, *spring;
+    int64_t pre_count; /* stations of pretension: eta and section forces, local axes [6] of each */
+    double *pre_eta, *pre;
     int rule, points; /* rule -1: chosen by what the sections are */
     double mu[6];
     int damped;
@@ -39,6 +41,8 @@ void spari_lumps_weigh(const spar_member *member, double weight);
 /* Whether a beam can have those it has been given; at commit. */
 int spari_lumps_check(const spar_member *member);
 enum { SPARI_LUMPS = 10000 }; /* at most */
+/* The section forces [6] of the reference at eta, local axes; there are some. */
+void spari_pretension_at(const spari_beam *beam, double eta, double out[6]);
 /* The quadrature rule in force. */
 int spari_beam_rule(const spari_beam *beam);
 

@@ -29,11 +29,13 @@ typedef struct spari_body {
     double *tangent; /* [blocks][3][lanes] unit tangent of the reference line, global */
     double *C;       /* [blocks][36][lanes] stiffness in global axes at the reference; NULL: not elastic */
     double *D;       /* [blocks][36][lanes] damping likewise; NULL: none */
+    double *pre;     /* [blocks][6][lanes] section forces of the reference, its axes, global; NULL: none */
+    double pre_part; /* how much of `pre` is in force: 1, in load steps less */
     double *mass;    /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
     int lanes;       /* points worked on at once at most; 0: what the processor has (tests try all) */
     double gravity[3];
     double drag; /* 1/s, damping by mass: of the motion seen from the first node as it turns; with D, be it zero */
-    double *node_place; /* [unique][3] reference places, with drag; NULL: none */
+    double *node_place; /* [unique][3] reference places, with drag; NULL: none, or drag is of velocities as they are */
     double *seen;       /* [unique][6] work space likewise */
     int gyroscopic;
     double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
@@ -41,6 +43,7 @@ typedef struct spari_body {
         stiffest; /* size of a force that rounding in the places makes: largest stiffness, and moments over this size */
     double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; NULL: none */
     double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
+    double *pull;      /* linear members: forces [unique][6] of `pre` at the reference; NULL: none */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */
     int64_t room;      /* doubles of work space that an element takes */
     double *scratch;   /* work space of one element, and of 6 doubles a node at least */
@@ -49,10 +52,19 @@ typedef struct spari_body {
     struct spari_crew *const *crew; /* who works on its elements (base/crew.h); NULL: one thread */
 } spari_body;
 
+/* Room for the section forces of the reference, 0 yet. Returns 0, or 1 when there is no memory. */
+int spari_body_set_pre(spari_body *body);
+/* The same body with so much of its pretension in force. */
+static inline spari_body spari_body_in_part(const spari_body *body, double factor) {
+    spari_body part = *body;
+    part.pre_part = factor;
+    return part;
+}
 /* Gives a body with D damping by mass. place: reference places of its nodes, 3 doubles each, joints once, which it
-   keeps. Returns 0, or 1 when there is no memory: place is the caller's still. */
+   keeps; NULL: of velocities as they are, not as the first node sees them. Returns 0, or 1 when there is no memory:
+   place is the caller's still. */
 int spari_body_set_drag(spari_body *body, double drag, double *place);
-/* Velocities as the first node sees them, out [unique][6]; q NULL: from the reference. */
+/* Velocities as damping by mass sees them, out [unique][6]; q NULL: from the reference. */
 void spari_body_see(const spari_body *body, const double *q, const double *v, double *out);
 /* Doubles of work space that an element with so many points takes. */
 int64_t spari_body_scratch(int per_element, int points, int damped);

@@ -53,6 +53,12 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     return body;
 }
 
+int spari_body_set_pre(spari_body *body) {
+    body->pre = spari_zalloc(6 * (int64_t)body->slot[body->elements], sizeof *body->pre);
+    body->pre_part = 1;
+    return body->pre == NULL;
+}
+
 int spari_body_set_drag(spari_body *body, double drag, double *place) {
     body->seen = spari_zalloc(6 * (int64_t)body->unique, sizeof *body->seen);
     if (!body->seen) {
@@ -88,6 +94,7 @@ void spari_body_complete(spari_body *body) {
             copy_lane(body->tangent, 3, k, slot + n - 1);
             copy_lane(body->C, 36, k, slot + n - 1);
             copy_lane(body->D, 36, k, slot + n - 1);
+            copy_lane(body->pre, 6, k, slot + n - 1);
             copy_lane(body->mass, 10, k, slot + n - 1);
             body->weight[k] = 0;
         }
@@ -155,11 +162,13 @@ void spari_body_free(spari_body *body) {
     free(body->place);
     free(body->C);
     free(body->D);
+    free(body->pre);
     free(body->mass);
     for (int k = 0; k < 3; k++) {
         free(body->linear[k]);
     }
     free(body->weights);
+    free(body->pull);
     free(body->at_rest);
     free(body->scratch);
     free(body->matrix);

@@ -315,7 +315,8 @@ int spar_member_set_effects(spar_member *member, int effects) {
     SPARI_QUIET;
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                     SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY |
-                    SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION;
+                    SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION |
+                    SPAR_EFFECT_PRETENSION;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
@@ -458,6 +459,10 @@ uint64_t spari_member_make(const spar_member *m) {
         if (b->spring_count > 0) {
             size_t k = (size_t)b->spring_count * d;
             h = spari_hash_bytes(spari_hash_bytes(h, b->spring_eta, k), b->spring, 3 * k);
+        }
+        if (b->pre_count > 0) {
+            size_t k = (size_t)b->pre_count * d;
+            h = spari_hash_bytes(spari_hash_bytes(h, b->pre_eta, k), b->pre, 6 * k);
         }
         if (b->lump_count > 0) {
             size_t k = (size_t)b->lump_count * d;

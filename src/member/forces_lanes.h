@@ -87,7 +87,6 @@ HERE void NAME(give_back)(L w, const L *value, const L *slope, double *back) {
  * to the tally. */
 HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t slot, const spari_regime *how,
                              const double *f, double *back, spari_tally *tally, int at) {
-    const double *D = how->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL;
     const double *mass = shown == SPARI_MASSLESS ? NULL : SPARI_BLOCK(body->mass, 10, slot);
     const L none = {0}, w = NAME(get)(body->weight + slot);
     const double per_length = 1 / body->length;
@@ -98,10 +97,13 @@ HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t sl
     }
     NAME(fields)(how->wanted & SPARI_RATES, f, &s);
     if (body->C) {
-        NAME(strain)(SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot), D, &s);
+        NAME(strain)(SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot), &s);
+        if (how->beyond) {
+            NAME(beyond_strain)(how->damped, body, slot, &s);
+        }
         NAME(elastic_forces)(&s, value, slope);
         scale = NAME(norm)(s.s) + NAME(norm)(s.s + 3) * per_length;
-        if (D) {
+        if (how->damped) {
             NAME(tally_sum)(tally->power + at, w * s.damped);
         }
     }

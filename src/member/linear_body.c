@@ -34,6 +34,9 @@ void spari_linear_energy(const spari_body *body, const double *q, const double *
         for (int i = e > 0 ? 6 : 0; i < n && body->weights; i++) { /* a joint counts once */
             energy[2] += body->weights[6 * first + i] * x[i];
         }
+        for (int i = e > 0 ? 6 : 0; i < n && body->pull; i++) {
+            energy[1] += body->pull[6 * first + i] * x[i];
+        }
     }
 }
 
@@ -47,6 +50,9 @@ double spari_linear_residual(const spari_body *body, const double *q, const doub
     const double *rate = v && body->drag > 0 ? body->seen : v;
     for (int64_t i = 0; i < (int64_t)body->unique * 6; i++) {
         r[i] = body->weights ? factor * body->weights[i] : 0;
+    }
+    for (int64_t i = 0; i < (int64_t)body->unique * 6 && body->pull; i++) {
+        r[i] += body->pre_part * body->pull[i];
     }
     for (int e = 0; e < body->elements; e++) {
         int64_t first = (int64_t)e * (P - 1), at = (int64_t)n * n * e;

@@ -3,9 +3,14 @@
 
 #include "../math/basis.h"
 
-/* Velocity of a node as the first one sees it, which carries all along with its own. */
+/* Velocity of a node as the first one sees it, which carries all along with its own; or, where there are no places, as
+   it is. */
 static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
     double arm[3], carried[3];
+    if (!body->node_place) {
+        memcpy(out, v + 6 * node, 6 * sizeof *out);
+        return;
+    }
     for (int i = 0; i < 3; i++) {
         arm[i] = body->node_place[3 * node + i] - body->node_place[i] + (q ? q[7 * node + i] - q[i] : 0);
     }
@@ -76,6 +81,7 @@ void spari_point_gather(const spari_body *body, int e, const double *q, const do
 
 spari_regime spari_point_regime(const spari_body *body, const double *v, const double *a, double factor) {
     spari_regime how = {.moving = v != NULL, .damped = body->C && body->D && v};
+    how.beyond = how.damped || body->pre;
     for (int i = 0; i < 3; i++) {
         how.weight[i] = factor * body->gravity[i];
         how.heavy = how.heavy || (how.weight[i] != 0 && body->mass);

@@ -49,6 +49,7 @@ enum { SPARI_MASSLESS, SPARI_WEIGHED, SPARI_ACCELERATED };
 typedef struct spari_regime {
     int moving;       /* rates are given */
     int damped;       /* damping acts */
+    int beyond;       /* section forces are more than stiffness times strain: damping acts, or pretension */
     int heavy, shown; /* there is weight; what of its mass a section shows */
     int wanted;       /* fields that the forces take */
     double weight[3]; /* gravity times its factor */

@@ -170,8 +170,8 @@ HERE void NAME(strain_rate)(const double *D, NAME(point) * s) {
 }
 
 /* Strains and the section forces: e = (R^T (x0' + u') - x0', 2 Im(Q* Q')/|Q|^2), with the reference tangent x0' and
-   the stiffness C of the points; D NULL: not damped, or at rest. */
-HERE void NAME(strain)(const double *tangent, const double *C, const double *D, NAME(point) * s) {
+   the stiffness C of the points. */
+HERE void NAME(strain)(const double *tangent, const double *C, NAME(point) * s) {
     L t[3], kappa[3];
     for (int i = 0; i < 4; i++) {
         s->p[i] = ROW_OF(s->f, DQ + i) * s->over;
@@ -186,8 +186,18 @@ HERE void NAME(strain)(const double *tangent, const double *C, const double *D, 
         s->e[3 + i] = 2.0 * kappa[i];
     }
     NAME(matrix6_times)(C, s->e, s->s);
-    if (D) {
-        NAME(strain_rate)(D, s);
+}
+
+/* What the section forces are beyond that: pretension, which turns with the section, and damping. */
+HERE void NAME(beyond_strain)(int damped, const spari_body *body, int64_t slot, NAME(point) * s) {
+    if (body->pre) {
+        const double *pre = SPARI_BLOCK(body->pre, 6, slot);
+        for (int i = 0; i < 6; i++) {
+            s->s[i] += body->pre_part * ROW_OF(pre, i);
+        }
+    }
+    if (damped) {
+        NAME(strain_rate)(SPARI_BLOCK(body->D, 36, slot), s);
     }
 }
 

@@ -88,16 +88,17 @@ double spari_body_exact_residual(const spari_body *body, const double *q, const 
 
 /* ---- energy ---- */
 
-static void add_strain_energy(const spari_body *body, int64_t slot, double w, const double *D, point_one *s,
+static void add_strain_energy(const spari_body *body, int64_t slot, double w, int damped, point_one *s,
                               double energy[4]) {
-    const double *C = SPARI_BLOCK(body->C, 36, slot);
-    double n[6];
-    strain_one(SPARI_BLOCK(body->tangent, 3, slot), C, D, s);
-    matrix6_times_one(C, s->e, n);
+    strain_one(SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot), s);
     for (int i = 0; i < 6; i++) {
-        energy[1] += 0.5 * w * n[i] * s->e[i];
+        double before = body->pre ? SPARI_BLOCK(body->pre, 6, slot)[SPARI_LANES * i] : 0;
+        energy[1] += w * (0.5 * s->s[i] + before) * s->e[i];
     }
-    energy[3] += D ? w * s->damped : 0;
+    if (damped) {
+        beyond_strain_one(1, body, slot, s);
+        energy[3] += w * s->damped;
+    }
 }
 
 static void add_mass_energy(const spari_body *body, int64_t slot, double w, const point_one *s, double energy[4]) {
@@ -133,7 +134,7 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
             point_one s;
             fields_one(v != NULL, SPARI_BLOCK(f, POINT_ROWS, k), &s);
             if (body->C) {
-                add_strain_energy(body, slot, w, damped ? SPARI_BLOCK(body->D, 36, slot) : NULL, &s, energy);
+                add_strain_energy(body, slot, w, damped, &s, energy);
             }
             if (body->mass) {
                 add_mass_energy(body, slot, w, &s, energy);

@@ -148,6 +148,13 @@ static void section_output(const spar_member *m, const spari_station *s, double 
                 force[i] += C[6 * i + j] * (local[j] + (damped ? sqrt(mu[i] * mu[j]) * rate[j] : 0));
             }
         }
+        if (m->effects & SPAR_EFFECT_PRETENSION) {
+            double pre[6];
+            spari_pretension_at(m->beam, eta, pre);
+            for (int i = 0; i < 6; i++) {
+                force[i] += pre[i];
+            }
+        }
     }
     for (int i = 0; i < 3 && x; i++) {
         x[i] = s->x[i] + f.u[i];

@@ -369,8 +369,10 @@ HERE void NAME(point_matrices)(const spari_body *body, int64_t slot, const spari
     }
     if (t->elastic) {
         NAME(strain)
-        (SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot),
-         how->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL, &s);
+        (SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot), &s);
+        if (how->beyond) {
+            NAME(beyond_strain)(how->damped, body, slot, &s);
+        }
         NAME(elastic_forces)(&s, value, slope);
         NAME(elastic_matrices)(body, slot, t, &s, &by, &w, at);
     }

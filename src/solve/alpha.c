@@ -506,11 +506,11 @@ static int newton(const alpha_step *t) {
     return SPAR_OK;
 }
 
-/* Forces less loads at t^0 with the accelerations a. */
+/* Forces less loads at t^0 with the accelerations a, and the power that damping takes. */
 void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r) {
     spari_solver *s = self;
     const spari_state *b = &s->begin;
-    spari_body_residual(s->body, b->q, b->v, a, 1, r, NULL);
+    spari_body_residual(s->body, b->q, b->v, a, 1, r, s->body->D ? &s->power_begin : NULL);
     if (spari_solver_has_applied(s, member)) {
         spari_applied_residual(member, b->q, 1, r);
     }

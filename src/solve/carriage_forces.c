@@ -115,6 +115,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
     spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
     cblas_daxpy(stretched ? f->n : 0, -1, c->twice, 1, c->elastic, 1);
+    cblas_daxpy(f->pull ? f->n : 0, 1, f->pull, 1, c->elastic, 1);
     if (f->D) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
     }

@@ -32,11 +32,16 @@ int spari_fidelity_check(const spar_member *m) {
         "stand in; leave spar_member_set_added_mass and spar_member_learn_added_mass out",
         m->name);
     SPARI_REQUIRE(
+        m->session, !m->beam || m->beam->spring_count == 0 || (row->solved && !row->whole), SPAR_ERR_UNSUPPORTED,
+        "member '%s' has springs along it (spar_beam_set_foundation), which a beam of fidelity exact, linear or modal "
+        "can have; choose one of these (spar_member_set_fidelity)",
+        m->name);
+    SPARI_REQUIRE(
         m->session,
-        !m->beam || m->beam->spring_count == 0 || (spari_fidelity_of(m)->solved && row == table[SPAR_FIDELITY_EXACT]),
+        !m->beam || m->beam->spring_count == 0 || row->seen != SPARI_SEEN_LINEAR || m->root != SPAR_ROOT_DRIVEN,
         SPAR_ERR_UNSUPPORTED,
-        "member '%s' has springs along it (spar_beam_set_foundation), which a beam of fidelity exact alone can have; "
-        "keep SPAR_FIDELITY_EXACT, with LARGE_ROTATION off where it is to be linear",
+        "member '%s' is linear in the frame of a root that is driven, and has springs to the ground along it "
+        "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
         m->name);
     return row->check ? row->check(m) : SPAR_OK;
 }

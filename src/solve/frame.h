@@ -53,6 +53,7 @@ typedef struct spari_frame {
     double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
     double *S[SPARI_TURNS];                         /* the stretch's stiffness, where it is not in N */
     double *E[3];                                   /* of the root's angular acceleration, where it is unknown */
+    double *pull;                                   /* forces of pretension at the reference, likewise; NULL: none */
     double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
     double omega[3];                                /* what the three sums below were formed for */
     int combined;
@@ -133,6 +134,6 @@ void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h,
    those are the rigid ones apart. arm [nodes][3] from the root. */
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols);
 /* The matrices and vectors of the nodes become those of the basis. 1: no memory. */
-int spari_frame_project(spari_frame *f, int cols);
+int spari_frame_project(spari_frame *f, const spar_member *m, int cols);
 
 #endif

@@ -252,6 +252,7 @@ static int turn_terms(spari_frame *f, const setup *w) {
         turn_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
         rigid_motion(f, w->arm, omega, w->v, w->a);
         spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
+        cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
         if (k < 3 && f->E[k]) {
             euler_matrices(f, w, omega, f->E[k]);
         }
@@ -295,6 +296,9 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
         w.q[7 * i + 3] = 1;
     }
     rest_matrices(f, &w);
+    if (f->pull) {
+        spari_body_residual(body, w.q, NULL, NULL, 0, f->pull, NULL);
+    }
     rigid_forces(f, &w);
     int status = f->N[0] ? turn_terms(f, &w) : SPAR_OK;
     if (damped->drag > 0 && f->M) {

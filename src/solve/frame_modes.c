@@ -219,7 +219,7 @@ static void no_strain(const spari_frame *f, double *X) {
     }
 }
 
-int spari_frame_project(spari_frame *f, int cols) {
+int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     int bad = 0;
     double **all[4 + 2 * SPARI_TURNS + 6] = {&f->K, &f->M, &f->D, &f->A};
     for (int k = 0; k < SPARI_TURNS; k++) {
@@ -234,9 +234,9 @@ int spari_frame_project(spari_frame *f, int cols) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
     }
     double *part = spari_zalloc(cols, sizeof *part);
-    double *const *const vectors[] = {f->f, f->rigid, f->twice};
-    const int counts[] = {SPARI_TURNS, 6, SPARI_TURN_PAIRS};
-    for (int v = 0; v < 3 && part; v++) {
+    double *const *const vectors[] = {f->f, f->rigid, f->twice, &f->pull};
+    const int counts[] = {SPARI_TURNS, 6, SPARI_TURN_PAIRS, 1};
+    for (int v = 0; v < 4 && part; v++) {
         for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
             double *x = vectors[v][k];
             SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1));
@@ -247,8 +247,13 @@ int spari_frame_project(spari_frame *f, int cols) {
     free(part);
     f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
     f->size = (int64_t)cols * cols;
-    no_strain(f, f->K);
+    no_strain(f, m->foundation || f->pull ? NULL : f->K); /* or what holds them is strained already */
     no_strain(f, f->D);
+    for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* but damping by mass brakes them */
+        for (int j = 0; j < cols; j++) {
+            f->D[(int64_t)cols * i + j] += i < 6 || j < 6 ? m->body->drag * f->M[(int64_t)cols * i + j] : 0;
+        }
+    }
     spari_linear_free(f->linear);
     f->linear = spari_linear_create(1, cols, 6);
     return bad || !f->linear;

@@ -4,6 +4,7 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
+#include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
 #include "carriage.h"
@@ -45,6 +46,7 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
         ok = ok && (!turns || !m->floats || (f->S[k] = spari_zalloc(f->size, sizeof(double))));
         ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
     }
+    ok = ok && (!m->body->pre || (f->pull = spari_zalloc(6 * (int64_t)f->nodes, sizeof *f->pull)));
     for (int k = 0; k < 3; k++) {
         ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
         ok = ok && (!turns || !m->floats || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
@@ -84,7 +86,7 @@ static void frame_free(void *solution) {
     double *all[] = {f->basis,       f->A,           f->K,       f->M,      f->D,         f->sumK,
                      f->sumC,        f->sumf,        f->begin.y, f->from.y, f->to.y,      f->steps.load,
                      f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->nodal,
-                     f->turned,      f->element,     f->room_A,  f->gram};
+                     f->turned,      f->element,     f->room_A,  f->gram,   f->pull};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
@@ -134,12 +136,15 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
             spari_added_tangent(m, e, 1, NULL, f->A + (int64_t)f->block * f->block * e);
         }
     }
+    for (int e = 0; e < f->elements && status == SPAR_OK && m->foundation; e++) {
+        spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
+    }
     if (status == SPAR_OK && f->carriage) {
         status = spari_carriage_keep_pushes(f);
     }
     if (status == SPAR_OK && m->modes > 0) {
         status = spari_frame_fill_basis(f, arm, cols);
-        status = status == SPAR_OK && spari_frame_project(f, cols) ? SPAR_ERR_MEMORY : status;
+        status = status == SPAR_OK && spari_frame_project(f, m, cols) ? SPAR_ERR_MEMORY : status;
     }
     free(arm);
     status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
@@ -152,6 +157,15 @@ static int frame_create(spar_member *m) {
                   SPAR_ERR_STATE,
                   "member '%s' is linear without inertia and nothing holds it: fix or drive its root, or leave INERTIA "
                   "on",
+                  m->name);
+    SPARI_REQUIRE(
+        m->session, !m->floats || !m->foundation, SPAR_ERR_UNSUPPORTED,
+        "member '%s' is linear in the frame of a root that joints move, and has springs to the ground along it "
+        "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
+        m->name);
+    SPARI_REQUIRE(m->session, !m->floats || m->body->drag == 0, SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is linear in the frame of a root that joints move, and has damping by mass, which is of "
+                  "velocities as they are; keep SPAR_FIDELITY_EXACT, fix the root, or damp with spar_beam_set_damping",
                   m->name);
     spari_frame *f = m->solution = spari_zalloc(1, sizeof *f);
     if (!f) {

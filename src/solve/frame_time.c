@@ -44,13 +44,15 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
     double *in[2] = {x, xd};
     double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
            *force = zero + 6 * (int64_t)f->nodes;
+    spari_body loose = *m->body;
+    loose.pre = NULL;
     memset(still, 0, (size_t)(13 * f->nodes) * sizeof *still);
     for (int i = 0; i < f->nodes; i++) {
         still[7 * i + 3] = 1;
     }
     for (int k = 0; k < 2; k++) {
         int first = f->carriage ? spari_carriage_split(f, in[k], out[k]) : f->held;
-        spari_body_residual(m->body, still, zero, in[k], 0, force, NULL);
+        spari_body_residual(&loose, still, zero, in[k], 0, force, NULL);
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n - first, 1, f->basis + first, f->n, force,
                                1, 0, out[k] + first, 1));
         memset(out[k], 0, (size_t)f->held * sizeof *y);
@@ -181,8 +183,8 @@ static void turn_loads(const spari_frame *f, const double q[4], double *x, doubl
     spari_frame_gather(f, x, out);
 }
 
-/* What does not depend on the deformation: r = f + M (rigid acceleration - weight) - loads. Loads that follow depend on
- * it and are taken at the latest state. */
+/* What does not depend on the deformation: r = f + M (rigid acceleration - weight) + pretension - loads. Loads that
+ * follow depend on it and are taken at the latest state. */
 static void forcing(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double *out) {
     double weight[3], *x = f->nodal;
     memcpy(x, f->steps.load, (size_t)(6 * f->nodes) * sizeof *x);
@@ -201,6 +203,7 @@ static void forcing(spari_frame *f, const spar_member *m, const spari_frame_stat
     for (int i = 0; i < f->n; i++) {
         out[i] = (still || !f->sumf ? 0 : f->sumf[i]) - out[i];
     }
+    cblas_daxpy(f->pull ? f->n : 0, 1, f->pull, 1, out, 1);
     if (f->rigid[0]) {
         double rate[6] = {0};
         spari_rotate_back(s->root.q + 3, m->body->gravity, weight);
@@ -702,7 +705,8 @@ int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
         return SPAR_ERR_MEMORY;
     }
     from_nodes(f, m, &m->after, y, rate);
-    energy[1] = half_form(f, f->K, y);
+    energy[1] = half_form(f, f->K, y) + (f->pull ? cblas_ddot(f->n, f->pull, 1, y, 1) : 0);
+    energy[1] -= m->foundation ? spari_foundation_energy(m, m->after.q) : 0;
     if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame stands: these are what the equations keep */
         energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;

@@ -242,9 +242,11 @@ static int check_complete(spar_member *m) {
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
         SPARI_TRY(spari_lumps_check(m));
-        SPARI_REQUIRE(m->session, m->beam->drag == 0 || spari_member_root_is_given(m), SPAR_ERR_UNSUPPORTED,
-                      "member '%s' has damping by mass, which is against the motion of its root, and that is not given "
-                      "(free, pinned, or left to a joint); fix or drive it, or damp with spar_beam_set_damping",
+        SPARI_REQUIRE(m->session,
+                      m->beam->drag == 0 || m->fidelity != SPAR_FIDELITY_RIGID || spari_member_root_is_given(m),
+                      SPAR_ERR_UNSUPPORTED,
+                      "member '%s' is rigid, and has damping by mass, which would brake it, its root being free or "
+                      "pinned; leave that out, choose another fidelity, or fix or drive the root",
                       m->name);
     }
     SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
@@ -256,7 +258,7 @@ static int check_complete(spar_member *m) {
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                         SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES |
-                        SPAR_EFFECT_FOUNDATION;
+                        SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;
     int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
@@ -266,6 +268,7 @@ int spari_member_effects(const spar_member *m) {
     possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
     possible |= solved && massive && m->beam && m->beam->lump_count > 0 ? SPAR_EFFECT_MASSES : 0;
     possible |= solved && m->beam && m->beam->spring_count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
+    possible |= solved && !row->whole && m->beam && m->beam->pre_count > 0 ? SPAR_EFFECT_PRETENSION : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }

@@ -350,7 +350,8 @@ static void rest_nodes(spari_limb *p, const double *fluid, int onward) {
 
 static double balance_nodes_at_rest(spari_limb *p, double f) {
     spari_solver *s = p->solver;
-    double scale = spari_body_residual(s->body, s->to.q, NULL, NULL, f, s->r, NULL);
+    const spari_body body = spari_body_in_part(s->body, f);
+    double scale = spari_body_residual(&body, s->to.q, NULL, NULL, f, s->r, NULL);
     for (int k = 0; k < 6 * s->n; k++) {
         s->r[k] -= f * s->steps.load[k];
         scale = fmax(scale, fabs(f * s->steps.load[k]));
@@ -366,7 +367,12 @@ static double balance_nodes_at_rest(spari_limb *p, double f) {
 }
 
 static int tangent_of_nodes_at_rest(spari_limb *p, double f) {
-    return spari_solver_factor(p->solver, p->member, p->solver->to.q, NULL, NULL, f, 0, 0, NULL);
+    spari_solver *s = p->solver;
+    const spari_body body = spari_body_in_part(s->body, f), *whole = s->body;
+    s->body = &body;
+    int singular = spari_solver_factor(s, p->member, s->to.q, NULL, NULL, f, 0, 0, NULL);
+    s->body = whole;
+    return singular;
 }
 
 static void shift_nodes(spari_limb *p, double cut) {

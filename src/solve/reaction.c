@@ -70,6 +70,7 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
     memset(load, 0, 6 * sizeof *load);
     memset(room, 0, (size_t)spari_reaction_of_whole_room(m) * sizeof *room);
     int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
+    int undeformed = standing && !(m->body && m->body->pre);
     if (m->body) {
         for (int64_t i = 0; i < n; i++) {
             q[7 * i + 3] = 1;
@@ -85,7 +86,10 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
                 a[i] += m->body->drag * r[i];
             }
         }
-        spari_body_residual(m->body, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
+        spari_body loose =
+            *m->body; /* pretension gives the whole nothing, but what balances it has a moment by its way */
+        loose.pre = NULL;
+        spari_body_residual(&loose, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
         spari_member_from_unique(m, 6, r, sum);
         for (int64_t i = m->per_element; i < m->nodes; i += m->per_element) {
             memset(sum + 6 * i, 0, 6 * sizeof *sum); /* a joint counts once */
@@ -106,7 +110,7 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
             f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - tied[k];
         }
         for (int k = 0; k < 3; k++) {
-            r_i[k] = m->xr[3 * i + k] - m->xr[k] + (standing ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
+            r_i[k] = m->xr[3 * i + k] - m->xr[k] + (undeformed ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
         }
         spari_cross(r_i, f, moment);
         for (int k = 0; k < 3; k++) {

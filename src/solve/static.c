@@ -30,13 +30,14 @@ typedef struct loading {
 /* Forces less loads at load factor f; returns what rounding in them is relative to. */
 static double balance_at(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q,
                          double *r) {
+    const spari_body body = spari_body_in_part(s->body, f);
     double scale;
     if (l->turning) {
         l->part = spari_turn_part(&l->turn, f);
         spari_turn_rates(m, &l->part, q, l->v, l->a);
-        scale = spari_turn_residual(s->body, q, l->v, l->a, f, r);
+        scale = spari_turn_residual(&body, q, l->v, l->a, f, r);
     } else {
-        scale = spari_body_residual(s->body, q, NULL, NULL, f, r, NULL);
+        scale = spari_body_residual(&body, q, NULL, NULL, f, r, NULL);
     }
     for (int i = 0; i < 6 * s->n; i++) {
         r[i] -= f * s->steps.load[i];
@@ -50,12 +51,13 @@ static double balance_at(const spari_solver *s, const spar_member *m, loading *l
 
 /* The tangent at a state for which `balance_at` has been called, not yet factored. */
 static void form_static_tangent(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
+    const spari_body body = spari_body_in_part(s->body, f);
     spari_linear_zero(s->linear);
     for (int e = 0; e < s->body->elements; e++) {
         if (l->turning) {
-            spari_turn_tangent(s->body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
+            spari_turn_tangent(&body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
         } else {
-            spari_body_tangent(s->body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
+            spari_body_tangent(&body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
         }
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, f, s->body->matrix);

@@ -113,7 +113,7 @@ void spari_turn_pencil(const spari_body *body, const double w[3], const double o
         less[r][c] = W[r][c] - S[r][c];
         back[r][c] = -S[r][c];
     }
-    if (body->drag > 0) { /* damping by mass is seen from the frame itself */
+    if (body->drag > 0 && body->node_place) { /* damping by mass is seen from the frame itself */
         double still[3][3];
         for (int i = 0; i < 9; i++) {
             still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];

@@ -57,7 +57,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
 /* ---- sizes ---- */
 
 /* Terms of the balance of forces */
-enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, FOUNDATION, LOADS, TERMS };
+enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, FOUNDATION, PRETENSION, LOADS, TERMS };
 
 /* Sum of the squares of nodal forces r [n][6], moments by the length. */
 static double squares(const double *r, int64_t n, double length) {
@@ -84,6 +84,16 @@ static double lump_squares(const spar_member *m, const double *q, const double *
     spari_lumps_weigh(m, 0);
     spari_body_exact_residual(m->body, q, rate, acceleration, 1, less, NULL);
     spari_lumps_weigh(m, 1);
+    minus(r, less, m->body->unique);
+    return squares(r, m->body->unique, length);
+}
+
+/* Forces of pretension: with it less without, at rest. r, less: work of [6 n] each. */
+static double pretension_squares(const spar_member *m, const double *q, double *r, double *less, double length) {
+    spari_body loose = *m->body;
+    loose.pre = NULL;
+    spari_body_exact_residual(m->body, q, NULL, NULL, 0, r, NULL);
+    spari_body_exact_residual(&loose, q, NULL, NULL, 0, less, NULL);
     minus(r, less, m->body->unique);
     return squares(r, m->body->unique, length);
 }
@@ -156,6 +166,9 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     if (m->effects & SPAR_EFFECT_MASSES) {
         sum[MASSES] += lump_squares(m, q, v, a, r, rest, length);
     }
+    if (m->effects & SPAR_EFFECT_PRETENSION) {
+        sum[PRETENSION] += pretension_squares(m, q, r, rest, length);
+    }
     load_squares(m, loads, length, sum);
     free(q);
     return SPAR_OK;
@@ -211,9 +224,10 @@ static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) 
         leading = fmax(leading, of->sum[k]);
     }
     static const int row[] = {
-        [INERTIA] = SPAR_ROW_INERTIA, [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC, [GRAVITY] = SPAR_ROW_GRAVITY,
-        [DAMPING] = SPAR_ROW_DAMPING, [MASSES] = SPAR_ROW_MASSES,         [FOUNDATION] = SPAR_ROW_FOUNDATION};
-    for (int k = INERTIA; k <= FOUNDATION; k++) {
+        [INERTIA] = SPAR_ROW_INERTIA,      [GYROSCOPIC] = SPAR_ROW_GYROSCOPIC, [GRAVITY] = SPAR_ROW_GRAVITY,
+        [DAMPING] = SPAR_ROW_DAMPING,      [MASSES] = SPAR_ROW_MASSES,         [FOUNDATION] = SPAR_ROW_FOUNDATION,
+        [PRETENSION] = SPAR_ROW_PRETENSION};
+    for (int k = INERTIA; k <= PRETENSION; k++) {
         size[row[k]] = leading > 0 ? sqrt(of->sum[k] / leading) : 0;
     }
     size[SPAR_ROW_LARGE_ROTATION] = of->turn;
@@ -243,6 +257,7 @@ static const row rows[SPAR_ROW_COUNT] = {
     {"half step", 0, SPARI_MUTE_HALF_STEP},
     {"bodies on beams", SPAR_EFFECT_MASSES, 0},
     {"foundation", SPAR_EFFECT_FOUNDATION, 0},
+    {"pretension", SPAR_EFFECT_PRETENSION, 0},
 };
 
 const char *spar_effect_name(int r) {

@@ -117,7 +117,7 @@ typedef struct setting {
     int poses, accelerations;    /* pulled */
     int half, group;             /* pull at theta = 1/2 */
     int predictor, scheme;       /* if GIVEN */
-    int unaudited, account, guess, laden, dragged, sprung, bedded;
+    int unaudited, account, guess, laden, dragged, sprung, bedded, strung;
     int reproducible;                    /* if GIVEN */
     int aero;                            /* blades with sections */
     int aero_effects;                    /* if GIVEN */
@@ -168,7 +168,8 @@ static void open_session(scene *s) {
 /* A beam of 10 m along x whose root turns about z, loaded at its tip. */
 static void make_beam(scene *s) {
     static const double eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 10, 0, 0}, mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3},
-                        g[3] = {0, 0, -9.81}, tip[6] = {0, 0, 50, 5, 0, 0}, bed[3] = {0, 10, 10};
+                        g[3] = {0, 0, -9.81}, tip[6] = {0, 0, 50, 5, 0, 0}, bed[3] = {0, 10, 10},
+                        pull[6] = {20, 0, 0, 0, 0, 0};
     const double k[6] = {1.4e6, 9e4, 4e4, 1.7e4, 5.9e4, 1.4e5}, m[6] = {0.5, 0.5, 0.5, 0.05, 0.02, 0.03};
     double stiffness[36] = {0}, mass[36] = {0};
     for (int i = 0; i < 6; i++) {
@@ -199,6 +200,9 @@ static void make_beam(scene *s) {
     }
     if (s->is.laden) {
         MUST(spar_beam_set_masses(*b, 1, eta + 1, mass));
+    }
+    if (s->is.strung) {
+        MUST(spar_beam_set_pretension(*b, 1, eta, pull));
     }
     if (s->is.bedded) {
         MUST(spar_beam_set_foundation(*b, 1, eta, bed));
@@ -429,7 +433,13 @@ static const effect effects[] = {
      {0}},
     {"work account", "spari_work_step", NEVER, {.account = 1}, {0}, {0}},
     {"bodies on beams", "", NEVER, {.laden = 1}, {.laden = 1, .effects = ALL}, {0}},
-    {"foundation", "element_springs add_springs", NEVER, {.bedded = 1}, {.bedded = 1, .effects = ALL}, {0}},
+    {"foundation",
+     "element_springs spari_foundation_tangent",
+     NEVER,
+     {.bedded = 1},
+     {.bedded = 1, .effects = ALL},
+     {0}},
+    {"pretension", "", NEVER, {.strung = 1}, {.strung = 1, .effects = ALL}, {0}},
     {"joints",
      "spari_assembly_advance spari_assembly_balance spari_assembly_answer spari_joint_hold spari_joint_spring "
      "spari_joint_accept spari_joints_on",

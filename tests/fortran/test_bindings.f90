@@ -78,6 +78,8 @@ program test_bindings
   call refused(spar_beam_get_mass_damping(none), 'spar_beam_get_mass_damping')
   call refused(spar_beam_set_foundation(none, 0_c_int64_t), 'spar_beam_set_foundation')
   call refused(spar_beam_get_foundation(none, capacity=0_c_int64_t), 'spar_beam_get_foundation')
+  call refused(spar_beam_set_pretension(none, 0_c_int64_t), 'spar_beam_set_pretension')
+  call refused(spar_beam_get_pretension(none, capacity=0_c_int64_t), 'spar_beam_get_pretension')
   call refused(spar_beam_set_masses(none, 0_c_int64_t), 'spar_beam_set_masses')
   call refused(spar_beam_get_masses(none, capacity=0_c_int64_t), 'spar_beam_get_masses')
   call refused(spar_beam_read_beamdyn(none), 'spar_beam_read_beamdyn')

@@ -211,6 +211,20 @@ void do_spar_beam_get_foundation(call *c) {
     RUN(c, spar_beam_get_foundation(m->m, n, capacity, eta, k));
 }
 
+void do_spar_beam_set_pretension(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t n = chance(c, 20) ? 0 : arg_count(c, 1, 3), room = length(n);
+    double *eta = arg_rising(c, room, 0, 1), *force = arg_reals(c, 6 * room, -10, 100);
+    RUN(c, spar_beam_set_pretension(m->m, n, eta, force));
+}
+
+void do_spar_beam_get_pretension(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);
+    double *eta = OUT_OR_NULL(c, length(capacity)), *force = OUT_OR_NULL(c, 6 * length(capacity));
+    RUN(c, spar_beam_get_pretension(m->m, n, capacity, eta, force));
+}
+
 void do_spar_beam_get_masses(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t *n = arg_out(c, (int64_t)sizeof *n, 1), capacity = arg_count(c, 0, 3);

@@ -97,6 +97,8 @@ enum {
     CALL(spar_beam_get_masses, 20, FUZZ_PURE)                                                                          \
     CALL(spar_beam_set_foundation, 40, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_get_foundation, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_beam_set_pretension, 40, FUZZ_CHANGES)                                                                   \
+    CALL(spar_beam_get_pretension, 20, FUZZ_PURE)                                                                      \
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_line_load, 100, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_modal_damping, 30, FUZZ_CHANGES)                                                                \
@@ -139,7 +141,7 @@ enum {
     CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
     CALL(spar_joint_get_motion, 20, FUZZ_PURE)                                                                         \
     CALL(spar_joint_get_load, 20, FUZZ_PURE)                                                                           \
-    CALL(spar_joint_get_energy, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_joint_get_energy, 60, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_create, 50, FUZZ_CHANGES)                                                                          \
     CALL(spar_fluid_destroy, 20, FUZZ_TEXT)                                                                            \
     CALL(spar_fluid_set_motion_nodes, 60, FUZZ_CHANGES)                                                                \

@@ -46,6 +46,7 @@ static void beam(writer *w) {
     part(w, 15, CALL_spar_beam_set_mass_damping);
     part(w, 25, CALL_spar_beam_set_masses);
     part(w, 5, CALL_spar_beam_set_foundation);
+    part(w, 5, CALL_spar_beam_set_pretension);
     part(w, 15, CALL_spar_beam_set_quadrature);
     part(w, 20, CALL_spar_member_set_added_mass);
     part(w, 20, CALL_spar_member_learn_added_mass);

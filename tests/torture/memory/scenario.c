@@ -378,7 +378,7 @@ static void act_step(void) {
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
-    double pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6};
+    double pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6}, tension[12] = {1, 0, 0, 0, 0, 0, 2};
     int64_t step, node;
     int done = 0, iteration;
     spar_member *owner;
@@ -390,6 +390,8 @@ static void act_step(void) {
     CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
     CALL(spar_beam_set_foundation, b, 2, eta, ground);
     CALL(spar_beam_get_foundation, b, &node, 2, NULL, ground);
+    CALL(spar_beam_set_pretension, b, 2, eta, tension);
+    CALL(spar_beam_get_pretension, b, &node, 2, NULL, tension);
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);

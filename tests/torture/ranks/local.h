@@ -1,7 +1,8 @@
 /* The functions that are local: they send and wait for nothing. */
 " spar_aero_create spar_aero_destroy spar_aero_effect_name spar_aero_get_flags spar_aero_get_loads "
     " spar_beam_set_mass_damping spar_beam_get_mass_damping spar_beam_set_masses spar_beam_get_masses "
-    "spar_beam_set_foundation spar_beam_get_foundation spar_aero_get_chord spar_aero_set_shear spar_aero_set_tower "
+    "spar_beam_set_foundation spar_beam_get_foundation spar_beam_set_pretension spar_beam_get_pretension "
+    "spar_aero_get_chord spar_aero_set_shear spar_aero_set_tower "
     " spar_aero_get_rotor spar_aero_get_sections spar_aero_set_blades spar_aero_set_effects spar_aero_set_rotor "
     " spar_aero_read_aerodyn spar_fluid_read_aerodyn "
     " spar_aero_set_section spar_aero_set_turn spar_aero_solve spar_beam_create spar_beam_get_section "
