@@ -680,6 +680,28 @@ static void test_added_mass(void **state) {
     spar_session_destroy(&s);
 }
 
+/* Springs along a beam, and section forces of its reference; effects by name, each the bit it is. */
+static void test_stations(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    spar_case *c =
+        read_text(s, NULL,
+                  "[beam pile]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
+                  ".02 .01 .01\nfoundation .2 1 2 3\nfoundation .2 4 5 6\npretension 0 100 0 0 1 2 3\n"
+                  "effects inertia foundation pretension\nroot fixed\n");
+    double eta[2], k[2][3], force[6];
+    int64_t n = 0;
+    int effects = 0;
+    OK(s, spar_beam_get_foundation(spar_case_member_at(c, 0), &n, 2, eta, k[0]));
+    assert_true(n == 2 && eta[0] == .2 && eta[1] == .2 && k[0][0] == 1 && k[0][2] == 3 && k[1][1] == 5);
+    OK(s, spar_beam_get_pretension(spar_case_member_at(c, 0), &n, 1, eta, force));
+    assert_true(n == 1 && eta[0] == 0 && force[0] == 100 && force[3] == 1 && force[5] == 3);
+    OK(s, spar_member_get_effects(spar_case_member_at(c, 0), &effects));
+    assert_int_equal(effects, SPAR_EFFECT_INERTIA | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION);
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+}
+
 static const char wing_text[] = "[beam wing]\nnodes 5\naxis 0 0 0 0\naxis 1 4 0 0\n"
                                 "section 0 4e6 4e6 4e6 3e4 2e4 2e4 5 5 5 .2 .1 .1\n";
 
@@ -717,7 +739,7 @@ static void air_by_hand(spar_session *s, spar_member *wing, by_hand *h) {
     spar_polar_destroy(&polar);
     OK(s, spar_aero_set_shear(h->aero, SPAR_SHEAR_LOG, (double[3]){0, 0, -9}, (double[3]){0, 0, 2}, 10, .03));
     OK(s, spar_aero_set_tower(h->aero, (double[3]){1, 3, -9}, (double[3]){1, 3, 5}, .7, .5));
-    OK(s, spar_aero_set_effects(h->aero, SPAR_AERO_DRAG | SPAR_AERO_SHEAR | SPAR_AERO_TOWER));
+    OK(s, spar_aero_set_effects(h->aero, SPAR_AERO_DRAG | SPAR_AERO_SHEAR | SPAR_AERO_TOWER | SPAR_AERO_UNSTEADY));
 }
 
 static spar_case *air_by_text(spar_session *s) {
@@ -730,7 +752,7 @@ static spar_case *air_by_text(spar_session *s) {
                    "%s[aero air]\nblades wing\nsection -1 1 .05 test_case_polar.txt\n"
                    "section 0 .8 0 test_case_polar.txt 0.1 0.02\nsection 1 .5 -.05 test_case_polar.txt\n"
                    "density 1.2\nwind 0 30 -3\nshear log 0 0 -9 0 0 2 10 .03\ntower 1 3 -9 1 3 5 .7 .5\n"
-                   "effects drag shear tower\n",
+                   "effects drag shear tower unsteady\n",
                    wing_text);
     spar_case *c = read_text(s, NULL, text);
     assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
@@ -873,12 +895,12 @@ static void test_restart(void **state) {
 int main(void) {
     (void)setlocale(LC_ALL, "C"); /* examples/nrel5mw.c and what is read back below keep to it */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_everything),    cmocka_unit_test(test_nothing),  cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_flag),          cmocka_unit_test(test_blade),    cmocka_unit_test(test_beamdyn),
-        cmocka_unit_test(test_host),          cmocka_unit_test(test_mistakes), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_comma),         cmocka_unit_test(test_output),   cmocka_unit_test(test_no_output),
-        cmocka_unit_test(test_added_mass),    cmocka_unit_test(test_aero),     cmocka_unit_test(test_aero_files),
-        cmocka_unit_test(test_aero_mistakes), cmocka_unit_test(test_restart),
+        cmocka_unit_test(test_everything), cmocka_unit_test(test_nothing),       cmocka_unit_test(test_cylinder),
+        cmocka_unit_test(test_flag),       cmocka_unit_test(test_blade),         cmocka_unit_test(test_beamdyn),
+        cmocka_unit_test(test_host),       cmocka_unit_test(test_mistakes),      cmocka_unit_test(test_files),
+        cmocka_unit_test(test_comma),      cmocka_unit_test(test_output),        cmocka_unit_test(test_no_output),
+        cmocka_unit_test(test_added_mass), cmocka_unit_test(test_stations),      cmocka_unit_test(test_aero),
+        cmocka_unit_test(test_aero_files), cmocka_unit_test(test_aero_mistakes), cmocka_unit_test(test_restart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

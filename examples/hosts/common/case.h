@@ -38,6 +38,8 @@
      line_load* dead|follower eta fx fy fz mx my mz
      mass_damping alpha         1/s (spar_beam_set_mass_damping)
      body* eta mass             a rigid body that sits on it (spar_beam_set_masses)
+     foundation* eta kx ky kz   springs to the ground along it, N/m^2 (spar_beam_set_foundation)
+     pretension* eta n vy vz t my mz    section forces of the reference (spar_beam_set_pretension)
      added_mass* eta mass       a guess of the fluid's, per length (spar_member_set_added_mass)
    [rigid NAME]
      mass                       a 6x6 matrix            added_mass              likewise, a guess of the fluid's
@@ -45,7 +47,8 @@
    these three
      place x y z                orientation qw qx qy qz
      root free|fixed|pinned|driven               external on|off          owner rank
-     effects default|none|inertia|gyroscopic|gravity|damping|large_rotation|fluid_moment|fluid_history|work ...
+     effects default|none|inertia|gyroscopic|gravity|damping|large_rotation|fluid_moment|fluid_history|work|masses|
+             foundation|pretension ...
      velocity x y z             spin x y z      about x y z          the initial rigid motion
      load* NODE dead|follower fx fy fz mx my mz                      NODE: a number from 0, first or last
    [joint NAME]
@@ -68,7 +71,7 @@
      turn 1|-1                  total n, blades of the whole rotor
      shear power|log|linear  x y z  ux uy uz  height parameter   ground, up, where the wind is that given, the law's own
      tower x y z  x y z  base_radius top_radius       its base, its top
-     effects none|induction|tip_loss|hub_loss|swirl|drag|moment|shear|tower ...
+     effects none|induction|tip_loss|hub_loss|swirl|drag|moment|shear|tower|inflow|stall|unsteady ...
      density rho                wind x y z
    [output], [output HOST]: what spar_case_output writes; the second is for one adapter and replaces the first
      folder DIR                 of the pictures, made if it is not there; default: the working folder

@@ -193,8 +193,8 @@ static int change_wind(const spar_case *c, const case_block *block, spar_aero *a
 }
 
 static int choose_effects(const spar_case *c, const case_block *block, spar_aero *aero) {
-    static const char *const names[] = {"induction", "tip_loss", "hub_loss", "swirl", "drag",
-                                        "moment",    "shear",    "tower",    "none",  NULL};
+    static const char *const names[] = {"induction", "tip_loss", "hub_loss", "swirl",    "drag", "moment", "shear",
+                                        "tower",     "inflow",   "stall",    "unsteady", "none", NULL};
     const case_line *line = case_find(block, "effects");
     int effects = 0, which;
     for (int i = 1; line && i <= line->n; i++) {

@@ -310,6 +310,21 @@ static int set_masses(const spar_case *c, const case_block *block, const char *k
     return status;
 }
 
+/* Numbers of a beam by their eta, `width` a row: springs to the ground, or section forces of the reference. */
+static int set_stations(const spar_case *c, const case_block *block, const char *key, int width,
+                        int (*set)(spar_member *, int64_t, const double *, const double *), spar_member *beam) {
+    rows r = {0};
+    int status = read_rows(&c->text, block, key, 1, &r);
+    double *all = status == SPAR_OK && r.n > 0 ? calloc((size_t)(r.n * r.width), sizeof *all) : NULL;
+    if (status == SPAR_OK && r.n > 0) {
+        status = all ? case_told(c, r.line, set(beam, r.n, columns(&r, 0, 1, all), columns(&r, 1, width, all + r.n)))
+                     : case_no_memory(c);
+    }
+    free(all);
+    free(r.x);
+    return status;
+}
+
 static int describe_beam(const spar_case *c, const case_block *block, spar_member **beam) {
     static const char *const rules[] = {"gauss", "lobatto", "sections", NULL};
     const case_line *elements = case_find(block, "elements"), *nodes = case_find(block, "nodes"), *line;
@@ -337,6 +352,8 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
     }
     CASE_TRY(set_masses(c, block, "added_mass", spar_member_set_added_mass, *beam));
     CASE_TRY(set_masses(c, block, "body", spar_beam_set_masses, *beam));
+    CASE_TRY(set_stations(c, block, "foundation", 3, spar_beam_set_foundation, *beam));
+    CASE_TRY(set_stations(c, block, "pretension", 6, spar_beam_set_pretension, *beam));
     line = case_find(block, "fidelity");
     return line ? set_fidelity(c, line, *beam) : SPAR_OK;
 }
@@ -358,9 +375,9 @@ static int describe_rigid(const spar_case *c, const case_block *block, spar_memb
 }
 
 static int set_effects(const spar_case *c, const case_line *line, spar_member *member) {
-    static const char *const names[] = {
-        "inertia", "gyroscopic", "gravity", "damping", "large_rotation", "fluid_moment", "fluid_history",
-        "work",    "default",    "none",    NULL};
+    static const char *const names[] = {"inertia",      "gyroscopic",    "gravity", "damping", "large_rotation",
+                                        "fluid_moment", "fluid_history", "work",    "default", "masses",
+                                        "foundation",   "pretension",    "none",    NULL};
     int effects = 0, which;
     for (int i = 1; i <= line->n; i++) {
         CASE_TRY(case_choice(&c->text, line, i, names, &which));

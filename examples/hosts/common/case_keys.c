@@ -21,11 +21,11 @@ static const known_key member_keys[] = {
     {"load", 8, 8, 1},  {"effects", 1, 16, 0},    {NULL, 0, 0, 0},
 };
 static const known_key beam_keys[] = {
-    {"elements", 1, 1, 0},  {"nodes", 1, 1, 0},     {"quadrature", 2, 2, 0},    {"axis", 4, 5, 1},
-    {"axis_file", 1, 1, 0}, {"node", 3, 7, 1},      {"twist_scale", 1, 1, 0},   {"section", 7, 73, 1},
-    {"beamdyn", 1, 2, 0},   {"damping", 6, 6, 0},   {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
-    {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1}, {"added_mass", 7, 37, 1},   {"mass_damping", 1, 1, 0},
-    {"body", 7, 37, 1},     {NULL, 0, 0, 0},
+    {"elements", 1, 1, 0},  {"nodes", 1, 1, 0},      {"quadrature", 2, 2, 0},    {"axis", 4, 5, 1},
+    {"axis_file", 1, 1, 0}, {"node", 3, 7, 1},       {"twist_scale", 1, 1, 0},   {"section", 7, 73, 1},
+    {"beamdyn", 1, 2, 0},   {"damping", 6, 6, 0},    {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
+    {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1},  {"added_mass", 7, 37, 1},   {"mass_damping", 1, 1, 0},
+    {"body", 7, 37, 1},     {"foundation", 4, 4, 1}, {"pretension", 7, 7, 1},    {NULL, 0, 0, 0},
 };
 static const known_key rigid_keys[] = {{"mass", 6, 36, 0}, {"added_mass", 6, 36, 0}, {NULL, 0, 0, 0}};
 static const known_key joint_keys[] = {
@@ -43,7 +43,7 @@ static const known_key output_keys[] = {
 };
 static const known_key aero_keys[] = {
     {"blades", 1, 16, 0}, {"aerodyn", 1, 2, 0}, {"axes", 4, 4, 0},    {"stations", 3, 3, 0}, {"section", 4, 6, 1},
-    {"rotor", 8, 8, 0},   {"turn", 1, 1, 0},    {"total", 1, 1, 0},   {"effects", 1, 9, 0},  {"shear", 9, 9, 0},
+    {"rotor", 8, 8, 0},   {"turn", 1, 1, 0},    {"total", 1, 1, 0},   {"effects", 1, 12, 0}, {"shear", 9, 9, 0},
     {"tower", 8, 8, 0},   {"wind", 3, 3, 0},    {"density", 1, 1, 0}, {NULL, 0, 0, 0},
 };
 static const known_key no_keys[] = {{NULL, 0, 0, 0}};
