@@ -367,9 +367,10 @@ static void test_member(void **state) {
     spar_session_destroy(&m.session);
 }
 
-/* The unstructured grid has the same points; 1 and 4 are VTK's numbers of a vertex and of a polyline. */
+/* The unstructured grid has the same points; 1 and 3 are VTK's numbers of a vertex and of a line of two points. */
 static void test_grid(void **state) {
     (void)state;
+    enum { SEGMENTS = SAMPLES - ELEMENTS, CELLS = NODES + SEGMENTS };
     moved m;
     move(&m);
     OK(m.session, spar_member_write_vtk(m.beam, "output_beam.vtu"));
@@ -377,12 +378,16 @@ static void test_grid(void **state) {
     assert_string_equal(d->root, "UnstructuredGrid");
     check_nodes(d, &m);
     const array *types = get(d, "Cells", "types");
-    assert_int_equal(types->bytes, NODES + ELEMENTS);
-    const int64_t *end = integers(d, "Cells", "offsets", NODES + ELEMENTS);
-    integers(d, "Cells", "connectivity", NODES + SAMPLES);
-    for (int i = 0; i < NODES + ELEMENTS; i++) {
-        assert_int_equal(types->data[i], i < NODES ? 1 : 4);
-        assert_int_equal(end[i], i < NODES ? i + 1 : NODES + (i - NODES + 1) * SAMPLES / 2);
+    assert_int_equal(types->bytes, CELLS);
+    const int64_t *end = integers(d, "Cells", "offsets", CELLS);
+    const int64_t *joins = integers(d, "Cells", "connectivity", NODES + 2 * SEGMENTS);
+    for (int i = 0; i < CELLS; i++) {
+        assert_int_equal(types->data[i], i < NODES ? 1 : 3);
+        assert_int_equal(end[i], i < NODES ? i + 1 : NODES + 2 * (i - NODES + 1));
+    }
+    for (int i = 0; i < SEGMENTS; i++) { /* none from one element to the next: their ends are the same place */
+        int64_t from = i + (i >= SAMPLES / 2 - 1 ? 1 : 0);
+        assert_true(joins[NODES + 2 * i] == from && joins[NODES + 2 * i + 1] == from + 1);
     }
     free_document(d);
     spar_session_destroy(&m.session);

@@ -4,10 +4,10 @@
    half a file, and a failure leaves what stood at the path. Where the path is a symbolic link, all this happens where
    it leads, and the link stays; a file with several hard links is replaced under this name only; mode and owner stay as
    far as the system allows. What is no file (a pipe, a device, a folder) is refused and stays. Numbers are stored
-   exactly. A path that ends in .vtu gives an unstructured grid, any other poly data; end it in .vtp, by which ParaView
-   finds its reader. The time of the session goes with each file. All calls are local: write a member on one rank, where
-   it is known on all; write a fluid on the rank that has it. A file that cannot be written is SPAR_ERR_IO, and the
-   message says why. */
+   exactly. A path that ends in .vtu gives an unstructured grid, which meshio reads too, any other poly data; end it in
+   .vtp, by which ParaView finds its reader. The time of the session goes with each file. All calls are local: write a
+   member on one rank, where it is known on all; write a fluid on the rank that has it. A file that cannot be written is
+   SPAR_ERR_IO, and the message says why. */
 #ifndef SPAR_OUTPUT_H
 #define SPAR_OUTPUT_H
 

@@ -162,22 +162,41 @@ static void put_poly_cells(encoder *s, const spari_vtk_picture *p) {
     fputs("</Lines>\n", s->file);
 }
 
+/* Lines of a grid are cut into their segments: readers beside VTK's own (meshio) know no polylines. */
+static int64_t count_segments(const spari_vtk_picture *p) {
+    int64_t n = 0;
+    for (int64_t k = 0, at = 0; k < p->lines; at = p->line_end[k++]) {
+        n += p->line_end[k] > at ? p->line_end[k] - at - 1 : 0;
+    }
+    return n;
+}
+
+static void put_segments(encoder *s, const spari_vtk_picture *p) {
+    for (int64_t k = 0, at = 0; k < p->lines; at = p->line_end[k++]) {
+        for (int64_t i = at; i + 1 < p->line_end[k]; i++) {
+            put_int64(s, p->line_point ? p->line_point[i] : i);
+            put_int64(s, p->line_point ? p->line_point[i + 1] : i + 1);
+        }
+    }
+}
+
 static void put_grid_cells(encoder *s, const spari_vtk_picture *p) {
-    enum { VERTEX = 1, POLY_LINE = 4 }; /* VTK's numbers of the cell types */
+    enum { VERTEX = 1, LINE = 3 }; /* VTK's numbers of the cell types */
+    int64_t segments = count_segments(p);
     fputs("<Cells>\n", s->file);
-    begin_array(s, "Int64", "connectivity", 1, p->verts + count_line_points(p), 8);
+    begin_array(s, "Int64", "connectivity", 1, p->verts + 2 * segments, 8);
     put_vert_numbers(s, p);
-    put_line_numbers(s, p);
+    put_segments(s, p);
     end_array(s);
-    begin_array(s, "Int64", "offsets", 1, p->verts + p->lines, 8);
+    begin_array(s, "Int64", "offsets", 1, p->verts + segments, 8);
     put_count(s, 1, p->verts);
-    for (int64_t k = 0; k < p->lines; k++) {
-        put_int64(s, p->verts + p->line_end[k]);
+    for (int64_t k = 1; k <= segments; k++) {
+        put_int64(s, p->verts + 2 * k);
     }
     end_array(s);
-    begin_array(s, "UInt8", "types", 1, p->verts + p->lines, 1);
-    for (int64_t k = 0; k < p->verts + p->lines; k++) {
-        unsigned char type = k < p->verts ? VERTEX : POLY_LINE;
+    begin_array(s, "UInt8", "types", 1, p->verts + segments, 1);
+    for (int64_t k = 0; k < p->verts + segments; k++) {
+        unsigned char type = k < p->verts ? VERTEX : LINE;
         put_bytes(s, &type, 1);
     }
     end_array(s);
@@ -201,7 +220,7 @@ static void put_picture(FILE *file, const spari_vtk_picture *p, int grid) {
     put_facts(&s, p);
     fprintf(file, "<Piece NumberOfPoints=\"%lld\" ", (long long)p->points);
     if (grid) {
-        fprintf(file, "NumberOfCells=\"%lld\">\n", (long long)(p->verts + p->lines));
+        fprintf(file, "NumberOfCells=\"%lld\">\n", (long long)(p->verts + count_segments(p)));
     } else {
         fprintf(file, "NumberOfVerts=\"%lld\" NumberOfLines=\"%lld\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
                 (long long)p->verts, (long long)p->lines);

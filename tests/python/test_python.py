@@ -273,5 +273,33 @@ class Edges(unittest.TestCase):
             self.assertEqual(s.get_option('coupling.reuse'), '7')
 
 
+class Files(unittest.TestCase):
+    """What spar_member_write_vtk writes is read by readers of others."""
+
+    def test_meshio(self):
+        """An unstructured grid of the bent cantilever: places and fields are those that the getters give."""
+        try:
+            import meshio  # pylint: disable=import-outside-toplevel
+        except ImportError:
+            self.skipTest('no meshio')
+        with spar.Session() as s:
+            beam = cantilever(s)
+            beam.set_load(beam.get_count() - 1, spar.LOAD_DEAD, [0, 0, 10, 0, 0, 0])
+            beam.solve_static(1)
+            path = os.path.join(WORK, 'python_meshio.vtu')
+            beam.write_vtk(path)
+            mesh = meshio.read(path)
+            q = beam.get_motion(v=None, a=None)
+            numpy.testing.assert_array_equal(mesh.points[0], [0, 0, 0])
+            tip = mesh.points[numpy.argmax(mesh.points[:, 0])]
+            numpy.testing.assert_allclose(tip, [2 + q[-1, 0], q[-1, 1], q[-1, 2]], rtol=0, atol=1e-12)
+            for name in ('displacement', 'deflection', 'rotation', 'velocity'):
+                self.assertEqual(mesh.point_data[name].shape, (len(mesh.points), 3), name)
+            self.assertEqual(set(mesh.cells_dict), {'vertex', 'line'})
+            length = numpy.linalg.norm(numpy.diff(mesh.points[mesh.cells_dict['line']], axis=1), axis=2).sum()
+            self.assertAlmostEqual(length, 2, delta=1e-4)  # it bends and does not stretch; chords of its line
+            os.remove(path)
+
+
 if __name__ == '__main__':
     unittest.main()
