@@ -115,7 +115,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
     spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
     cblas_daxpy(stretched ? f->n : 0, -1, c->twice, 1, c->elastic, 1);
-    cblas_daxpy(f->pull ? f->n : 0, 1, f->pull, 1, c->elastic, 1);
+    cblas_daxpy(f->pull ? f->n : 0, c->factor, f->pull, 1, c->elastic, 1);
     if (f->D) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
     }
@@ -488,7 +488,10 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     memset(c->border, 0, (size_t)(6 * f->n) * sizeof *c->border);
     for (int e = 0; e < f->elements; e++) {
         form_element(f, e, alpha, cm, cv);
+        /* pretension's stiffness is not blind to rigid motions: the whole has it by the arms of the ends */
+        cblas_daxpy(f->pull ? (int)mm : 0, -1, f->K + mm * e, 1, f->element, 1);
         add_rows(f, m, e, f->element);
+        cblas_daxpy(f->pull ? (int)mm : 0, 1, f->K + mm * e, 1, f->element, 1);
         for (int64_t i = 0; i < mm && f->S[0] && !c->still; i++) {
             f->element[i] += c->stiff[mm * e + i] - f->K[mm * e + i];
         }
