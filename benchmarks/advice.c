@@ -115,11 +115,8 @@ static int ask(const scene *s, double tolerance, double part, double *advice, kn
     int64_t steps = SAMPLES_OF_TRIALS * llround(part * s->T / dt / SAMPLES_OF_TRIALS);
     int status = scene_build(s, &s->standard, &run);
     if (status == SPAR_OK) {
-        char horizon[32];
-        snprintf(horizon, sizeof horizon, "%.17g", s->T);
-        (void)spar_session_set_option(run->session, "advise.horizon", horizon);
         (void)spar_session_set_log(run->session, show, NULL);
-        status = spar_session_advise(run->session, tolerance, dt, steps, run->before, run->solve, run->context,
+        status = spar_session_advise(run->session, tolerance, dt, steps, s->T, run->before, run->solve, run->context,
                                      SPAR_ADVICE_COUNT, advice);
     }
     if (status == SPAR_OK) {

@@ -108,7 +108,8 @@ module spar
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
-      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
+      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &
+      SPAR_ADVICE_COUNT = 11
   integer, parameter, public :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128, &
       SPAR_AERO_INFLOW = 256, SPAR_AERO_STALL = 512, SPAR_AERO_UNSTEADY = 1024
@@ -1070,9 +1071,9 @@ contains
     call self%report_effects(dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
   end subroutine session_report_effects_32
 
-  subroutine session_advise_64(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_64(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance, dt
+    real(c_double), intent(in) :: tolerance, dt, length
     integer(c_int64_t), intent(in) :: steps
     real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
@@ -1084,13 +1085,13 @@ contains
     type(c_funptr) :: to_solver, to_before
 
     call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_advise(self%handle, tolerance, dt, steps, to_before, to_solver, c_loc(record), &
+    call finish(spar_session_advise(self%handle, tolerance, dt, steps, length, to_before, to_solver, c_loc(record), &
         size(advice, kind=c_int64_t), advice), self%handle, stat, errmsg)
   end subroutine session_advise_64
 
-  subroutine session_advise_32(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_32(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance, dt
+    real(c_double), intent(in) :: tolerance, dt, length
     integer(c_int), intent(in) :: steps
     real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
@@ -1099,7 +1100,7 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call self%advise(tolerance, dt, int(steps, c_int64_t), advice, before, solve, context, stat, errmsg)
+    call self%advise(tolerance, dt, int(steps, c_int64_t), length, advice, before, solve, context, stat, errmsg)
   end subroutine session_advise_32
 
   subroutine session_apply_advice(self, dt, stat, errmsg)
@@ -4278,11 +4279,13 @@ contains
     call take(c_table, table)
   end subroutine session_report_effects_32_single_3
 
-  subroutine session_advise_64_single_1(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_64_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(in) :: tolerance
     real(c_float), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(in) :: length
     real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4291,14 +4294,17 @@ contains
     character(*), intent(inout), optional :: errmsg
 
     call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        advice=advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+        length=real(length, c_double), advice=advice, before=before, solve=solve, context=context, stat=stat, &
+        errmsg=errmsg)
   end subroutine session_advise_64_single_1
 
-  subroutine session_advise_64_single_2(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_64_single_2(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: tolerance
     real(c_double), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
+    real(c_double), intent(in) :: length
     real(c_float), intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4308,16 +4314,18 @@ contains
     real(c_double), allocatable :: c_advice(:)
 
     allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_64(self, tolerance=tolerance, dt=dt, steps=steps, advice=c_advice, before=before, &
-        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call session_advise_64(self, tolerance=tolerance, dt=dt, steps=steps, length=length, advice=c_advice, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
     call take(c_advice, advice)
   end subroutine session_advise_64_single_2
 
-  subroutine session_advise_64_single_3(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_64_single_3(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(in) :: tolerance
     real(c_float), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
+    real(c_float), intent(in) :: length
     real(c_float), intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4328,15 +4336,18 @@ contains
 
     allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
     call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        advice=c_advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+        length=real(length, c_double), advice=c_advice, before=before, solve=solve, context=context, stat=stat, &
+        errmsg=errmsg)
     call take(c_advice, advice)
   end subroutine session_advise_64_single_3
 
-  subroutine session_advise_32_single_1(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_32_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(in) :: tolerance
     real(c_float), intent(in) :: dt
     integer(c_int), intent(in) :: steps
+    real(c_float), intent(in) :: length
     real(c_double), contiguous, intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4345,14 +4356,17 @@ contains
     character(*), intent(inout), optional :: errmsg
 
     call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        advice=advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+        length=real(length, c_double), advice=advice, before=before, solve=solve, context=context, stat=stat, &
+        errmsg=errmsg)
   end subroutine session_advise_32_single_1
 
-  subroutine session_advise_32_single_2(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_32_single_2(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: tolerance
     real(c_double), intent(in) :: dt
     integer(c_int), intent(in) :: steps
+    real(c_double), intent(in) :: length
     real(c_float), intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4362,16 +4376,18 @@ contains
     real(c_double), allocatable :: c_advice(:)
 
     allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_32(self, tolerance=tolerance, dt=dt, steps=steps, advice=c_advice, before=before, &
-        solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call session_advise_32(self, tolerance=tolerance, dt=dt, steps=steps, length=length, advice=c_advice, &
+        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
     call take(c_advice, advice)
   end subroutine session_advise_32_single_2
 
-  subroutine session_advise_32_single_3(self, tolerance, dt, steps, advice, before, solve, context, stat, errmsg)
+  subroutine session_advise_32_single_3(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
+      errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(in) :: tolerance
     real(c_float), intent(in) :: dt
     integer(c_int), intent(in) :: steps
+    real(c_float), intent(in) :: length
     real(c_float), intent(inout) :: advice(:)
     procedure(spar_before_step), optional :: before
     procedure(spar_fluid_solver), optional :: solve
@@ -4382,7 +4398,8 @@ contains
 
     allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
     call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        advice=c_advice, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+        length=real(length, c_double), advice=c_advice, before=before, solve=solve, context=context, stat=stat, &
+        errmsg=errmsg)
     call take(c_advice, advice)
   end subroutine session_advise_32_single_3
 

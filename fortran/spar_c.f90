@@ -1321,12 +1321,13 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_report_effects
 
-    function spar_session_advise(session, tolerance, dt, steps, before, solve, context, capacity, advice) bind(c) &
-        result(status)
+    function spar_session_advise(session, tolerance, dt, steps, length, before, solve, context, capacity, advice) &
+        bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: tolerance, dt
       integer(c_int64_t), value :: steps
+      real(c_double), value :: length
       type(c_funptr), value :: before, solve
       type(c_ptr), value :: context
       integer(c_int64_t), value :: capacity
@@ -1614,7 +1615,8 @@ module spar_c
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
-      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_COUNT = 10
+      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &
+      SPAR_ADVICE_COUNT = 11
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128, &

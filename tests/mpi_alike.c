@@ -93,9 +93,9 @@ static void trials(void **state) {
 
 static void advice(void **state) {
     (void)state;
-    static const char *const option[][2] = {
-        {"advise.dt", "keep"},   {"advise.nodes", "keep"},   {"advise.fidelity", "keep"}, {"advise.coupling", "keep"},
-        {"advise.horizon", "7"}, {"advise.fluid_cost", "7"}, {"coupling.target", "0.5"}};
+    static const char *const option[][2] = {{"advise.dt", "keep"},       {"advise.nodes", "keep"},
+                                            {"advise.fidelity", "keep"}, {"advise.coupling", "keep"},
+                                            {"advise.fluid_cost", "7"},  {"coupling.target", "0.5"}};
     enum { OPTIONS = sizeof option / sizeof *option };
     double a[SPAR_ADVICE_COUNT];
     for (int k = 0; k < OPTIONS + 3 && size > 1; k++) {
@@ -104,16 +104,16 @@ static void advice(void **state) {
         spar_session *s = c.session;
         if (k < OPTIONS) {
             OK(s, spar_session_set_option(s, option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a), option[k][0]);
+            differs(&c, spar_session_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a), option[k][0]);
         } else if (k == OPTIONS) {
-            differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+            differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
                     "tolerance (here ");
         } else if (k == OPTIONS + 1) {
-            differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+            differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
                     "steps (here ");
         } else {
             OK(s, spar_session_set_coupling(s, last ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 50));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
+            differs(&c, spar_session_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
                     "scheme of spar_session_set_coupling");
         }
         spar_session_destroy(&c.session);

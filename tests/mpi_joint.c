@@ -307,7 +307,7 @@ static void advised(void **state) {
             OK(s, spar_session_set_option(s, "advise.coupling", "keep"));
             OK(s, spar_session_set_option(s, "advise.fidelity", "keep"));
             OK(s, spar_session_set_option(s, "advise.fluid_cost", "1e-6")); /* not by a clock */
-            OK(s, spar_session_advise(s, 0.3, step, 8, drive_next, solve, &all, SPAR_ADVICE_COUNT, advice));
+            OK(s, spar_session_advise(s, 0.3, step, 8, 8 * step, drive_next, solve, &all, SPAR_ADVICE_COUNT, advice));
             OK(s, spar_session_apply_advice(s, NULL));
         }
     }

@@ -478,7 +478,7 @@ static void before_the_first_step(void **state) {
         OK(s, spar_session_set_option(s, "advise.fidelity", "keep"));
         OK(s, spar_session_start(s, 0.02, solve, both + k, iterations + k));
         OK(s, spar_session_try(s, 0.02, 8, NULL, solve, both + k, 0, SPAR_TRY_COUNT, tried[k]));
-        OK(s, spar_session_advise(s, 0.3, 0.02, 8, NULL, solve, both + k, SPAR_ADVICE_COUNT, advice[k]));
+        OK(s, spar_session_advise(s, 0.3, 0.02, 8, 8 * 0.02, NULL, solve, both + k, SPAR_ADVICE_COUNT, advice[k]));
         advance(both + k, STEPS, turns[k]);
     }
     assert_int_equal(iterations[0], iterations[1]);

@@ -168,7 +168,8 @@ static void same_advice(void **state) {
     go(&c, 3);
     go(&untried, 3);
     state_of(&c, held);
-    OK(c.session, spar_session_advise(c.session, 0.3, dt, STEPS, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.session,
+       spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
     same_bits(held, &c);
     OK(c.session, spar_member_get_advice(c.beam, &fidelity, &modes, &nodes, &points));
     advice[SPAR_ADVICE_COUNT] = fidelity;
@@ -254,14 +255,14 @@ static void failing_in_advice(void **state) {
         create(&c, rank, size);
         state_of(&c, held);
         c.bad_call = rank == bad ? 1 : 0;
-        int status = spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice);
+        int status = spar_session_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice);
         assert_true(status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_PEER);
         assert_non_null(strstr(spar_session_message(c.session), "77"));
         same_bits(held, &c);
         c.calls = 0;
         c.bad_call = rank == bad ? 300 : 0;
         c.good_call = 310;
-        OK(c.session, spar_session_advise(c.session, 0.3, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+        OK(c.session, spar_session_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
         same_on_all(advice, SPAR_ADVICE_COUNT);
         same_bits(held, &c);
         spar_session_destroy(&c.session);
@@ -318,7 +319,7 @@ static void bad_arguments(void **state) {
     told(spar_session_report_effects(s, dt, here ? 7 : 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
                                      table[0]),
          SPAR_ERR_ARGUMENT, bad, s, "multiple of 8");
-    told(spar_session_advise(s, here ? 2 : 0.05, dt, 8, before, solve, &c, SPAR_ADVICE_COUNT, advice),
+    told(spar_session_advise(s, here ? 2 : 0.05, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice),
          SPAR_ERR_ARGUMENT, bad, s, "tolerance");
     go(&c, 2);
     spar_session_destroy(&c.session);

@@ -460,7 +460,8 @@ static void trials(void **state) {
         OK(m.session, spar_session_try(m.session, dt, 16, NULL, mast_fluid, &m, 0, SPAR_TRY_COUNT, report));
         OK(m.session, spar_session_report_effects(m.session, dt, 16, NULL, mast_fluid, &m, SPAR_ROW_COUNT,
                                                   SPAR_COLUMN_COUNT, table[0]));
-        OK(m.session, spar_session_advise(m.session, 0.1, dt, 16, NULL, mast_fluid, &m, SPAR_ADVICE_COUNT, advice));
+        OK(m.session,
+           spar_session_advise(m.session, 0.1, dt, 32, 0.5, NULL, mast_fluid, &m, SPAR_ADVICE_COUNT, advice));
         OK(m.session, spar_member_get_motion(m.beam, before[1], NULL, NULL));
         assert_memory_equal(before[0], before[1], sizeof before[0]);
         OK(m.session, spar_session_apply_advice(m.session, &dt));

@@ -27,8 +27,8 @@ typedef struct answer {
 static void ask(scene_run *r, double tolerance, int64_t steps, answer *a) {
     spar_session *s = r->session;
     memset(a, 0, sizeof *a);
-    OK(s, spar_session_advise(s, tolerance, r->knobs.dt, steps, r->before, r->solve, r->context, SPAR_ADVICE_COUNT,
-                              a->advice));
+    OK(s, spar_session_advise(s, tolerance, r->knobs.dt, steps, (double)steps * r->knobs.dt, r->before, r->solve,
+                              r->context, SPAR_ADVICE_COUNT, a->advice));
     OK(s, spar_member_get_advice(r->member, &a->fidelity, &a->modes, &a->nodes, &a->points));
 }
 

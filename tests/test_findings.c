@@ -137,7 +137,7 @@ static void test_trials_without_inertia(void **state) {
         OK(s, spar_fluid_map(f));
         OK(s, spar_session_report_effects(s, 0.01, 8, NULL, press, f, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
         if (k == 0) {
-            OK(s, spar_session_advise(s, 0.1, 0.01, 8, NULL, press, f, SPAR_ADVICE_COUNT, advice));
+            OK(s, spar_session_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, press, f, SPAR_ADVICE_COUNT, advice));
         }
         spar_session_destroy(&s);
     }
@@ -422,7 +422,7 @@ static void test_clock_beyond_numbers(void **state) {
     for (size_t k = 0; k < sizeof dt / sizeof *dt; k++) {
         assert_int_equal(spar_session_try(s, dt[k], 8, NULL, nothing, NULL, 0, SPAR_TRY_COUNT, report),
                          SPAR_ERR_ARGUMENT);
-        assert_int_equal(spar_session_advise(s, 0.1, dt[k], 8, NULL, nothing, NULL, SPAR_ADVICE_COUNT, advice),
+        assert_int_equal(spar_session_advise(s, 0.1, dt[k], 8, 1, NULL, nothing, NULL, SPAR_ADVICE_COUNT, advice),
                          SPAR_ERR_ARGUMENT);
     }
     spar_session_destroy(&s);

@@ -175,7 +175,8 @@ static void test_advice(void **state) {
     OK(b.session, spar_session_set_option(b.session, "advise.coupling", "keep"));
     run(&a, 30);
     run(&b, 30);
-    OK(b.session, spar_session_advise(b.session, 0.05, step, 16, before, press, &b, SPAR_ADVICE_COUNT, advice));
+    OK(b.session,
+       spar_session_advise(b.session, 0.05, step, 16, 16 * step, before, press, &b, SPAR_ADVICE_COUNT, advice));
     same(&a, &b);
     OK(b.session, spar_session_apply_advice(b.session, &dt));
     NEAR(dt, step, 1e-12);
@@ -202,7 +203,8 @@ static void test_held_within(void **state) {
     int64_t nodes = 0;
     create(&c, 6, 8, 0.5);
     run(&c, 5);
-    OK(c.session, spar_session_advise(c.session, 0.05, step, 8, before, press, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.session,
+       spar_session_advise(c.session, 0.05, step, 8, 8 * step, before, press, &c, SPAR_ADVICE_COUNT, advice));
     OK(c.session, spar_session_apply_advice(c.session, NULL));
     OK(c.session, spar_member_get_count(c.member[0], &nodes));
     assert_int_equal(nodes, 12);
@@ -225,15 +227,16 @@ static void test_advice_of_fidelity(void **state) {
     (void)state;
     scene a, b;
     double advice[SPAR_ADVICE_COUNT];
-    create(&a, 4, 7, 0.5);
-    create(&b, 4, 7, 0.5);
+    create(&a, 7, 13, 0.5);
+    create(&b, 7, 13, 0.5);
     OK(b.session, spar_session_set_option(b.session, "advise.dt", "keep"));
     OK(b.session, spar_session_set_option(b.session, "advise.nodes", "keep"));
     OK(b.session, spar_session_set_option(b.session, "advise.coupling", "keep"));
     OK(b.session, spar_session_set_option(b.session, "advise.fluid_cost", "1e-6")); /* not timed: builds differ */
     run(&a, 10);
     run(&b, 10);
-    OK(b.session, spar_session_advise(b.session, 0.1, step, 16, before, press, &b, SPAR_ADVICE_COUNT, advice));
+    OK(b.session,
+       spar_session_advise(b.session, 0.1, step, 16, 16 * step, before, press, &b, SPAR_ADVICE_COUNT, advice));
     OK(b.session, spar_session_apply_advice(b.session, NULL));
     int got = SPAR_FIDELITY_EXACT;
     OK(b.session, spar_member_get_fidelity(b.member[0], &got, NULL));

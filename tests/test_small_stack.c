@@ -114,7 +114,7 @@ static void run(errand *e, spar_session *s, spar_member *blade, const char *file
     if (!e->advised) {
         return;
     }
-    DO(spar_session_advise(s, 0.5, 2e-3, 32, NULL, solve, &here, SPAR_ADVICE_COUNT, advice));
+    DO(spar_session_advise(s, 0.5, 2e-3, 32, 32 * 2e-3, NULL, solve, &here, SPAR_ADVICE_COUNT, advice));
 }
 
 static void *work(void *context) {

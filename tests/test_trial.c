@@ -120,7 +120,8 @@ static void test_goes_back_to_the_bit(void **state) {
                 OK(c.s, spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report));
                 OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
                                                     table[0]));
-                OK(c.s, spar_session_advise(c.s, 0.05, 0.01, 16, keep, press, &c, SPAR_ADVICE_COUNT, advice));
+                OK(c.s,
+                   spar_session_advise(c.s, 0.05, 0.01, 16, 16 * 0.01, keep, press, &c, SPAR_ADVICE_COUNT, advice));
                 c.fails = 7;
                 assert_int_equal(spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report),
                                  SPAR_ERR_USER);
@@ -294,7 +295,8 @@ static void advised(double tolerance, double added) {
     if (added > 0) {
         OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
     }
-    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, keep, press, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, STEPS * T / STEPS, keep, press, &c, SPAR_ADVICE_COUNT,
+                                advice));
     OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, &points));
     assert_true(advice[SPAR_ADVICE_ERROR] <= tolerance);
     assert_true(advice[SPAR_ADVICE_TRIALS] > 5);
@@ -376,13 +378,14 @@ static void test_copies_get_one_advice(void **state) {
         assert_int_equal(d.group[1], rows[k].groups - 1);
         free(d.group);
         free(d.known);
+        free(d.level);
         spar_session_destroy(&s);
     }
 }
 
 /* A body on a spring in a fluid that is nearly as heavy as explicit coupling can bear: m a + ma a + c v + k x = F sin.
    The explicit limit of order 1 is ma/m = 1/3, but for dt that the spring feels it is passed slowly: what is advised
-   has to stay by the steady answer for two hundred times the trials. */
+   has to stay by the steady answer for sixteen times the trials. */
 typedef struct heave {
     spar_fluid *f;
     double m, added, k, c, F, rate, rest, x[3], v[3], old[3];
@@ -426,7 +429,9 @@ static void test_advice_stays_stable(void **state) {
         double advice[SPAR_ADVICE_COUNT], largest = 0, t = 0, dt;
         spar_session *s = heave_session(&h);
         OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-6, 50));
-        OK(s, spar_session_advise(s, 1e-2, 0.02, 16, keep_heave, float_on, &h, SPAR_ADVICE_COUNT, advice));
+        /* the last one is near resonance: what its first-order fluid leaves grows for as long as trials look */
+        double length = ratio[i] < 1 ? 160 : 512 * 0.02;
+        OK(s, spar_session_advise(s, 1e-2, 0.02, 512, length, keep_heave, float_on, &h, SPAR_ADVICE_COUNT, advice));
         OK(s, spar_session_set_integrator(s, 0.9, (int)advice[SPAR_ADVICE_SUBSTEPS]));
         OK(s, spar_session_set_predictor(s, (int)advice[SPAR_ADVICE_PREDICTOR]));
         OK(s, spar_session_set_newton(s, 1e-15, advice[SPAR_ADVICE_NEWTON_RTOL], 50));
@@ -457,7 +462,7 @@ static void same_file(spar_session *s, const char *before, long size) {
 
 static void ask_advice(scene *c, double advice[SPAR_ADVICE_COUNT]) {
     OK(c->s, spar_session_set_option(c->s, "advise.fluid_cost", "1e-6"));
-    OK(c->s, spar_session_advise(c->s, 0.05, 0.01, 16, keep, press, c, SPAR_ADVICE_COUNT, advice));
+    OK(c->s, spar_session_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, SPAR_ADVICE_COUNT, advice));
 }
 
 /* Refused, and the session as it was to the bit: without advice, in a step, with other members than were advised on,
@@ -588,13 +593,13 @@ static void test_bad_input(void **state) {
     assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, -1, report), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
     assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, 1, -1, table[0]), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
+    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, 8 * 0.01, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
                      SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
+    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, 8 * 0.01, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
                      SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, NULL, NULL, SPAR_ADVICE_COUNT, advice),
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, 8 * 0.01, NULL, NULL, NULL, SPAR_ADVICE_COUNT, advice),
                      SPAR_ERR_UNSUPPORTED);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, NULL, press, &c, -1, advice), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, 8 * 0.01, NULL, press, &c, -1, advice), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_member_get_advice(c.b, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
     OK(c.s, spar_step_begin(c.s, 0.01));
     assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
@@ -718,7 +723,7 @@ static void test_asking(void **state) {
     double advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
     build(&c, 0);
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 30));
-    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, keep, ask, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, 8 * 0.01, keep, ask, &c, SPAR_ADVICE_COUNT, advice));
     OK(c.s, spar_session_try(c.s, 0.01, 8, keep, ask, &c, 0, SPAR_TRY_COUNT, report));
     spar_session_destroy(&c.s);
 }
@@ -759,7 +764,7 @@ static void test_loads_that_are_not_there(void **state) {
         OK(s, spar_fluid_create(beam, "air", &f));
         OK(s, spar_fluid_fail(f, why, "the solver has stopped"));
         assert_int_equal(spar_session_try(s, 0.01, 8, NULL, idle, NULL, 0, SPAR_TRY_COUNT, report), why);
-        int status = spar_session_advise(s, 0.1, 0.01, 8, NULL, idle, NULL, SPAR_ADVICE_COUNT, advice);
+        int status = spar_session_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, idle, NULL, SPAR_ADVICE_COUNT, advice);
         assert_true(status == why || status == SPAR_ERR_NUMERIC);
         spar_session_destroy(&s);
     }
@@ -789,7 +794,7 @@ static void test_fluid_that_does_not_repeat(void **state) {
     OK(s, spar_fluid_create(beam, "air", &f));
     OK(s, spar_fluid_set_force_nodes(f, 1, tip));
     OK(s, spar_fluid_map(f));
-    assert_int_equal(spar_session_advise(s, tolerance, 0.01, 8, NULL, whim, f, SPAR_ADVICE_COUNT, advice),
+    assert_int_equal(spar_session_advise(s, tolerance, 0.01, 8, 8 * 0.01, NULL, whim, f, SPAR_ADVICE_COUNT, advice),
                      SPAR_ERR_NUMERIC);
     const char *says = strstr(spar_session_message(s), "its own error is about ");
     assert_non_null(says);

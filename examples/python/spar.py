@@ -225,8 +225,8 @@ constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_D
 constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
 call spar_effect_name text row|int|value|
 call spar_session_report_effects int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]
-constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_COUNT=10
-call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
+constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_WORK=10 SPAR_ADVICE_COUNT=11
+call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| length|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
 call spar_session_apply_advice int session|session|value| dt|double|out|
 call spar_member_get_advice int member|member|value| fidelity|int|out| modes|int64_t|out| nodes_per_element|int|out| points|int|out|
 constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32 SPAR_AERO_SHEAR=64 SPAR_AERO_TOWER=128 SPAR_AERO_INFLOW=256 SPAR_AERO_STALL=512 SPAR_AERO_UNSTEADY=1024

@@ -281,10 +281,8 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
                             has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change
-     advise.horizon         >= 0, in s, default 0: how long the run will be that advice is for; if that is longer than
-                            the trials, their errors count for as much more as they grow with time
      advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
-                            what its nodes lead one to expect; where the solutions of the reference run take more than
+                            what its nodes lead one to expect; where those of the first run take more than
                             thirty times that, their time in powers of 900 of it */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The value of an option as a text that spar_session_set_option takes.
@@ -1321,11 +1319,11 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    of the host's is changed for good. They may use members and fluids in all ways, but not create or map them;
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
    accelerations from the balance of forces. All calls here are collective, between steps; before and
-   solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8, as runs are
-   compared at 8 times, evenly spread. The seconds of a run are the processor time of its steps, the fluid's included,
+   solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8. Runs are
+   compared at 128 times, evenly spread, between steps by cubics. The seconds of a run are the processor time of its steps, the fluid's included,
    on all ranks; advice goes by counted work, not by them. */
 
-/* What a trial says. Errors are roots of the mean square over members, places along them and the 8 times. */
+/* What a trial says. Errors are roots of the mean square over members, places along them and the times. */
 enum {
     SPAR_TRY_MOTION = 0,    /* change of the motion, relative to the motion beyond that of a fixed or driven root (else
                                since the beginning of the run) */
@@ -1405,13 +1403,17 @@ enum {
     SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
-    SPAR_ADVICE_COUNT = 10
+    SPAR_ADVICE_WORK = 10,         /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
+    SPAR_ADVICE_COUNT = 11
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
      tolerance: in, as SPAR_TRY_MOTION, in (0, 1)
-     dt, steps: in, the host's dt in s, and how many of it the trials last, a multiple of 8: what happens later is not
-           seen, but see the option advise.horizon
+     dt, steps: in, the host's dt in s, and how many of it the trials last, a multiple of 8
+     length: in, > 0: how long the run will be that the advice is for, s. If it is longer than the trials, their errors
+           count for as much more as they grow with time; SPAR_ERR_NUMERIC if the trials do not tell what comes after
+           them: the motion neither settles in them nor turns as often as a period does. What only happens later (a
+           gust) is not seen
      before, solve, context: in, as of spar_session_try, called with other dt too
      capacity: in, of the advice
      advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
@@ -1420,7 +1422,7 @@ enum {
    the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. What is kept as it
    is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is
    NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached. */
-SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps,
+SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);
 /* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of

@@ -102,7 +102,6 @@ static const spari_setting settings[] = {
     OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_ALIKE),
-    OPTION_REAL("advise.horizon", horizon, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
     OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
     STATE("numbers of members", member_count),
     STATE("numbers of joints", joint_count),

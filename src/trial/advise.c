@@ -35,13 +35,13 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const spari_reco
     return SPAR_OK;
 }
 
-/* Takes the plan if it is within the share and cheaper than the best so far. */
+/* Takes the plan if it is within the share, and cheaper than the best so far. taken: it is within. */
 static int consider(spari_advisor *d, const spari_plan *p, const spari_record *base, double share, spari_plan *best,
                     double *cost, int *taken) {
     double part, took;
     SPARI_TRY(spari_plan_distance(d, p, base, &part, &took));
-    *taken = part <= share && took < spari_rule.worth * *cost;
-    if (*taken) {
+    *taken = part <= share;
+    if (*taken && took < spari_rule.worth * *cost) {
         *best = *p;
         *cost = took;
     }
@@ -94,52 +94,58 @@ static int choose_points(spari_advisor *d, spari_plan *p, int g, const spari_rec
     return SPAR_OK;
 }
 
-static int choose_newton(spari_advisor *d, spari_plan *p, const spari_record *base) {
-    static const double tolerance[] = {1e-3, 1e-6, 1e-9};
-    for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++) {
-        double part, cost;
-        spari_plan q = *p;
-        q.newton = tolerance[k];
-        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
-        if (part <= spari_rule.newton) {
-            *p = q;
-            return SPAR_OK;
+static int is_elastic(const spari_plan *p, int g) {
+    return p->group[g].fidelity >= SPAR_FIDELITY_LINEAR;
+}
+
+static int choose_shapes(spari_advisor *d, spari_plan *p, const spari_record *base) {
+    for (int g = 0; g < d->groups; g++) {
+        if (!d->session->keep_fidelity) {
+            SPARI_TRY(choose_fidelity(d, p, g, base));
+        }
+        if (is_elastic(p, g)) {
+            SPARI_TRY(choose_points(d, p, g, base));
+            SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, base));
+        } else {
+            p->group[g].nodes = spari_plan_member(d, g)->per_element;
         }
     }
     return SPAR_OK;
 }
 
-static int is_elastic(const spari_plan *p, int g) {
-    return p->group[g].fidelity >= SPAR_FIDELITY_LINEAR;
+/* Whether the fluid that comes along is too heavy for the scheme, as the reference's coupling has found it. */
+static int is_too_heavy(const spari_advisor *d, int scheme) {
+    return (scheme == SPAR_COUPLING_EXPLICIT || scheme == SPAR_COUPLING_FIXED_POINT) &&
+           d->reference.report[SPAR_REPORT_ADDED_MASS] > spari_rule.heavy;
 }
 
-/* Each choice is measured against the run before it, all with the host's dt and the reference's coupling. */
-static int choose_structure(spari_advisor *d, const spari_plan *finest, spari_plan *chosen) {
-    const spar_session *s = d->session;
-    spari_plan p = *finest;
-    spari_record base;
-    p.steps = d->run.steps;
-    p.rtol = fmax(p.rtol, 1e-2 * d->tolerance);
-    int status = spari_plan_run(d, &p, 1, &base);
-    while (spari_plan_fails(status) && p.steps < finest->steps) {
-        spari_record_free(&base);
-        p.steps *= 2;
-        status = spari_plan_run(d, &p, 1, &base);
-    }
-    for (int g = 0; g < d->groups && status == SPAR_OK; g++) {
-        status = s->keep_fidelity ? SPAR_OK : choose_fidelity(d, &p, g, &base);
-        if (status == SPAR_OK && is_elastic(&p, g)) {
-            status = choose_points(d, &p, g, &base);
-            status = status == SPAR_OK && !s->keep_nodes ? choose_nodes(d, &p, g, &base) : status;
-        } else if (status == SPAR_OK) {
-            p.group[g].nodes = spari_plan_member(d, g)->per_element;
+/* A run that shapes are measured against: the reference's, with a coarser dt, Newton and coupling: explicit, if that
+   does not lead far away. */
+static int run_base(spari_advisor *d, spari_plan *p, spari_record *base) {
+    const spari_level *rough = spari_plan_rough(d);
+    double away = INFINITY;
+    *p = rough->plan;
+    p->newton = fmax(p->newton, spari_rule.rough_newton * d->tolerance);
+    if (!d->session->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
+        spari_plan q = *p;
+        q.scheme = SPAR_COUPLING_EXPLICIT;
+        SPARI_TRY(spari_plan_compare(d, &q, &rough->record, base, &away));
+        if (away <= spari_rule.rough) {
+            *p = q;
+            return SPAR_OK;
         }
+        spari_record_free(base);
     }
-    if (status == SPAR_OK) { /* Newton's tolerance by itself, against the same shapes */
-        spari_record_free(&base);
-        status = spari_plan_run(d, &p, 1, &base);
-        status = status == SPAR_OK ? choose_newton(d, &p, &base) : status;
-    }
+    p->rtol = d->session->keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
+    return spari_plan_run(d, p, 1, base);
+}
+
+/* Each choice is measured against it. */
+static SPARI_APART int choose_structure(spari_advisor *d, spari_plan *chosen) {
+    spari_plan p;
+    spari_record base = {0};
+    int status = run_base(d, &p, &base);
+    status = status == SPAR_OK ? choose_shapes(d, &p, &base) : status;
     spari_record_free(&base);
     *chosen = p;
     return spari_plan_fails(status) ? SPAR_OK : status;
@@ -148,19 +154,21 @@ static int choose_structure(spari_advisor *d, const spari_plan *finest, spari_pl
 /* ---- dt and coupling ---- */
 
 /* The coarsest steps that keep the tolerance, from grid place j on; *best improves if that is cheaper. */
-static int coarsest_steps(spari_advisor *d, spari_plan p, int *j, spari_outcome *best) {
-    const int finest = 2 * SPARI_FINEST, coarsest = (int)floor(2 * log2((double)SPARI_SAMPLES / (double)d->run.steps));
-    int good = finest + 1, bad = coarsest - 1, at = *j;
-    while (good - bad > 1 && d->known_count < spari_rule.tried) {
+static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *best) {
+    const int finest = 2 * SPARI_FINEST, coarsest = (int)floor(2 * log2((double)SPARI_MULTIPLE / (double)d->run.steps));
+    int good = finest + 1, bad = coarsest - 1, at = j, failed = 0; /* twice: finer steps will not help */
+    while (good - bad > 1 && d->known_count < spari_rule.tried && failed < 2) {
         spari_outcome o;
         p.steps = spari_plan_steps(d, at);
         SPARI_TRY(spari_plan_measure(d, &p, &o));
-        double ratio = isfinite(o.error) ? o.error / d->tolerance : 100;
-        if (spari_plan_is_good(d, &o)) {
+        double ratio = isfinite(o.error) ? o.error / d->tolerance : 4;
+        int is_good = spari_plan_is_good(d, &o);
+        failed += !isfinite(o.error);
+        if (is_good) {
             good = at;
-            if (o.cost < spari_rule.worth * best->cost) {
-                *best = o;
-                *j = at;
+            *best = o.cost < spari_rule.worth * best->cost ? o : *best;
+            if (ratio > 0.5 * spari_rule.good) {
+                return SPAR_OK; /* the next place has twice the error */
             }
         } else {
             bad = at;
@@ -169,8 +177,8 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int *j, spari_outcome 
             }
         }
         /* with an error of order 2 in dt the next place is near; then halve the gap */
-        int leap = (int)lround(log2(fmax(ratio, 1e-3)));
-        leap = leap > 0 ? leap : leap < 0 ? leap : spari_plan_is_good(d, &o) ? -1 : 1;
+        int leap = (int)lround(log2(fmax(ratio, 1e-2)));
+        leap = is_good ? (leap < -1 ? leap : -1) : (leap > 1 ? leap : 1);
         at += leap;
         if (at >= good || at <= bad) {
             at = (good + bad) / 2;
@@ -180,28 +188,45 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int *j, spari_outcome 
     return SPAR_OK;
 }
 
+/* Whether a scheme that iterates can be cheaper: it has two solutions in a step at least, and not fewer steps than a
+   tight coupling needs. */
+static int may_iterate(const spari_advisor *d, const spari_outcome *best) {
+    const double saved = 1.6;
+    return !isfinite(best->cost) || best->plan.scheme != SPAR_COUPLING_EXPLICIT ||
+           (double)best->plan.steps > saved * (double)spari_plan_least_steps(d);
+}
+
 static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     static const struct {
         int scheme, predictor;
         double rtol;
     } coupling[] = {{SPAR_COUPLING_EXPLICIT, 1, 0},       {SPAR_COUPLING_EXPLICIT, 2, 0},
-                    {SPAR_COUPLING_FIXED_POINT, 1, 1e-2}, {SPAR_COUPLING_FIXED_POINT, 2, 1e-2},
-                    {SPAR_COUPLING_IQN_ILS, 1, 1e-2},     {SPAR_COUPLING_IQN_ILS, 2, 1e-2},
-                    {SPAR_COUPLING_IQN_ILS, 1, 1e-3},     {SPAR_COUPLING_IQN_ILS, 1, 1e-5}};
+                    {SPAR_COUPLING_FIXED_POINT, 1, 1e-2}, {SPAR_COUPLING_IQN_ILS, 1, 1e-2},
+                    {SPAR_COUPLING_IQN_ILS, 2, 1e-2},     {SPAR_COUPLING_IQN_ILS, 1, 1e-3}};
+    enum { SCHEMES = sizeof coupling / sizeof *coupling, LOOSE = SCHEMES - 1 };
     const spar_session *s = d->session;
-    int j = 0, kept = s->keep_coupling;
-    for (size_t k = 0; k < (kept ? 2 : sizeof coupling / sizeof *coupling); k++) {
+    int kept = s->keep_coupling;
+    for (size_t k = 0; k < (kept ? 2 : SCHEMES); k++) {
         spari_plan p = *structure;
         p.scheme = kept ? s->scheme : coupling[k].scheme;
         p.rtol = kept || coupling[k].rtol <= 0 ? s->coupling_rtol : coupling[k].rtol;
         p.predictor = coupling[k].predictor;
+        if (!kept && is_too_heavy(d, p.scheme)) {
+            continue;
+        }
+        if (p.scheme != SPAR_COUPLING_EXPLICIT && !kept &&
+            (!may_iterate(d, best) || (k == LOOSE && isfinite(best->cost)))) {
+            continue;
+        }
         if (s->keep_dt) {
             spari_outcome o;
             p.steps = d->run.steps;
             SPARI_TRY(spari_plan_measure(d, &p, &o));
             *best = spari_plan_is_good(d, &o) && o.cost < best->cost ? o : *best;
         } else {
-            SPARI_TRY(coarsest_steps(d, p, &j, best));
+            int64_t from = isfinite(best->cost) && p.scheme == SPAR_COUPLING_EXPLICIT ? best->plan.steps
+                                                                                      : spari_plan_least_steps(d);
+            SPARI_TRY(coarsest_steps(d, p, spari_plan_grid(d, from), best));
         }
     }
     return SPAR_OK;
@@ -283,23 +308,28 @@ static const struct {
              {coarser, more_nodes},     {finer, lower_fidelity},    {finer, fewer_points}, {coarser, coarser},
              {fewer_nodes, fewer_nodes}};
 
+/* Whether asking on can pay: what it has cost is less than a part of what it has saved. */
+static int pays(const spari_advisor *d, const spari_outcome *best) {
+    double runs = fmax(d->longer, spari_rule.least_runs), now = d->now > 0 ? d->now : best->cost;
+    return d->known_count < spari_rule.tried &&
+           d->spent + best->cost <= spari_rule.worth_asking * runs * (now - best->cost);
+}
+
 /* Moves as long as one pays and keeps the tolerance. */
 static int improve(spari_advisor *d, spari_outcome *best) {
-    int rounds = d->groups > 0 ? d->groups : 1, moved = 1;
-    while (moved && d->known_count < spari_rule.tried) {
-        moved = 0;
-        for (size_t k = 0; k < sizeof moves / sizeof *moves && d->known_count < spari_rule.tried; k++) {
-            for (int g = 0; g < rounds; g++) {
-                spari_plan p = best->plan;
-                spari_outcome o;
-                if (!moves[k].first(d, &p, g) || (moves[k].second && !moves[k].second(d, &p, g))) {
-                    continue;
-                }
-                SPARI_TRY(spari_plan_measure(d, &p, &o));
-                if (spari_plan_is_good(d, &o) && o.cost < spari_rule.worth * best->cost) {
-                    *best = o;
-                    moved = 1;
-                }
+    enum { MOVES = sizeof moves / sizeof *moves };
+    int rounds = d->groups > 0 ? d->groups : 1, idle = 0; /* moves since the last that paid */
+    for (int k = 0; idle < MOVES && pays(d, best); k = (k + 1) % MOVES, idle++) {
+        for (int g = 0; g < rounds && pays(d, best); g++) {
+            spari_plan p = best->plan;
+            spari_outcome o;
+            if (!moves[k].first(d, &p, g) || (moves[k].second && !moves[k].second(d, &p, g))) {
+                continue;
+            }
+            SPARI_TRY(spari_plan_measure(d, &p, &o));
+            if (spari_plan_is_good(d, &o) && o.cost < spari_rule.worth * best->cost) {
+                *best = o;
+                idle = 0;
             }
         }
     }
@@ -339,16 +369,34 @@ static int find_stable(spari_advisor *d, spari_outcome *best) {
                       SPARI_ADVISE);
 }
 
-/* The finest settings known not to fail, where the shares left nothing: they are tried as they are. */
-static int search_plans(spari_advisor *d, const spari_plan *present, spari_outcome *now, spari_outcome *best) {
-    spari_plan finest, structure;
-    SPARI_TRY(spari_plan_reference(d, present, &finest));
-    SPARI_TRY(spari_plan_measure(d, present, now));
-    SPARI_TRY(choose_structure(d, &finest, &structure));
-    SPARI_TRY(choose_time(d, &structure, best));
-    if (!isfinite(best->cost)) {
-        SPARI_TRY(choose_time(d, &finest, best));
+/* The session as it is, measured when there is something to measure it against. */
+static int judge_present(spari_advisor *d, const spari_plan *present, const spari_record *run, spari_outcome *now) {
+    *now = (spari_outcome){*present, INFINITY, INFINITY};
+    return run->value ? spari_plan_judge(d, run, now) : SPAR_OK;
+}
+
+/* Coupling and dt, with a Newton that is looser first. Where the shares of the structure left nothing the reference's
+   settings are tried as they are. */
+static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan *finest, spari_outcome *best) {
+    static const double newton[] = {1e-3, 1e-6};
+    for (size_t k = 0; k < sizeof newton / sizeof *newton && !isfinite(best->cost); k++) {
+        structure.newton = newton[k];
+        SPARI_TRY(choose_time(d, &structure, best));
     }
+    return isfinite(best->cost) ? SPAR_OK : choose_time(d, finest, best);
+}
+
+static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present, spari_outcome *now,
+                                    spari_outcome *best) {
+    spari_plan finest, structure;
+    spari_record run = {0};
+    int status = spari_plan_try_present(d, present, &run);
+    status = status == SPAR_OK ? spari_plan_reference(d, present, &finest) : status;
+    status = status == SPAR_OK ? judge_present(d, present, &run, now) : status;
+    spari_record_free(&run);
+    SPARI_TRY(status);
+    SPARI_TRY(choose_structure(d, &structure));
+    SPARI_TRY(choose_rest(d, structure, &finest, best));
     if (spari_plan_is_good(d, now) && now->cost < best->cost) {
         *best = *now;
     }
@@ -409,6 +457,7 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_COST] = isfinite(now->cost) && now->cost > 0 ? best->cost / now->cost : -1,
         [SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1,
         [SPAR_ADVICE_TRIALS] = d->trials,
+        [SPAR_ADVICE_WORK] = d->now > 0 ? d->spent / d->now : -1,
     };
     memcpy(advice, made, sizeof made);
     spari_advised *advised = d->session->own->advised;
@@ -418,28 +467,36 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
 }
 
 static int check_request(spar_session *s, double tolerance, const spari_run *run, int64_t capacity) {
+    const double most = 1e300;
     SPARI_TRY(spari_trial_check(s, SPARI_ADVISE, run));
     SPARI_REQUIRE(s, tolerance > 0 && tolerance < 1, SPAR_ERR_ARGUMENT, "%s: the tolerance is %g; give one in (0, 1)",
                   SPARI_ADVISE, tolerance);
+    SPARI_REQUIRE(s, run->length > 0 && run->length <= most, SPAR_ERR_ARGUMENT,
+                  "%s: the length is %g; say how many seconds the run will last that the advice is for", SPARI_ADVISE,
+                  run->length);
     SPARI_TRY(spari_need_capacity(s, SPARI_ADVISE, capacity));
     SPARI_REQUIRE(s, run->solve, SPAR_ERR_UNSUPPORTED,
                   "%s: without a fluid solver there are no trials; give the one that spar_step is given", SPARI_ADVISE);
     return SPAR_OK;
 }
 
-int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
-                        spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
+int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
+                        spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
+                        double *advice) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
     spar_session *s = session;
-    spari_advisor d = {.session = s,
-                       .run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context},
-                       .tolerance = tolerance};
+    spari_advisor d = {
+        .session = s,
+        .run = {.dt = dt, .length = length, .steps = steps, .before = before, .solve = solve, .context = context},
+        .tolerance = tolerance,
+        .goals = SPARI_GOAL(SPARI_OF_MOTION)};
     spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     spari_remake **room = NULL;
+    d.longer = fmax(1, length / (dt * (double)steps));
     int status = spari_plan_groups(&d);
     status = status == SPAR_OK ? make_remakes(&d, &room) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
@@ -456,7 +513,8 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     free_room(&d, room);
     free(d.group);
     free(d.known);
-    spari_record_free(&d.reference);
+    spari_plan_forget(&d);
+    free(d.level);
     return spari_named(s, SPARI_ADVISE, status);
 }
 

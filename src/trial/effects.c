@@ -20,7 +20,12 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    spari_run run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
+    spari_run run = {.dt = dt,
+                     .steps = steps,
+                     .before = before,
+                     .solve = solve,
+                     .context = context,
+                     .goals = SPARI_GOAL(SPARI_OF_REACTION)};
     spari_record record = {0};
     spari_wish wish = {0};
     int status = spari_trial_check(s, __func__, &run);
@@ -39,8 +44,8 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     spari_wish_free(&wish);
     if (status == SPAR_OK) {
         const double made[SPAR_TRY_COUNT] = {
-            [SPAR_TRY_MOTION] = compare ? spari_record_motion(&record, s->own->kept) : 0,
-            [SPAR_TRY_REACTION] = compare ? spari_record_reaction(&record, s->own->kept) : 0,
+            [SPAR_TRY_MOTION] = compare ? spari_record_distance(&record, s->own->kept, SPARI_OF_MOTION) : 0,
+            [SPAR_TRY_REACTION] = compare ? spari_record_distance(&record, s->own->kept, SPARI_OF_REACTION) : 0,
             [SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->own->kept) : 0,
             [SPAR_TRY_SECONDS] = record.seconds,
             [SPAR_TRY_SOLUTIONS] = (double)record.solutions,
@@ -331,8 +336,8 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
         leave_row_out(s, r, &wish);
         status = spari_trial_run(s, run, &wish, &record);
         if (status == SPAR_OK && k == 0) {
-            out[SPAR_COLUMN_MOTION] = spari_record_motion(&record, base);
-            out[SPAR_COLUMN_REACTION] = spari_record_reaction(&record, base);
+            out[SPAR_COLUMN_MOTION] = spari_record_distance(&record, base, SPARI_OF_MOTION);
+            out[SPAR_COLUMN_REACTION] = spari_record_distance(&record, base, SPARI_OF_REACTION);
             if (r >= SPAR_ROW_FLUID_MOMENT && r <= SPAR_ROW_FLUID_HISTORY) {
                 out[SPAR_COLUMN_SIZE] = spari_record_load(&record, base);
             }
@@ -407,7 +412,12 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    spari_run run = {.dt = dt, .steps = steps, .before = before, .solve = solve, .context = context};
+    spari_run run = {.dt = dt,
+                     .steps = steps,
+                     .before = before,
+                     .solve = solve,
+                     .context = context,
+                     .goals = SPARI_GOAL(SPARI_OF_REACTION)};
     double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     int status = spari_trial_check(s, __func__, &run);
     status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_rows) : status;

@@ -38,7 +38,8 @@ int spari_plan_groups(spari_advisor *d) {
     const spar_session *s = d->session;
     d->group = spari_zalloc(s->member_count, sizeof *d->group);
     d->known = spari_zalloc(SPARI_KNOWN, sizeof *d->known);
-    SPARI_REQUIRE(d->session, d->group && d->known, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
+    d->level = spari_zalloc(SPARI_LEVELS, sizeof *d->level);
+    SPARI_REQUIRE(d->session, d->group && d->known && d->level, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         d->group[k] = -1;
@@ -77,8 +78,7 @@ void spari_plan_settings(const spari_plan *p, double *values) {
 }
 
 int64_t spari_plan_steps(const spari_advisor *d, int j) {
-    double n = (double)d->run.steps / SPARI_SAMPLES * pow(2, 0.5 * j);
-    return SPARI_SAMPLES * (int64_t)fmax(1, floor(n + 0.5));
+    return (int64_t)fmax(SPARI_MULTIPLE, floor((double)d->run.steps * pow(2, 0.5 * j) + 0.5));
 }
 
 int spari_plan_grid(const spari_advisor *d, int64_t steps) {
@@ -110,6 +110,8 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
     run.dt = d->run.dt * (double)d->run.steps / (double)p->steps;
     int status = spari_trial_run(s, &run, &wish, record);
     d->trials++;
+    d->spent += record->work + d->fluid * (double)record->solutions;
+    d->solutions += d->weighed ? 0 : record->solutions;
     spari_wish_free(&wish);
     return status;
 }
@@ -160,11 +162,34 @@ double spari_plan_cost(const spari_advisor *d, const spari_record *r) {
     return r->work + d->fluid * (double)r->solutions;
 }
 
-/* How much larger an error is over the time that the host will run: errors of phase grow with time. */
-static double later(const spari_advisor *d, const spari_record *r, const spari_record *base) {
-    const double doubt = 2; /* of what was not seen, as against what was */
-    double longer = d->session->horizon / (d->run.dt * (double)d->run.steps);
-    return longer > 1 ? 1 + doubt * (spari_record_growth(r, base, longer) - 1) : 1;
+/* Of a against b, over a run so many times as long; on all ranks what rank 0 finds, to whose bits they decide. */
+static int compare_runs(spari_advisor *d, const spari_record *a, const spari_record *b, double longer, double *error) {
+    spar_session *s = d->session;
+    double found[2] = {spari_comm_rank(s->comm) == 0 ? spari_record_error(a, b, d->goals, longer) : 0, 0};
+    SPARI_TRY(spari_comm_sum(s->comm, found, 1, SPAR_OK, s->message, sizeof s->message));
+    *error = found[0];
+    return SPAR_OK;
+}
+
+/* Whether dt resolves what carries the answer. */
+static int resolves(const spari_advisor *d, const spari_plan *p) {
+    return d->shortest <= 0 || d->shortest * (double)p->steps >= spari_rule.resolves;
+}
+
+static void remember(spari_advisor *d, const spari_outcome *o) {
+    tell_plan(d, &o->plan, o->error, o->cost);
+    if (d->known_count < SPARI_KNOWN) {
+        d->known[d->known_count++] = *o;
+    }
+}
+
+int spari_plan_judge(spari_advisor *d, const spari_record *r, spari_outcome *out) {
+    double error;
+    SPARI_TRY(compare_runs(d, r, &d->reference, d->longer, &error));
+    out->error = error + d->reference_error;
+    out->cost = spari_plan_cost(d, r);
+    remember(d, out);
+    return SPAR_OK;
 }
 
 int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out) {
@@ -174,49 +199,92 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
             return SPAR_OK;
         }
     }
-    spari_record r;
+    spari_record r = {0};
     *out = (spari_outcome){*p, INFINITY, INFINITY};
+    if (!resolves(d, p)) {
+        return SPAR_OK; /* never advised, whatever a trial would say */
+    }
     int status = spari_plan_run(d, p, 1, &r);
     if (status == SPAR_OK) {
-        out->error = spari_record_motion(&r, &d->reference) * later(d, &r, &d->reference) + d->reference_error;
-        out->cost = spari_plan_cost(d, &r);
+        status = spari_plan_judge(d, &r, out);
+    } else if (spari_plan_fails(status)) {
+        remember(d, out);
+        status = SPAR_OK;
     }
     spari_record_free(&r);
-    if (status != SPAR_OK && !spari_plan_fails(status)) {
-        return status;
-    }
-    tell_plan(d, p, out->error, out->cost);
-    if (d->known_count < SPARI_KNOWN) {
-        d->known[d->known_count++] = *out;
-    }
-    return SPAR_OK;
+    return status;
 }
 
 int spari_plan_is_good(const spari_advisor *d, const spari_outcome *o) {
     return o->error <= spari_rule.good * d->tolerance;
 }
 
+int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record *base, spari_record *r, double *part) {
+    int status = spari_plan_run(d, p, 1, r);
+    *part = INFINITY;
+    if (status == SPAR_OK) {
+        status = compare_runs(d, r, base, d->longer, part);
+        *part /= d->tolerance;
+    }
+    tell_plan(d, p, *part * d->tolerance, spari_plan_cost(d, r));
+    return spari_plan_fails(status) ? SPAR_OK : status;
+}
+
 int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double *part, double *cost) {
     spari_record r;
-    int status = spari_plan_run(d, p, 1, &r);
-    *part = status == SPAR_OK ? spari_record_motion(&r, base) * later(d, &r, base) / d->tolerance : INFINITY;
+    int status = spari_plan_compare(d, p, base, &r, part);
     *cost = spari_plan_cost(d, &r);
-    tell_plan(d, p, *part * d->tolerance, *cost);
     spari_record_free(&r);
-    return spari_plan_fails(status) ? SPAR_OK : status;
+    return status;
 }
 
 /* ---- the reference ---- */
 
-static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level) {
+enum { MOST_MORE = 10 }; /* nodes that the reference has beyond those there are */
+
+/* What a solution of the fluid counts for, by the first run that comes to its end. */
+static void weigh_fluid(spari_advisor *d, const spari_record *r) {
+    spar_session *s = d->session;
+    char text[SPARI_MESSAGE_SIZE];
+    if (d->weighed) {
+        return;
+    }
+    d->fluid = spari_cost_solution(s, r->fluid, r->fluid_seconds, r->solutions);
+    d->spent += d->fluid * (double)d->solutions;
+    d->weighed = 1;
+    d->run.timed = 0;
+    if (s->log) {
+        (void)snprintf(text, sizeof text,
+                       "%s: one solution of the fluid is counted as %.4g (%.4g by its nodes), one second as %.4g",
+                       SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
+        spari_log(s, SPAR_LOG_INFO, text);
+    }
+}
+
+int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_record *record) {
+    d->run.timed = d->session->fluid_cost <= 0;
+    int status = spari_plan_run(d, present, 1, record);
+    if (status == SPAR_OK) {
+        weigh_fluid(d, record);
+        d->now = spari_plan_cost(d, record);
+    } else if (spari_plan_fails(status)) {
+        tell_plan(d, present, INFINITY, 0);
+        spari_record_free(record);
+        status = SPAR_OK;
+    }
+    return status;
+}
+
+/* level 0: with the host's dt; more: nodes beyond those there are. */
+static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     const spar_session *s = d->session;
     spari_plan p = *present;
-    p.newton = fmin(p.newton, spari_rule.reference_newton);
+    p.newton = fmax(spari_rule.reference_newton * d->tolerance, 1e-12);
     p.substeps = 1;
     p.predictor = 1;
     if (!s->keep_coupling) {
         p.scheme = SPAR_COUPLING_IQN_ILS;
-        p.rtol = spari_rule.reference_rtol;
+        p.rtol = fmax(spari_rule.reference_rtol * d->tolerance, 1e-10);
     }
     p.steps = s->keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
     for (int g = 0; g < d->groups; g++) {
@@ -226,101 +294,265 @@ static spari_plan reference_plan(const spari_advisor *d, const spari_plan *prese
             b->modes = 0;
         }
         if (!s->keep_nodes) {
-            b->nodes = b->nodes + 2 + level < SPARI_MAX_NODES ? b->nodes + 2 + level : SPARI_MAX_NODES;
+            b->nodes = b->nodes + more < SPARI_MAX_NODES ? b->nodes + more : SPARI_MAX_NODES;
         }
     }
     return p;
 }
 
-/* What a solution of the fluid counts for, by the reference runs. */
-static void weigh_fluid(spari_advisor *d, double seconds, int64_t solutions) {
-    spar_session *s = d->session;
-    char text[SPARI_MESSAGE_SIZE];
-    d->fluid = spari_cost_solution(s, d->reference.fluid, seconds, solutions);
-    if (s->log) {
-        (void)snprintf(text, sizeof text,
-                       "%s: one solution of the fluid is counted as %.4g (%.4g by its nodes), one second as %.4g",
-                       SPARI_ADVISE, d->fluid, d->reference.fluid, spari_rule.price.second);
-        spari_log(s, SPAR_LOG_INFO, text);
+/* Runs it as the next level, which stays empty where it fails. */
+static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
+    spari_level *l = &d->level[d->levels];
+    l->plan = *p;
+    int status = spari_plan_run(d, p, 1, &l->record);
+    *made = status == SPAR_OK;
+    if (*made) {
+        d->levels++;
+    } else {
+        spari_record_free(&l->record);
     }
+    return spari_plan_fails(status) ? SPAR_OK : status;
+}
+
+/* The coarsest level there may be. */
+static int first_level(const spari_advisor *d) {
+    int level = d->session->keep_dt ? 0 : -SPARI_COARSEST;
+    while (level < 0 && spari_plan_steps(d, 2 * level) < 2 * SPARI_MULTIPLE) {
+        level++;
+    }
+    return level;
+}
+
+/* What a level is run with where it is for comparisons only. */
+static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
+    spari_plan p = reference_plan(d, present, level, more);
+    p.newton = fmax(p.newton, spari_rule.rough_newton * d->tolerance);
+    p.rtol = d->session->keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
+    return p;
+}
+
+/* How many more nodes the reference has: until two more change little; *left: so much. The coarsest dt, coupling and
+   Newton will do for that. */
+static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
+    spari_record few = {0}, many = {0};
+    int status = SPAR_OK, last = d->session->keep_dt ? 0 : SPARI_FINEST;
+    double part = INFINITY;
+    *left = 0;
+    spari_plan p = rough_plan(d, present, *level, *more);
+    for (; (status = spari_plan_run(d, &p, 1, &few)) != SPAR_OK; p = rough_plan(d, present, ++*level, *more)) {
+        spari_record_free(&few);
+        tell_plan(d, &p, INFINITY, 0);
+        SPARI_REQUIRE(d->session, spari_plan_fails(status) && *level < last, status,
+                      "%s: no reference run comes to its end: %.400s", SPARI_ADVISE, d->session->message);
+    }
+    weigh_fluid(d, &few);
+    while (status == SPAR_OK && *more < MOST_MORE && part > spari_rule.reference_nodes) {
+        const spari_plan q = rough_plan(d, present, *level, *more + 2);
+        if (memcmp(&q, &p, sizeof p) == 0) {
+            break; /* there are no more */
+        }
+        p = q;
+        status = spari_plan_compare(d, &p, &few, &many, &part);
+        *left = isfinite(part) ? part * d->tolerance : 0;
+        *more += part > spari_rule.reference_nodes && isfinite(part) ? 2 : 0;
+        spari_record_free(&few);
+        few = many;
+        many = (spari_record){0};
+        part = isfinite(part) ? part : 0;
+    }
+    spari_record_free(&few);
+    return status;
+}
+
+/* The error that is left in the last level, by how the changes fall; *extrapolate: the part of the last change that is
+   still to come, 0: not known. */
+static double left_in_levels(const spari_advisor *d, double *extrapolate) {
+    double change = d->level[d->levels - 1].change, before = d->levels > 2 ? d->level[d->levels - 2].change : 0,
+           rate = before > 0 && change > 0 ? before / change : 2;
+    *extrapolate = 0;
+    if (before > 0 && rate >= spari_rule.regular[0] && rate <= spari_rule.regular[1]) {
+        *extrapolate = 1 / (fmin(rate, 4) - 1);
+        return spari_rule.believed * *extrapolate * change * d->tolerance;
+    }
+    return change / (fmin(fmax(rate, 1.25), 4) - 1) * d->tolerance;
+}
+
+static double error_of_steps(const spari_advisor *d) {
+    double part;
+    return d->levels > 1 ? left_in_levels(d, &part) : INFINITY;
+}
+
+static int copy_reference(spari_advisor *d) {
+    double part = 0;
+    spari_level *l = &d->level[d->levels - 1];
+    if (d->levels > 1) {
+        (void)left_in_levels(d, &part);
+    }
+    d->reference = l->record;
+    d->reference.value = spari_copy(l->record.value, spari_record_size(&l->record));
+    d->reference.recent = spari_copy(l->record.recent, spari_record_size(&l->record) / SPARI_SAMPLES * 4);
+    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = NULL;
+    int status = d->reference.value && d->reference.recent
+                     ? SPAR_OK
+                     : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
+    SPARI_TRY(spari_comm_agree(d->session->comm, status, d->session->message, sizeof d->session->message));
+    if (part > 0) {
+        spari_record_extrapolate(&d->reference, &d->level[d->levels - 2].record, part);
+    }
+    return SPAR_OK;
+}
+
+void spari_plan_forget(spari_advisor *d) {
+    spari_record_free(&d->reference);
+    for (int k = 0; k < d->levels; k++) {
+        spari_record_free(&d->level[k].record);
+    }
+    d->levels = 0;
+}
+
+/* Halves dt until the error that is left in the steps and the one in the nodes are a small part of the tolerance, and
+   until what carries the answer is resolved. */
+static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
+    int made, keeps = d->session->keep_dt, ends = keeps ? level : SPARI_FINEST;
+    double goal = spari_rule.reference_ends * d->tolerance;
+    d->reference_error = INFINITY;
+    for (; level <= ends && d->levels < SPARI_LEVELS && d->reference_error > goal; level++) {
+        const spari_plan p = reference_plan(d, present, level, more);
+        SPARI_TRY(run_level(d, &p, &made));
+        spari_level *l = d->levels > 0 ? &d->level[d->levels - 1] : d->level;
+        if (made && d->levels == 1) {
+            d->reference_error = keeps ? nodes : INFINITY;
+        } else if (made) {
+            SPARI_TRY(compare_runs(d, &l->record, &d->level[d->levels - 2].record, d->longer, &l->change));
+            l->change /= d->tolerance;
+            d->reference_error = error_of_steps(d) + nodes;
+        }
+        tell_plan(d, &p, made ? l->change * d->tolerance : INFINITY, made ? spari_plan_cost(d, &l->record) : 0);
+    }
+    return SPAR_OK;
+}
+
+/* What trials of this time can say of the run. */
+static int check_reference(spari_advisor *d) {
+    const spar_session *s = d->session;
+    double T = d->run.dt * (double)d->run.steps, said[3] = {0};
+    SPARI_REQUIRE(
+        s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
+        "%s: no reference to compare with: with dt/%.3g and finer nodes its own error is about %.3g, and must "
+        "be below %.3g to judge a tolerance of %g; give a larger one, begin with a smaller dt, or look "
+        "whether the fluid solver is repeatable",
+        SPARI_ADVISE, (double)d->level[d->levels - 1].plan.steps / (double)d->run.steps, d->reference_error,
+        spari_rule.reference_most * d->tolerance, d->tolerance);
+    if (spari_comm_rank(s->comm) == 0) {
+        said[0] = spari_record_shortest(&d->reference, d->tolerance);
+        said[1] = d->longer > spari_rule.foreseen ? spari_record_vouches(&d->reference) : 1;
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, said, 2, SPAR_OK, d->session->message, sizeof d->session->message));
+    d->shortest = said[0];
+    SPARI_REQUIRE(s, said[1] > 0, SPAR_ERR_NUMERIC,
+                  "%s: trials of %.4g s do not tell what a run of %.4g s does: the motion neither settles in them nor "
+                  "turns as often as a period does; give more steps, or the length %.4g",
+                  SPARI_ADVISE, T, T * d->longer, T);
+    return SPAR_OK;
 }
 
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
-    spar_session *s = d->session;
-    double change = 0, before = 0, seconds = 0;
-    int64_t solutions = 0;
-    d->reference_error = INFINITY;
-    d->run.timed = s->fluid_cost <= 0;
-    int ends = s->keep_dt && s->keep_nodes ? 0 : s->keep_dt ? 2 : SPARI_FINEST;
-    for (int level = 0; level <= ends && d->reference_error > spari_rule.reference_ends * d->tolerance; level++) {
-        spari_record finer;
-        spari_plan p = reference_plan(d, present, level);
-        int status = spari_plan_run(d, &p, 1, &finer);
-        if (status != SPAR_OK) {
-            spari_record_free(&finer);
-            if (!spari_plan_fails(status)) {
-                return status;
-            }
-            tell_plan(d, &p, INFINITY, 0);
-            continue; /* too coarse, perhaps */
-        }
-        seconds += finer.fluid_seconds, solutions += finer.solutions;
-        before = change;
-        change = d->reference.motion ? spari_record_motion(&d->reference, &finer) : 0;
-        if (d->reference.motion) { /* what is left: the changes to come, a geometric series */
-            double rate = before > 0 && change > 0 ? fmin(fmax(before / change, 1.25), 4) : 2;
-            d->reference_error = change / (rate - 1) * later(d, &d->reference, &finer);
-        } else if (ends == 0) {
-            d->reference_error = 0;
-        }
-        tell_plan(d, &p, change, spari_plan_cost(d, &finer));
-        spari_record_free(&d->reference);
-        d->reference = finer;
-        *finest = p;
-    }
-    d->run.timed = 0;
-    weigh_fluid(d, seconds, solutions);
-    SPARI_REQUIRE(s, d->reference.motion, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
-                  SPARI_ADVISE, s->message);
-    SPARI_REQUIRE(
-        s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
-        "%s: no reference to compare with: with dt/%lld and finer nodes its own error is about %.3g, and must "
-        "be below %.3g to judge a tolerance of %g; give a larger one, begin with a smaller dt, or look "
-        "whether the fluid solver is repeatable",
-        SPARI_ADVISE, (long long)(finest->steps / d->run.steps), d->reference_error,
-        spari_rule.reference_most * d->tolerance, d->tolerance);
+    int level = first_level(d), more = 2;
+    double nodes;
+    SPARI_TRY(reference_nodes(d, present, &level, &more, &nodes));
+    SPARI_TRY(refine(d, present, level, more, nodes));
+    SPARI_TRY(copy_reference(d));
+    SPARI_TRY(check_reference(d));
+    *finest = d->level[d->levels - 1].plan;
     return SPAR_OK;
+}
+
+/* What a level's own steps leave of error, in tolerances. */
+static double error_of_level(const spari_advisor *d, int k) {
+    double after = 0, part = 0, last = d->levels > 1 ? left_in_levels(d, &part) / d->tolerance : 0;
+    for (int i = k + 1; i < d->levels; i++) {
+        after += d->level[i].change;
+    }
+    return after + (part > 0 ? last / spari_rule.believed : last);
+}
+
+const spari_level *spari_plan_rough(const spari_advisor *d) {
+    int k = 0;
+    while (k < d->levels - 1 && error_of_level(d, k) > spari_rule.rough) {
+        k++;
+    }
+    return &d->level[k];
+}
+
+int64_t spari_plan_least_steps(const spari_advisor *d) {
+    double resolving = d->shortest > 0 ? ceil(spari_rule.resolves / d->shortest) : 0;
+    for (int k = 0; k < d->levels; k++) {
+        double error = error_of_level(d, k);
+        if (error <= spari_rule.good) { /* of order 2 */
+            double steps = (double)d->level[k].plan.steps * sqrt(fmax(error, 0.25) / spari_rule.good);
+            return (int64_t)fmax(steps, resolving);
+        }
+    }
+    return (int64_t)fmax((double)d->level[d->levels - 1].plan.steps, resolving);
 }
 
 /* ---- stability ---- */
 
-/* Whether a part of the loads that turns round with every step is there and grows, and not with the motion itself, as
-   the finer run shows it. */
-static int seesaws(const spari_record *r, const spari_record *finer) {
-    double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN));
-    return r->alternating[1] > spari_rule.seesaw && r->alternating[1] > spari_rule.grows * same * r->alternating[0];
+/* Whether a part of the loads that turns round with every step grows, and not with the motion itself, as the finer run
+   shows it, until it counts in the host's run; `longer`: the look's. */
+static int seesaws(const spari_advisor *d, const spari_record *r, const spari_record *finer, int longer) {
+    double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN)),
+           grows = r->alternating[1] / fmax(r->alternating[0], DBL_MIN) / same,
+           more = fmax(0, d->longer - longer) / (0.5 * longer), limit = spari_rule.seesaw * d->tolerance;
+    return grows > spari_rule.grows && r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
+}
+
+/* Beside a run with half the dt and a tight coupling; errors of phase may have grown as the time has. */
+static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const spari_record *run, int *stays) {
+    spari_plan q = *p;
+    spari_record finer;
+    double error = INFINITY;
+    q.steps = 2 * p->steps;
+    q.predictor = 1;
+    q.newton = fmin(q.newton, spari_rule.stays_newton);
+    if (!d->session->keep_coupling) {
+        q.scheme = SPAR_COUPLING_IQN_ILS;
+        q.rtol = spari_rule.stays_rtol;
+    }
+    int status = spari_plan_run(d, &q, longer, &finer);
+    if (status == SPAR_OK) {
+        status = compare_runs(d, run, &finer, 1, &error);
+    }
+    *stays = status == SPAR_OK && error <= longer * d->tolerance && !seesaws(d, run, &finer, longer);
+    tell_plan(d, &q, error, spari_plan_cost(d, &finer));
+    spari_record_free(&finer);
+    return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
 int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
     int longer = spari_rule.longer, least = spari_rule.least_steps;
     longer = p->steps * longer < least ? (int)(least / p->steps) + 1 : longer;
-    spari_plan q = *p;
-    spari_record run, finer = {0};
-    int status = spari_plan_run(d, p, longer, &run);
-    if (status == SPAR_OK) {
-        q.steps = 2 * p->steps;
-        q.predictor = 1;
-        q.newton = fmin(q.newton, spari_rule.stays_newton);
-        if (!d->session->keep_coupling) {
-            q.scheme = SPAR_COUPLING_IQN_ILS;
-            q.rtol = spari_rule.stays_rtol;
-        }
-        status = spari_plan_run(d, &q, longer, &finer);
+    longer = (int)fmin(longer, ceil(d->longer)); /* what comes after the host's run is nobody's concern */
+    spari_record run;
+    double far[2] = {0, 0};
+    *stays = 1;
+    if (longer == 1) {
+        return SPAR_OK;
     }
-    double error = status == SPAR_OK ? spari_record_motion(&run, &finer) : INFINITY;
-    *stays = error <= longer * d->tolerance && !seesaws(&run, &finer);
-    tell_plan(d, p, error, spari_plan_cost(d, &run));
+    int status = spari_plan_run(d, p, longer, &run);
+    *stays = 0;
+    if (status == SPAR_OK) {
+        far[0] = seesaws(d, &run, &d->reference, longer) ||
+                         spari_record_reach(&run) > spari_rule.looks_away * spari_record_reach(&d->reference)
+                     ? 1
+                     : 0;
+        status = spari_comm_sum(d->session->comm, far, 1, SPAR_OK, d->session->message, sizeof d->session->message);
+        *stays = status == SPAR_OK && far[0] == 0;
+    }
+    tell_plan(d, p, status == SPAR_OK ? far[0] : INFINITY, spari_plan_cost(d, &run));
+    if (status == SPAR_OK && !*stays) {
+        status = stays_beside(d, p, longer, &run, stays);
+    }
     spari_record_free(&run);
-    spari_record_free(&finer);
     return spari_plan_fails(status) ? SPAR_OK : status;
 }

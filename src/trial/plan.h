@@ -8,8 +8,10 @@
 #define SPARI_ADVISE "spar_session_advise"
 
 enum {
-    SPARI_GROUPS = 8, /* of beams described alike; what is beyond stays as it is */
-    SPARI_FINEST = 6, /* the reference halves dt so often at most */
+    SPARI_GROUPS = 8,   /* of beams described alike; what is beyond stays as it is */
+    SPARI_FINEST = 6,   /* the reference halves the host's dt so often at most, */
+    SPARI_COARSEST = 2, /* and begins with it doubled so often */
+    SPARI_LEVELS = SPARI_FINEST + SPARI_COARSEST + 1,
     SPARI_KNOWN = 400 /* settings remembered at most */
 };
 
@@ -32,14 +34,30 @@ typedef struct spari_outcome {
     double error, cost; /* INFINITY: it fails */
 } spari_outcome;
 
+/* A run of those that lead to the reference. */
+typedef struct spari_level {
+    spari_plan plan;
+    spari_record record; /* empty: it failed */
+    double change;       /* of the motion from the one before, relative to the tolerance; 0: there is none */
+} spari_level;
+
 typedef struct spari_advisor {
     spar_session *session;
     spari_run run; /* as the host asked */
     double tolerance;
-    int groups, *group;     /* [members] of which group; -1: as it is */
-    spari_record reference; /* the run that errors are taken against */
+    double longer; /* the host's run, relative to the trials */
+    int goals;
+    int groups, *group; /* [members] of which group; -1: as it is */
+    spari_level *level; /* [SPARI_LEVELS] */
+    int levels;
+    spari_record reference; /* what they lead to: errors are taken against it */
     double reference_error;
-    double fluid;         /* what a solution of the fluid counts for; known once the reference is */
+    double shortest;      /* period that steps have to resolve, as a part of the trials' time; 0: any will do */
+    double fluid;         /* what a solution of the fluid counts for, */
+    int weighed;          /* known once a run has come to its end */
+    double now;           /* what a trial with the session as it is costs; 0: not known yet */
+    double spent;         /* what all trials have cost, */
+    int64_t solutions;    /* and those of the fluid before that was weighed */
     spari_outcome *known; /* [SPARI_KNOWN] settings measured against the reference */
     int known_count, trials;
 } spari_advisor;
@@ -63,18 +81,30 @@ int spari_plan_fails(int status);
 int spari_plan_run(spari_advisor *advisor, const spari_plan *plan, int longer, spari_record *record);
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
 int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, spari_outcome *out);
+/* The same of a run that has been made. */
+int spari_plan_judge(spari_advisor *advisor, const spari_record *record, spari_outcome *out);
 /* Whether it keeps the tolerance; a tenth of that stays for what an estimate does not see. */
 int spari_plan_is_good(const spari_advisor *advisor, const spari_outcome *outcome);
 /* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. */
 int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double *part,
                         double *cost);
+/* The same, keeping the run, which is to be freed; it is empty where it fails. */
+int spari_plan_compare(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, spari_record *record,
+                       double *part);
 /* What the run has cost, the fluid's solutions among it. */
 double spari_plan_cost(const spari_advisor *advisor, const spari_record *record);
-/* Finds the reference: halves dt until the error that is left, judged by how the changes fall, is a small part of the
-   tolerance. finest: its settings. */
+/* Runs the session as it is; *record is to be freed. INFINITY: it fails. */
+int spari_plan_try_present(spari_advisor *advisor, const spari_plan *present, spari_record *record);
+/* Finds the reference: halves dt, from one that is coarser than the host's, until the error that is left, judged by how
+   the changes fall, is a small part of the tolerance; refuses what it cannot vouch for. finest: its settings. */
 int spari_plan_reference(spari_advisor *advisor, const spari_plan *present, spari_plan *finest);
-/* Whether the settings stay near a run with half the dt and a tight coupling for longer than the trials were: what
-   grows slowly enough to pass a trial is found here. Errors of phase may have grown as the time has. */
+void spari_plan_forget(spari_advisor *advisor);
+/* The level that the structure is chosen on: the coarsest that is not far from the reference. */
+const spari_level *spari_plan_rough(const spari_advisor *advisor);
+/* So many steps keep the tolerance with a tight coupling, as the levels show. */
+int64_t spari_plan_least_steps(const spari_advisor *advisor);
+/* Whether the settings stay where they are for longer than the trials were: what grows slowly enough to pass a trial is
+   found here; where it may be so, beside a run with half the dt and a tight coupling. */
 int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int *stays);
 
 #endif

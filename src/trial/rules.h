@@ -29,21 +29,39 @@ typedef struct spari_prices {
 typedef struct spari_rules {
     double reference_ends;   /* dt is halved until the reference's own error is below this share, */
     double reference_most;   /* and above this one there is no reference */
-    double reference_newton; /* with what it is solved: Newton's tolerance, */
+    double reference_newton; /* with what it is solved, of the tolerance: Newton's, */
     double reference_rtol;   /* and the coupling's */
-    double fidelity, nodes;  /* shares that a lower fidelity and fewer nodes may take, */
-    double points, newton;   /* fewer quadrature points, a looser Newton */
-    double loosest_newton;   /* its tolerance goes no further */
-    double good;             /* share that the error of good settings is below: the rest is for what no trial shows */
-    double worth;            /* a change has to bring the cost below this part of it */
-    int least_nodes;         /* of an element; 2 lock */
-    int most_substeps;       /* in a step */
-    int modes;               /* that a beam's first modal try has */
-    int tried, doubted;      /* settings measured before moves end, and whose stability is looked at, at most */
+    double reference_nodes;  /* nodes are added until two more change less than this share */
+    double regular[2];       /* changes that fall by factors between these two as dt is halved are of order 2: what two
+                                runs point to is then believed, but for */
+    double believed;         /* this part of the way there */
+    double rough;            /* the structure is chosen with the coarsest dt whose error is below so many tolerances, */
+    double rough_newton;     /* with what of the tolerance for Newton's */
+    double rough_rtol;       /* and for the coupling's */
+    double doubt;            /* so many times as much as trials show of their errors' growth is reckoned with */
+    double by_chance;        /* errors that are so many times as large in the last third as in the one before grow */
+    double foreseen;         /* beyond so many times the trials' time they must have shown what goes on */
+    double settled;         /* motion that in the second half of the trials changes by less than this part goes on so */
+    double resolves;        /* steps in the shortest period of what moves by more than the tolerance, at least */
+    double fidelity, nodes; /* shares that a lower fidelity and fewer nodes may take, */
+    double points, newton;  /* fewer quadrature points, a looser Newton */
+    double loosest_newton;  /* its tolerance goes no further */
+    double good;            /* share that the error of good settings is below: the rest is for what no trial shows */
+    double worth;           /* a change has to bring the cost below this part of it */
+    double heavy;           /* added mass over mass from which on neither explicit nor fixed-point coupling is tried */
+    double worth_asking;    /* moves are tried as long as asking has cost less than this part of what has been saved, */
+    double least_runs;      /* in a run of so many times the trials at least */
+    double looks_away;      /* motion that in the longer look is more than so many times what the reference has is
+                               looked at beside a finer run */
+    int least_nodes;        /* of an element; 2 lock */
+    int most_substeps;      /* in a step */
+    int modes;              /* that a beam's first modal try has */
+    int tried, doubted;     /* settings measured before moves end, and whose stability is looked at, at most */
     int longer, least_steps; /* that is looked at in a run so many times as long, and of so many steps at least, */
     double stays_newton;     /* against one of half the dt: with what that is solved, */
     double stays_rtol;       /* and coupled */
-    double seesaw, grows;    /* loads that turn round with every step: squares of what counts, and of its growth */
+    double seesaw, grows;    /* loads that turn round with every step: the share of the tolerance that counts, and their
+                                growth, squared, from the second quarter of the longer look to the last */
     spari_prices price;
 } spari_rules;
 extern const spari_rules spari_rule;

@@ -8,8 +8,6 @@
 #include "../base/quiet.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
-#include "../math/basis.h"
-#include "../math/resample.h"
 #include "../math/rotation.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
@@ -18,15 +16,11 @@
 #include "../session/spread.h"
 #include "../session/start.h"
 #include "../solve/life.h"
-#include "../solve/reaction.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-/* Places looked at along a beam; a member of one node has its place and three arms. */
-enum { STATIONS = 8, ARMS = 4 };
 
 /* ---- wishes ---- */
 
@@ -195,83 +189,7 @@ static void go_back(spar_session *s, stash *t) {
     spari_fluid_release_gone(s);
 }
 
-/* ---- what is looked at ---- */
-
-/* Members that follow what the host says have no error. */
-static int stations_of(const spar_member *m) {
-    return m->kind == SPARI_POINT ? 0 : m->nodes == 1 ? ARMS : STATIONS;
-}
-
-/* A place of a beam in the reference configuration, and its displacement. */
-static void beam_station(const spar_member *m, int k, double X[3], double u[3]) {
-    double eta = (k + 1.0) / STATIONS * m->elements, phi[SPARI_MAX_NODES];
-    int e = (int)ceil(eta) - 1;
-    spari_resample_basis(m->per_element, 2 * (eta - e) - 1, phi);
-    for (int c = 0; c < 3; c++) {
-        X[c] = u[c] = 0;
-        for (int l = 0; l < m->per_element; l++) {
-            int64_t i = (int64_t)e * m->per_element + l;
-            X[c] += phi[l] * m->xr[3 * i + c];
-            u[c] += phi[l] * m->after.q[7 * i + c];
-        }
-    }
-}
-
-/* The end of an arm, k = 0: the node itself. */
-static void body_station(const spar_member *m, int k, double X[3], double u[3]) {
-    double arm[3] = {0, 0, 0}, turned[3];
-    if (k > 0) {
-        arm[k - 1] = spari_member_length(m);
-    }
-    spari_rotate(m->after.q + 3, arm, turned);
-    for (int c = 0; c < 3; c++) {
-        X[c] = m->xr[c] + arm[c];
-        u[c] = m->after.q[c] + turned[c] - arm[c];
-    }
-}
-
-/* What of the displacement u at X is not that of the root. */
-static void beyond_root(const spar_member *m, const double X[3], const double u[3], double out[3]) {
-    double arm[3] = {X[0] - m->xr[0], X[1] - m->xr[1], X[2] - m->xr[2]}, turned[3];
-    spari_rotate(m->after.q + 3, arm, turned);
-    for (int c = 0; c < 3; c++) {
-        out[c] = u[c] - m->after.q[c] - (turned[c] - arm[c]);
-    }
-}
-
-/* start: displacements at the beginning */
-static void look(const spar_session *s, const double *start, double *motion, double *beyond) {
-    int64_t at = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        int held = m->kind == SPARI_BEAM && spari_member_root_is_given(m);
-        for (int k = 0; k < stations_of(m); k++, at += 3) {
-            double X[3], *u = motion + at;
-            if (m->nodes == 1) {
-                body_station(m, k, X, u);
-            } else {
-                beam_station(m, k, X, u);
-            }
-            if (!beyond) {
-                continue;
-            }
-            if (held) {
-                beyond_root(m, X, u, beyond + at);
-            }
-            for (int c = 0; c < 3 && !held; c++) {
-                beyond[at + c] = u[c] - start[at + c];
-            }
-        }
-    }
-}
-
-static void look_at_reactions(const spar_session *s, double *room, double *reaction) {
-    for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
-        spari_member_reaction_in(m, room, reaction);
-        for (int c = 3; c < 6; c++) {
-            reaction[c] /= spari_member_length(m);
-        }
-    }
-}
+/* ---- the run ---- */
 
 static void look_at_loads(const spar_session *s, double *load) {
     for (const spar_member *m = s->members; m; m = m->next, load += 6) {
@@ -286,43 +204,6 @@ static void look_at_loads(const spar_session *s, double *load) {
             }
         }
     }
-}
-
-/* ---- the run ---- */
-
-/* Memory that a run needs beside its record: displacements at the beginning, and for reactions. All of it before the
-   first step: a rank that had none later would leave the others waiting. */
-typedef struct sight {
-    double *start, *room;
-} sight;
-
-static int record_create(spar_session *s, spari_record *r, sight *w) {
-    int64_t room = 0;
-    *r = (spari_record){.members = s->member_count};
-    for (const spar_member *m = s->members; m; m = m->next) {
-        int64_t own = spari_member_reaction_room(m);
-        r->stations += stations_of(m);
-        room = room > own ? room : own;
-    }
-    r->motion = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->motion);
-    r->beyond = spari_zalloc(3 * SPARI_SAMPLES * r->stations, sizeof *r->beyond);
-    r->reaction = spari_zalloc(6 * SPARI_SAMPLES * (int64_t)r->members, sizeof *r->reaction);
-    r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
-    r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
-    w->start = spari_zalloc(3 * r->stations, sizeof *w->start);
-    w->room = spari_zalloc(room, sizeof *w->room);
-    SPARI_REQUIRE(s, r->motion && r->beyond && r->reaction && r->load && r->trail && w->start && w->room,
-                  SPAR_ERR_MEMORY, "no memory for the record of a trial run");
-    return SPAR_OK;
-}
-
-void spari_record_free(spari_record *r) {
-    free(r->motion);
-    free(r->beyond);
-    free(r->reaction);
-    free(r->load);
-    free(r->trail);
-    *r = (spari_record){0};
 }
 
 static void free_kept(spari_record *kept) {
@@ -397,20 +278,14 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     return status;
 }
 
-static int march(spar_session *s, const spari_run *run, const sight *w, spari_record *r) {
+static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
         SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
         SPARI_TRY(step_once(s, run, r));
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
-        if (i * SPARI_SAMPLES % run->steps == 0) {
-            int64_t k = i * SPARI_SAMPLES / run->steps - 1;
-            look(s, w->start, r->motion + 3 * k * r->stations, r->beyond + 3 * k * r->stations);
-            look_at_reactions(s, w->room, r->reaction + 6 * k * r->members);
-            int64_t bad = spari_first_nonfinite(r->motion + 3 * k * r->stations, 3 * r->stations);
-            SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
-        }
+        SPARI_TRY(spari_record_look(r, s, i));
     }
     for (int k = 0; k < 2; k++) {
         r->alternating[k] = size[1] + size[3] > 0 ? r->alternating[k] / (size[1] + size[3]) : 0;
@@ -436,36 +311,37 @@ static int balance_start(spar_session *s, const spari_run *run, spari_record *r)
 
 /* The members and fluids there now are the trial's. balanced: the run begins with a balanced start. */
 static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
-    sight w = {NULL, NULL};
-    int status = record_create(s, r, &w);
+    int status = spari_record_create(s, run->steps, run->goals, r);
     status = spari_session_seal(s, status);
     status = status == SPAR_OK && balanced ? balance_start(s, run, r) : status;
     if (status == SPAR_OK) {
-        look(s, w.start, w.start, NULL);
-        status = march(s, run, &w, r);
+        spari_record_begin(r, s);
+        status = march(s, run, r);
     }
     if (status == SPAR_OK) {
         memcpy(r->report, s->own->coupling->report, sizeof r->report);
         status = share_costs(s, r);
+    } else {
+        r->work += spari_cost_members(s);
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);
     }
-    free(w.start);
-    free(w.room);
     return status;
 }
 
 /* The failing rank's status, on all ranks, where it is of the run: they go on alike. Of a failure of the machine, after
    which none goes on, each keeps its own, or learns that it is a peer's. */
-static int share_failure(spar_session *s, int own) {
+static int share_failure(spar_session *s, int own, double *work) {
     enum { CODES = SPAR_ERR_USER + 1 };
-    double there[CODES + 1] = {0};
+    double there[CODES + 2] = {0}; /* and what the run has cost */
     if (own == SPAR_OK || own == SPAR_ERR_COMM) {
         return own; /* known to all; and there is no asking through a broken communicator */
     }
     there[own] = 1;
-    SPARI_TRY(spari_comm_sum(s->comm, there, CODES, SPAR_OK, s->message, sizeof s->message));
+    there[CODES] = *work;
+    SPARI_TRY(spari_comm_sum(s->comm, there, CODES + 1, SPAR_OK, s->message, sizeof s->message));
+    *work = there[CODES];
     if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
         return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
                    ? own
@@ -494,7 +370,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
         go_back(s, &t);
     }
     record->own = status;
-    return share_failure(s, status);
+    return share_failure(s, status, &record->work);
 }
 
 int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, double tolerance, int compare,
@@ -504,6 +380,7 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
                                  spari_given("before", run->before != NULL),
                                  spari_given("solve", run->solve != NULL),
                                  spari_real("tolerance", tolerance),
+                                 spari_real("length", run->length),
                                  spari_whole("compare", compare != 0)};
     return spari_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
 }
@@ -519,61 +396,13 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     }
     SPARI_REQUIRE(s, isfinite(run->dt) && run->dt > 0, SPAR_ERR_ARGUMENT,
                   "%s: dt is %g; give a positive number of seconds", call, run->dt);
-    SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_SAMPLES == 0, SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps; give a multiple of %d, as runs are compared at so many times", call,
-                  (long long)run->steps, SPARI_SAMPLES);
+    SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
+                  "%s: %lld steps; give a multiple of %d, as advice tries other dt", call, (long long)run->steps,
+                  SPARI_MULTIPLE);
     /* advice varies dt, and looks further than it was asked */
     const double least = 1e-300, longer = 1e6;
     SPARI_REQUIRE(s, run->dt >= least && isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
                   "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,
                   run->dt, s->time);
     return SPAR_OK;
-}
-
-/* ---- comparison ---- */
-
-/* |a - b| / |scale|; where there is no scale any difference counts as all. */
-static double relative(const double *a, const double *b, const double *scale, int64_t n) {
-    double d2 = 0, s2 = 0;
-    for (int64_t i = 0; i < n; i++) {
-        d2 += (a[i] - b[i]) * (a[i] - b[i]);
-        s2 += scale[i] * scale[i];
-    }
-    return d2 == 0 ? 0 : s2 > 0 ? sqrt(d2 / s2) : 1;
-}
-
-double spari_record_motion(const spari_record *a, const spari_record *b) {
-    return relative(a->motion, b->motion, b->beyond, 3 * SPARI_SAMPLES * b->stations);
-}
-
-/* Root of the mean square of a + b t over 0 .. h. */
-static double line_mean(double a, double b, double h) {
-    return sqrt(a * a + a * b * h + b * b * h * h / 3);
-}
-
-double spari_record_growth(const spari_record *a, const spari_record *b, double longer) {
-    double n = SPARI_SAMPLES, t1 = 0, t2 = 0, e1 = 0, te = 0; /* sums over the samples */
-    for (int k = 0; k < SPARI_SAMPLES; k++) {
-        double e = 0, t = (k + 1) / n;
-        for (int64_t i = 3 * k * b->stations; i < 3 * (k + 1) * b->stations; i++) {
-            e += (a->motion[i] - b->motion[i]) * (a->motion[i] - b->motion[i]);
-        }
-        t1 += t, t2 += t * t, e1 += sqrt(e), te += t * sqrt(e);
-    }
-    double slope = (n * te - t1 * e1) / (n * t2 - t1 * t1), level = (e1 - slope * t1) / n;
-    if (level < 0) { /* neither part may be negative */
-        level = 0, slope = te / t2;
-    } else if (slope < 0) {
-        slope = 0, level = e1 / n;
-    }
-    double seen = line_mean(level, slope, 1);
-    return seen > 0 ? line_mean(level, slope, longer) / seen : 1;
-}
-
-double spari_record_reaction(const spari_record *a, const spari_record *b) {
-    return relative(a->reaction, b->reaction, b->reaction, 6 * SPARI_SAMPLES * (int64_t)b->members);
-}
-
-double spari_record_load(const spari_record *a, const spari_record *b) {
-    return relative(a->load, b->load, b->load, 6 * (int64_t)b->members);
 }

@@ -185,8 +185,8 @@ program test_bindings
   call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
       0_c_int64_t, 0_c_int64_t), &
       'spar_session_report_effects')
-  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
-      0_c_int64_t), &
+  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
+      c_null_funptr, none, 0_c_int64_t), &
       'spar_session_advise')
   call refused(spar_session_apply_advice(none), 'spar_session_apply_advice')
   call refused(spar_member_get_advice(none), 'spar_member_get_advice')

@@ -170,11 +170,11 @@ contains
     call check(stat == SPAR_ERR_STATE, 'no advice yet')
     call session%apply_advice(stat=stat)
     call check(stat == SPAR_ERR_STATE, 'no advice to apply')
-    call session%advise(1e-2_c_double, dt, 16, advice, count_step, solve, context)
+    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context)
     call check(advice(SPAR_ADVICE_ERROR) <= 1e-2_c_double .and. advice(SPAR_ADVICE_DT) > 0, 'advice')
     call body%get_advice(nodes_per_element=nodes)
     call check(nodes == 1, 'the body stays as it is')
-    call session%advise(2.0_c_double, dt, 16_c_int64_t, advice, solve=solve, context=context, stat=stat)
+    call session%advise(2.0_c_double, dt, 16_c_int64_t, 16 * dt, advice, solve=solve, context=context, stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'a tolerance of 2')
 
     ! back where it was: g t^2 / 2 to the order of the spring
@@ -206,7 +206,7 @@ contains
     call fluid%set_force_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%map()
     context%fluid => fluid
-    call session%advise(0.05_c_double, 0.02_c_double, 16, advice, solve=push_by_basis, context=context)
+    call session%advise(0.05_c_double, 0.02_c_double, 16, 0.32_c_double, advice, solve=push_by_basis, context=context)
     call beam%get_advice(nodes_per_element=nodes)
     call check(nodes >= 3 .and. nodes <= 24, 'nodes are advised')
     call check(context%steps > 1, 'runs had other numbers of nodes')

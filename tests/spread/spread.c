@@ -712,10 +712,11 @@ int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_
     return status;
 }
 
-int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
-                  spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
+int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
+                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
     advising++;
-    int status = verdict(spar_session_advise(session, tolerance, dt, steps, before, solve, context, capacity, advice));
+    int status =
+        verdict(spar_session_advise(session, tolerance, dt, steps, length, before, solve, context, capacity, advice));
     advising--;
     return status;
 }

@@ -58,8 +58,8 @@ int spread_try(spar_session *session, double dt, int64_t steps, spar_before_step
                void *context, int compare, int64_t capacity, double *report);
 int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
                           spar_fluid_solver solve, void *context, int64_t rows, int64_t columns, double *table);
-int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, spar_before_step before,
-                  spar_fluid_solver solve, void *context, int64_t capacity, double *advice);
+int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
+                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity, double *advice);
 int spread_apply_advice(spar_session *session, double *dt);
 int spread_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
 int spread_remove(const char *path);

@@ -205,13 +205,13 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",     "fluid.far",
-                                       "fluid.audit",          "advise.dt",       "advise.nodes",
-                                       "advise.fidelity",      "advise.coupling", "coupling.columns",
-                                       "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
-                                       "coupling.motion_rtol", "coupling.target", "advise.horizon",
-                                       "advise.fluid_cost",    "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass"};
+    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",       "fluid.far",
+                                       "fluid.audit",          "advise.dt",         "advise.nodes",
+                                       "advise.fidelity",      "advise.coupling",   "coupling.columns",
+                                       "coupling.reuse",       "coupling.filter",   "coupling.motion_atol",
+                                       "coupling.motion_rtol", "coupling.target",   "advise.fluid_cost",
+                                       "coupling.norm",        "coupling.patience", "coupling.estimate",
+                                       "ranks.state",          "fluid.added_mass"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -226,7 +226,6 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1e-12", "1e-3"},
                                             {"0", "1e-6", "0.1"},
                                             {"0.01", "1", "1e-15"},
-                                            {"0", "1", "0.01"},
                                             {"0", "1", "1e-6"},
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
@@ -334,7 +333,7 @@ void do_spar_session_get_balance(call *c) {
 void do_spar_session_get_option(call *c) {
     static const char *const keys[] = {"coupling.unconverged", "fluid.audit",   "coupling.columns",
                                        "coupling.filter",      "coupling.norm", "coupling.patience",
-                                       "advise.horizon",       "no.option",     "spar%n"};
+                                       "advise.fluid_cost",    "no.option",     "spar%n"};
     live_session *l = arg_session(c);
     const char *key = odd(c) ? NULL : keys[below(c, 9)];
     int64_t n = arg_count(c, 0, 30);
@@ -541,14 +540,14 @@ void do_spar_session_report_effects(call *c) {
 
 void do_spar_session_advise(call *c) {
     live_session *l = arg_session(c);
-    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c);
+    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 0.01, 10);
     int64_t steps = arg_steps(c);
     spar_fluid_solver solve;
     spar_before_step before;
     host *h = arg_host(c, &solve, &before);
     int64_t n = arg_count(c, 0, SPAR_ADVICE_COUNT + 2);
     double *advice = OUT_OR_NULL(c, length(n));
-    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, before, solve, h, n, advice));
+    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, run, before, solve, h, n, advice));
 }
 
 void do_spar_session_apply_advice(call *c) {

@@ -274,7 +274,6 @@ static void settings(spar_session *s) {
                                             {"fluid.far", "take"},
                                             {"fluid.audit", "on"},
                                             {"ranks.state", "all"},
-                                            {"advise.horizon", "0"},
                                             {"advise.fluid_cost", "0"},
                                             {"advise.coupling", "vary"}};
     CALL(spar_session_set_gravity, s, g);
@@ -783,7 +782,7 @@ static void act_advise(void) {
     describe_trial(&h);
     CALL(spar_session_set_option, h.session, "advise.dt", "keep");
     CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
-    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
+    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, 0.08, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
     CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
     go(&h, 1);
     CALL(spar_session_apply_advice, h.session, &dt);

@@ -179,7 +179,7 @@ static void look(const scene *c, double *out) {
 /* ---- the collective calls ---- */
 
 typedef struct arguments {
-    double dt, tolerance, ratio[2], point[3];
+    double dt, tolerance, length, ratio[2], point[3];
     int64_t steps, mode[2];
     int load_steps, compare, no_out, no_modes;
     const char *path;
@@ -190,6 +190,7 @@ typedef struct arguments {
 static arguments good(void) {
     return (arguments){.dt = dt,
                        .tolerance = 0.3,
+                       .length = 8 * dt,
                        .ratio = {0.01, 0.02},
                        .steps = 8,
                        .mode = {0, 1},
@@ -281,7 +282,7 @@ static int make_effects(scene *c, const arguments *a) {
                                        a->no_out ? -1 : SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, out);
 }
 static int make_advise(scene *c, const arguments *a) {
-    return spar_session_advise(c->session, a->tolerance, a->dt, a->steps, a->before, a->solve, c,
+    return spar_session_advise(c->session, a->tolerance, a->dt, a->steps, a->length, a->before, a->solve, c,
                                a->no_out ? -1 : SPAR_ADVICE_COUNT, out);
 }
 static int make_apply(scene *c, const arguments *a) {
@@ -599,6 +600,8 @@ static const struct spoiler {
     {"no mu wanted", NULL, MODES, FINE},
     {"another point", "point (y)", POINT, PEERS},
     {"a point that is none", NULL, POINT, SPAR_ERR_ARGUMENT},
+    {"another length", "length", TOLERANCE, PEERS},
+    {"no length", NULL, TOLERANCE, SPAR_ERR_ARGUMENT},
 };
 enum { SPOILERS = sizeof spoilers / sizeof *spoilers };
 
@@ -672,6 +675,12 @@ static void spoil(arguments *a, int k) {
         break;
     case 23:
         a->point[2] = NAN;
+        break;
+    case 24:
+        a->length = 80 * dt;
+        break;
+    case 25:
+        a->length = 0;
         break;
     default:
         a->no_out = 1;
@@ -785,7 +794,6 @@ static const struct setting {
     {"advise.nodes", "advise.nodes", "vary", "keep"},
     {"advise.fidelity", "advise.fidelity", "vary", "keep"},
     {"advise.coupling", "advise.coupling", "vary", "keep"},
-    {"advise.horizon", "advise.horizon", "9", "0"},
     {"advise.fluid_cost", "advise.fluid_cost", "1", "0"},
 };
 enum { SET = sizeof set / sizeof *set };

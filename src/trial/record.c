@@ -1,0 +1,403 @@
+/* What a run leaves behind: see record.h. */
+#include "record.h"
+
+#include "../base/scene.h"
+#include "../math/basis.h"
+#include "../math/resample.h"
+#include "../math/rotation.h"
+#include "../member/structure.h"
+#include "../solve/reaction.h"
+#include "rules.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Places looked at along a beam; a member of one node has its place and three arms. RECENT: points of a cubic. */
+enum { STATIONS = 8, ARMS = 4, RECENT = 4 };
+/* What turns less often in a run looks like the beginning of something. */
+enum { LEAST_PERIODS = 4 };
+static const double pi = 3.14159265358979323846;
+
+/* ---- a sample ---- */
+
+/* Members that follow what the host says have no error. */
+static int stations_of(const spar_member *m) {
+    return m->kind == SPARI_POINT ? 0 : m->nodes == 1 ? ARMS : STATIONS;
+}
+
+/* A place of a beam in the reference configuration, and its displacement. */
+static void beam_station(const spar_member *m, int k, double X[3], double u[3]) {
+    double eta = (k + 1.0) / STATIONS * m->elements, phi[SPARI_MAX_NODES];
+    int e = (int)ceil(eta) - 1;
+    spari_resample_basis(m->per_element, 2 * (eta - e) - 1, phi);
+    for (int c = 0; c < 3; c++) {
+        X[c] = u[c] = 0;
+        for (int l = 0; l < m->per_element; l++) {
+            int64_t i = (int64_t)e * m->per_element + l;
+            X[c] += phi[l] * m->xr[3 * i + c];
+            u[c] += phi[l] * m->after.q[7 * i + c];
+        }
+    }
+}
+
+/* The end of an arm, k = 0: the node itself. */
+static void body_station(const spar_member *m, int k, double X[3], double u[3]) {
+    double arm[3] = {0, 0, 0}, turned[3];
+    if (k > 0) {
+        arm[k - 1] = spari_member_length(m);
+    }
+    spari_rotate(m->after.q + 3, arm, turned);
+    for (int c = 0; c < 3; c++) {
+        X[c] = m->xr[c] + arm[c];
+        u[c] = m->after.q[c] + turned[c] - arm[c];
+    }
+}
+
+/* What of the displacement u at X is not that of the root. */
+static void beyond_root(const spar_member *m, const double X[3], const double u[3], double out[3]) {
+    double arm[3] = {X[0] - m->xr[0], X[1] - m->xr[1], X[2] - m->xr[2]}, turned[3];
+    spari_rotate(m->after.q + 3, arm, turned);
+    for (int c = 0; c < 3; c++) {
+        out[c] = u[c] - m->after.q[c] - (turned[c] - arm[c]);
+    }
+}
+
+/* start: displacements at the beginning */
+static void look_at_motion(const spar_session *s, const double *start, double *motion, double *beyond) {
+    int64_t at = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        int held = m->kind == SPARI_BEAM && spari_member_root_is_given(m);
+        for (int k = 0; k < stations_of(m); k++, at += 3) {
+            double X[3], *u = motion + at;
+            if (m->nodes == 1) {
+                body_station(m, k, X, u);
+            } else {
+                beam_station(m, k, X, u);
+            }
+            if (held) {
+                beyond_root(m, X, u, beyond + at);
+            }
+            for (int c = 0; c < 3 && !held; c++) {
+                beyond[at + c] = u[c] - start[at + c];
+            }
+        }
+    }
+}
+
+static void look_at_reactions(const spar_session *s, double *room, double *reaction) {
+    for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
+        spari_member_reaction_in(m, room, reaction);
+        for (int c = 3; c < 6; c++) {
+            reaction[c] /= spari_member_length(m);
+        }
+    }
+}
+
+/* ---- memory ---- */
+
+static int64_t width(const spari_record *r) {
+    return r->first[SPARI_BLOCKS];
+}
+
+static void lay_sample_out(const spar_session *s, int goals, spari_record *r) {
+    int64_t size[SPARI_BLOCKS] = {0};
+    for (const spar_member *m = s->members; m; m = m->next) {
+        r->stations += stations_of(m);
+        r->members++;
+    }
+    size[SPARI_OF_MOTION] = size[SPARI_OF_BEYOND] = 3 * r->stations;
+    size[SPARI_OF_REACTION] = goals & SPARI_GOAL(SPARI_OF_REACTION) ? 6 * (int64_t)r->members : 0;
+    for (int b = 0; b < SPARI_BLOCKS; b++) {
+        r->first[b + 1] = r->first[b] + size[b];
+    }
+}
+
+int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record *r) {
+    int64_t room = 0;
+    *r = (spari_record){.steps = steps, .goals = goals};
+    lay_sample_out(s, goals, r);
+    for (const spar_member *m = s->members; m && r->goals & SPARI_GOAL(SPARI_OF_REACTION); m = m->next) {
+        int64_t own = spari_member_reaction_room(m);
+        room = room > own ? room : own;
+    }
+    r->value = spari_zalloc(SPARI_SAMPLES * width(r), sizeof *r->value);
+    r->recent = spari_zalloc(RECENT * width(r), sizeof *r->recent);
+    r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
+    r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
+    r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
+    r->room = spari_zalloc(room, sizeof *r->room);
+    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room, SPAR_ERR_MEMORY,
+                  "no memory for the record of a trial run");
+    return SPAR_OK;
+}
+
+void spari_record_free(spari_record *r) {
+    free(r->value);
+    free(r->recent);
+    free(r->load);
+    free(r->trail);
+    free(r->start);
+    free(r->room);
+    *r = (spari_record){0};
+}
+
+int64_t spari_record_size(const spari_record *r) {
+    return SPARI_SAMPLES * width(r);
+}
+
+/* ---- looking ---- */
+
+static double *recent(const spari_record *r, int64_t i) {
+    return r->recent + i % RECENT * width(r);
+}
+
+void spari_record_begin(spari_record *r, const spar_session *s) {
+    double *now = recent(r, 0);
+    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+    memcpy(r->start, now + r->first[SPARI_OF_MOTION], (size_t)(3 * r->stations) * sizeof *now);
+    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+}
+
+/* Sample k, in steps from the beginning. */
+static double place(const spari_record *r, int k) {
+    return (k + 1.0) * (double)r->steps / SPARI_SAMPLES;
+}
+
+/* Samples after `from` up to `to` by the cubic through the steps i - 3 .. i. */
+static void interpolate(spari_record *r, int64_t i, double from, double to) {
+    int64_t n = width(r);
+    for (int k = (int)floor(from / (double)r->steps * SPARI_SAMPLES); k < SPARI_SAMPLES && place(r, k) <= to; k++) {
+        double x = place(r, k) - (double)(i - 3), *out = r->value + k * n; /* points at 0, 1, 2, 3 */
+        const double phi[RECENT] = {-(x - 1) * (x - 2) * (x - 3) / 6, x * (x - 2) * (x - 3) / 2,
+                                    -x * (x - 1) * (x - 3) / 2, x * (x - 1) * (x - 2) / 6};
+        if (place(r, k) <= from) {
+            continue;
+        }
+        memset(out, 0, (size_t)n * sizeof *out);
+        for (int l = 0; l < RECENT; l++) {
+            const double *point = recent(r, i - 3 + l);
+            for (int64_t c = 0; c < n; c++) {
+                out[c] += phi[l] * point[c];
+            }
+        }
+    }
+}
+
+int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
+    double *now = recent(r, i);
+    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+    if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
+        look_at_reactions(s, r->room, now + r->first[SPARI_OF_REACTION]);
+    }
+    r->taken = i;
+    int64_t bad = spari_first_nonfinite(now, width(r));
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
+    if (i >= 3) {
+        double to = i == r->steps ? (double)i : (double)(i - 1);
+        interpolate(r, i, i == 3 ? 0 : (double)(i - 2), to);
+    }
+    return SPAR_OK;
+}
+
+/* ---- comparison ---- */
+
+/* Squares of a sample's difference in a block, and of what it is relative to. */
+static void add_squares(const spari_record *a, const spari_record *b, int block, int k, double *difference,
+                        double *scale) {
+    int of = block == SPARI_OF_MOTION ? SPARI_OF_BEYOND : block;
+    const double *x = a->value + k * width(a) + a->first[block], *y = b->value + k * width(b) + b->first[block],
+                 *z = b->value + k * width(b) + b->first[of];
+    for (int64_t i = 0; i < b->first[block + 1] - b->first[block]; i++) {
+        *difference += (x[i] - y[i]) * (x[i] - y[i]);
+        *scale += z[i] * z[i];
+    }
+}
+
+/* Where the first step of both is over: before, there is the motion alone. */
+static int first_sample(const spari_record *a, const spari_record *b, int block) {
+    int64_t few = a->steps < b->steps ? a->steps : b->steps;
+    return block == SPARI_OF_MOTION || few >= SPARI_SAMPLES ? 0 : (int)((SPARI_SAMPLES + few - 1) / few) - 1;
+}
+
+/* |a - b| / |scale|; where there is no scale any difference counts as all. */
+static double relative(double difference, double scale) {
+    return difference == 0 ? 0 : scale > 0 ? sqrt(difference / scale) : 1;
+}
+
+double spari_record_distance(const spari_record *a, const spari_record *b, int block) {
+    double difference = 0, scale = 0;
+    for (int k = first_sample(a, b, block); k < SPARI_SAMPLES; k++) {
+        add_squares(a, b, block, k, &difference, &scale);
+    }
+    return relative(difference, scale);
+}
+
+double spari_record_load(const spari_record *a, const spari_record *b) {
+    double difference = 0, scale = 0;
+    for (int i = 0; i < 6 * b->members; i++) {
+        difference += (a->load[i] - b->load[i]) * (a->load[i] - b->load[i]);
+        scale += b->load[i] * b->load[i];
+    }
+    return relative(difference, scale);
+}
+
+/* Root of the mean square of a + b t over 0 .. h. */
+static double line_mean(double a, double b, double h) {
+    return sqrt(a * a + a * b * h + b * b * h * h / 3);
+}
+
+/* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as from
+   the second third of it to the last. In the first it begins, from nothing. */
+static double error_growth(const spari_record *a, const spari_record *b, int block, double longer) {
+    enum { PARTS = 3 };
+    double e[PARTS] = {0}, all = 0, none = 0;
+    for (int k = first_sample(a, b, block); k < SPARI_SAMPLES; k++) {
+        add_squares(a, b, block, k, &e[PARTS * k / SPARI_SAMPLES], &none);
+    }
+    for (int i = 0; i < PARTS; i++) {
+        all += e[i];
+        e[i] = sqrt(PARTS * e[i] / SPARI_SAMPLES);
+    }
+    double middle = (PARTS - 0.5) / PARTS, slope = PARTS * (e[2] - e[1]), level = e[2] - slope * middle,
+           seen = sqrt(all / SPARI_SAMPLES);
+    if (e[2] <= spari_rule.by_chance * e[1]) {
+        return seen > 0 ? fmax(e[2], seen) / seen : 1;
+    }
+    if (level < 0) { /* it was not there, at no time: it began with nothing */
+        level = 0, slope = e[2] / middle;
+    }
+    return fmax(line_mean(level, slope, longer) / seen, 1);
+}
+
+double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
+    double most = 0;
+    for (int block = 0; block < SPARI_BLOCKS; block++) {
+        if (goals & SPARI_GOAL(block)) {
+            double e = spari_record_distance(a, b, block);
+            most = fmax(most, longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, block, longer) - 1)) : e);
+        }
+    }
+    return most;
+}
+
+void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part) {
+    for (int64_t i = 0; i < SPARI_SAMPLES * width(finer); i++) {
+        finer->value[i] += part * (finer->value[i] - coarser->value[i]);
+    }
+}
+
+/* ---- what it shows ---- */
+
+/* The straight line nearest to x[SPARI_SAMPLES], `stride` apart: its middle and its slope. */
+static void fit_line(const double *x, int64_t stride, double *middle, double *slope) {
+    double sum = 0, moment = 0, squares = 0;
+    for (int j = 0; j < SPARI_SAMPLES; j++) {
+        double t = j - 0.5 * (SPARI_SAMPLES - 1);
+        sum += x[j * stride], moment += t * x[j * stride], squares += t * t;
+    }
+    *middle = sum / SPARI_SAMPLES;
+    *slope = moment / squares;
+}
+
+/* Power of the motion beyond the root, less the line nearest to it, in the k-th frequency, 2 pi k over the run's time,
+   behind a Hann window. */
+static double power_at(const spari_record *r, int k) {
+    double sum = 0, wave[SPARI_SAMPLES];
+    int64_t n = r->first[SPARI_OF_BEYOND + 1] - r->first[SPARI_OF_BEYOND];
+    for (int j = 0; j < SPARI_SAMPLES; j++) {
+        wave[j] = cos(2 * pi * j / SPARI_SAMPLES);
+    }
+    for (int64_t i = 0; i < n; i++) {
+        double c = 0, s = 0, middle, slope;
+        const double *x = r->value + r->first[SPARI_OF_BEYOND] + i;
+        fit_line(x, width(r), &middle, &slope);
+        for (int j = 0; j < SPARI_SAMPLES; j++) {
+            double line = middle + slope * (j - 0.5 * (SPARI_SAMPLES - 1)),
+                   y = (x[j * width(r)] - line) * (1 - wave[j]);
+            c += y * wave[k * j % SPARI_SAMPLES], s += y * wave[(k * j + SPARI_SAMPLES / 4) % SPARI_SAMPLES];
+        }
+        sum += c * c + s * s;
+    }
+    return sum;
+}
+
+double spari_record_reach(const spari_record *r) {
+    double most = 0;
+    int64_t n = 3 * r->stations;
+    for (int k = 0; k < SPARI_SAMPLES; k++) {
+        double sum = 0;
+        const double *x = r->value + k * width(r) + r->first[SPARI_OF_BEYOND];
+        for (int64_t i = 0; i < n; i++) {
+            sum += x[i] * x[i];
+        }
+        most = fmax(most, sum);
+    }
+    return n > 0 ? sqrt(most / (double)n) : 0;
+}
+
+double spari_record_shortest(const spari_record *r, double part) {
+    double total = 0, above = 0;
+    for (int64_t i = 0; i < SPARI_SAMPLES; i++) {
+        const double *x = r->value + i * width(r) + r->first[SPARI_OF_BEYOND];
+        for (int64_t c = 0; c < 3 * r->stations; c++) {
+            total += x[c] * x[c];
+        }
+    }
+    /* a sine's sum of squares, S/2, has S/2 of c or s of the mean window 1: power S^2/4 in its line, 3/8 S^2 in all */
+    total *= 0.75 * SPARI_SAMPLES;
+    for (int k = SPARI_SAMPLES / 2; k >= LEAST_PERIODS; k--) {
+        above += power_at(r, k);
+        if (above > part * part * total && total > 0) {
+            return 1.0 / k;
+        }
+    }
+    return 0;
+}
+
+/* Of the samples from..to: their mean, the size of what differs from it, and the sample that differs most. */
+static double scatter_of(const spari_record *r, int from, double *mean, int *most) {
+    int64_t n = 3 * r->stations, at = r->first[SPARI_OF_BEYOND];
+    double sum = 0, largest = -1;
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    for (int k = from; k < SPARI_SAMPLES; k++) {
+        for (int64_t i = 0; i < n; i++) {
+            mean[i] += r->value[k * width(r) + at + i] / (SPARI_SAMPLES - from);
+        }
+    }
+    for (int k = from; k < SPARI_SAMPLES; k++) {
+        double d = 0;
+        for (int64_t i = 0; i < n; i++) {
+            double x = r->value[k * width(r) + at + i] - mean[i];
+            d += x * x;
+        }
+        sum += d;
+        *most = d > largest ? k : *most;
+        largest = fmax(largest, d);
+    }
+    return sqrt(sum / (SPARI_SAMPLES - from));
+}
+
+int spari_record_vouches(const spari_record *r) {
+    int64_t n = 3 * r->stations, at = r->first[SPARI_OF_BEYOND];
+    double *mean = r->recent, size = 0, before = 0; /* the steps are over: there is room */
+    int most = 0, crossings = 0;
+    for (int k = SPARI_SAMPLES / 2; k < SPARI_SAMPLES; k++) {
+        for (int64_t i = 0; i < n; i++) {
+            size += pow(r->value[k * width(r) + at + i], 2) / (SPARI_SAMPLES / 2);
+        }
+    }
+    if (scatter_of(r, SPARI_SAMPLES / 2, mean, &most) <= spari_rule.settled * sqrt(size)) {
+        return 1;
+    }
+    (void)scatter_of(r, 0, mean, &most);
+    for (int k = 0; k < SPARI_SAMPLES; k++) { /* along the way that it goes farthest */
+        double along = 0;
+        for (int64_t i = 0; i < n; i++) {
+            along += (r->value[k * width(r) + at + i] - mean[i]) * (r->value[most * width(r) + at + i] - mean[i]);
+        }
+        crossings += along * before < 0;
+        before = along != 0 ? along : before;
+    }
+    return crossings >= 2;
+}
