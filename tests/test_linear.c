@@ -218,9 +218,11 @@ static double left_of(const long_chain *c, const double *x, const double *b) {
     return left / (c->n * big * most);
 }
 
-/* Rows and columns as they were put in; what is left of A x = b, a digit more where a half's last pivots, which have
-   the rows of their half alone to choose from, are small; the sign of the determinant as in one piece. */
-static void check_halves(int elements, int block, int overlap, int held) {
+/* ---- chains whose elements have unknowns to themselves, which are taken out first ---- */
+
+/* Rows and columns as they were put in; what is left of A x = b, a digit more where the last pivots of a half or of
+   an element, which have its rows alone to choose from, are small; the sign of the determinant as in one piece. */
+static void check_chain(int elements, int block, int overlap, int held) {
     long_chain c = chain_create(elements, block, overlap, held);
     double *x = calloc(4 * (size_t)c.n, sizeof *x), *b = x + c.n, *row = b + c.n, *column = row + c.n;
     for (int i = 0; i < c.n; i++) {
@@ -247,25 +249,43 @@ static void test_halves(void **unused) {
     for (int elements = 64; elements < 68; elements++) {
         for (int block = 2; block <= 18; block += 4) {
             int overlap = block > 6 ? 6 : block / 2, joint = elements / 2 * (block - overlap), end = joint + overlap;
-            check_halves(elements, block, overlap, 0);
-            check_halves(elements, block, overlap, joint);
-            check_halves(elements, block, overlap, end - 1);
-            check_halves(elements, block, overlap, end + 3);
+            check_chain(elements, block, overlap, 0);
+            check_chain(elements, block, overlap, joint);
+            check_chain(elements, block, overlap, end - 1);
+            check_chain(elements, block, overlap, end + 3);
         }
     }
 }
 
-/* Any number of threads, and factors that have been saved: the same bits. */
-static void test_halves_of_threads(void **unused) {
+/* Few elements and many, every remainder of columns that are an element's own; held at an end, within an element, at a
+   joint. */
+static void test_elements(void **unused) {
     (void)unused;
-    enum { ELEMENTS = 70, BLOCK = 18, OVERLAP = 6, N = ELEMENTS * (BLOCK - OVERLAP) + OVERLAP };
-    double first[N], x[N];
+    for (int own = 12; own <= 40; own += own < 20 ? 1 : 7) {
+        for (int elements = 2; elements < 6; elements++) {
+            int step = own + 6;
+            check_chain(elements, own + 12, 6, 0);
+            check_chain(elements, own + 12, 6, step + 8);
+            check_chain(elements, own + 12, 6, step + 2);
+            check_chain(elements, own + 12, 6, step * elements + 5);
+        }
+    }
+    check_chain(20, 24, 6, 3);
+    check_chain(35, 9, 2, 35);
+    check_chain(70, 4, 1, 105);
+}
+
+/* Any number of threads, and factors that have been saved: the same bits. */
+static void check_threads(int block) {
+    enum { COUNT = 70, OVERLAP = 6, WIDE = 24, MOST_OF_X = COUNT * (WIDE - OVERLAP) + OVERLAP };
+    int n = COUNT * (block - OVERLAP) + OVERLAP;
+    double first[MOST_OF_X], x[MOST_OF_X] = {0};
     for (int threads = 1; threads <= 4; threads++) {
         srand(7);
         spari_crew *crew = threads > 1 ? spari_crew_create(threads) : NULL;
-        long_chain c = chain_create(ELEMENTS, BLOCK, OVERLAP, 0), d = chain_create(ELEMENTS, BLOCK, OVERLAP, 0);
+        long_chain c = chain_create(COUNT, block, OVERLAP, 0), d = chain_create(COUNT, block, OVERLAP, 0);
         spari_linear_share(c.s, &crew);
-        for (int i = 0; i < N; i++) {
+        for (int i = 0; i < n; i++) {
             x[i] = sin(i);
         }
         assert_int_equal(spari_linear_factor(c.s), 0);
@@ -279,7 +299,7 @@ static void test_halves_of_threads(void **unused) {
         spari_linear_save(c.s, state);
         assert_true(spari_linear_is_state(d.s, state));
         spari_linear_load(d.s, state);
-        for (int i = 0; i < N; i++) {
+        for (int i = 0; i < n; i++) {
             x[i] = sin(i);
         }
         assert_int_equal(spari_linear_solve(d.s, x), 0);
@@ -293,31 +313,43 @@ static void test_halves_of_threads(void **unused) {
     }
 }
 
-/* Springs in a row, whose pivots are exact: singular with both ends free, and so is either half with a spring missing;
-   not a number, a solution beyond the numbers; definite or not. */
-static int springs(int missing, double of_last, int held, int *definite) {
-    enum { ELEMENTS = 64 };
-    const double S[4] = {1, -1, -1, 1}, none[4] = {0}, last[4] = {of_last, -of_last, -of_last, of_last};
-    spari_linear *s = spari_linear_create(ELEMENTS, 2, 1);
-    double x[ELEMENTS + 1];
+static void test_threads_of_chain(void **unused) {
+    (void)unused;
+    check_threads(18);
+    check_threads(24);
+}
+
+/* Springs in a row, whose pivots are exact: singular with both ends free, and so is either half with an element
+   missing; not a number, a solution beyond the numbers; definite or not. Elements of as many springs, the last of
+   another stiffness. */
+static int springs(int each, int missing, double of_last, int held, int *definite) {
+    enum { MANY = 64, FEW = 3, ALL = MANY * FEW };
+    const int n = MANY * each;
+    spari_linear *s = spari_linear_create(MANY, each + 1, 1);
+    double x[ALL + 1];
     assert_int_equal(spari_linear_watch(s), 0);
-    for (int e = 0; e < ELEMENTS; e++) {
-        spari_linear_add(s, e, e == missing ? none : e == ELEMENTS - 1 ? last : S);
+    for (int e = 0; e < MANY; e++) {
+        double S[(FEW + 1) * (FEW + 1)] = {0};
+        for (int k = 0; k < each && e != missing; k++) {
+            double stiffness = e == MANY - 1 && k == each - 1 ? of_last : 1, *at = S + (each + 2) * k;
+            at[0] += stiffness, at[1] -= stiffness, at[each + 1] -= stiffness, at[each + 2] += stiffness;
+        }
+        spari_linear_add(s, e, S);
     }
     if (held >= 0) {
         spari_linear_fix(s, held);
     }
     *definite = spari_linear_definite(s);
     int bad = spari_linear_factor(s);
-    for (int i = 0; i <= ELEMENTS; i++) { /* pulled at its last end: a mass's way is that of the springs before it */
-        x[i] = i == ELEMENTS;
+    for (int i = 0; i <= n; i++) { /* pulled at its last end: a mass's way is that of the springs before it */
+        x[i] = i == n;
     }
     if (!bad) {
         assert_int_equal(spari_linear_solve(s, x), 0);
-        for (int i = 0; i <= ELEMENTS && held == 0; i++) {
-            assert_true(fabs(x[i] - (i == ELEMENTS ? i - 1 + 1 / of_last : i)) < 1e-12);
+        for (int i = 0; i <= n && held == 0; i++) {
+            assert_true(fabs(x[i] - (i == n ? i - 1 + 1 / of_last : i)) < 3e-16 * n * n * n); /* times its condition */
         }
-        x[ELEMENTS - 5] = INFINITY;
+        x[n - 5] = INFINITY;
         assert_int_equal(spari_linear_solve(s, x), 1);
     }
     spari_linear_free(s);
@@ -327,15 +359,17 @@ static int springs(int missing, double of_last, int held, int *definite) {
 static void test_springs(void **unused) {
     (void)unused;
     int definite;
-    assert_int_equal(springs(-1, 1, 0, &definite), 0);
-    assert_int_equal(definite, 1);
-    assert_int_equal(springs(-1, 1, 32, &definite), 0);
-    assert_int_equal(springs(-1, -3, 0, &definite), 0);
-    assert_int_equal(definite, 0);
-    assert_int_equal(springs(-1, 1, -1, &definite), 1);
-    assert_int_equal(springs(10, 1, 0, &definite), 1);
-    assert_int_equal(springs(50, 1, 0, &definite), 1);
-    assert_int_equal(springs(-1, NAN, 0, &definite), 1);
+    for (int each = 1; each <= 3; each += 2) {
+        assert_int_equal(springs(each, -1, 1, 0, &definite), 0);
+        assert_int_equal(definite, 1);
+        assert_int_equal(springs(each, -1, 1, 32 * each, &definite), 0);
+        assert_int_equal(springs(each, -1, -3, 0, &definite), 0);
+        assert_int_equal(definite, 0);
+        assert_int_equal(each == 1 ? springs(each, -1, 1, -1, &definite) : 1, 1); /* of three, pivots are thirds */
+        assert_int_equal(springs(each, 10, 1, 0, &definite), 1);
+        assert_int_equal(springs(each, 50, 1, 0, &definite), 1);
+        assert_int_equal(springs(each, -1, NAN, 0, &definite), 1);
+    }
 }
 
 /* A solution that is not finite is said so. */
@@ -352,9 +386,9 @@ static void test_not_finite(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dense),    cmocka_unit_test(test_band),       cmocka_unit_test(test_holes),
-        cmocka_unit_test(test_halves),   cmocka_unit_test(test_springs),    cmocka_unit_test(test_halves_of_threads),
-        cmocka_unit_test(test_products), cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_dense),    cmocka_unit_test(test_band),     cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_halves),   cmocka_unit_test(test_springs),  cmocka_unit_test(test_threads_of_chain),
+        cmocka_unit_test(test_elements), cmocka_unit_test(test_products), cmocka_unit_test(test_not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,11 +27,15 @@
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 
-/* Chains of so many elements and more are cut in the middle. */
-enum { LONG = 64 };
+/* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
+enum { LONG = 64, ELEMENTS = 16 };
 
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
    it got any.
+
+   The unknowns that an element has to itself, where they are many, are taken out of its own matrix, element by element,
+   which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns, and
+   elements are independent.
 
    A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
    backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
@@ -47,7 +51,14 @@ struct spari_linear {
     gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
     spari_linear *far, *joint;  /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
     double *x;                  /* of a far half: [size] room */
-    spari_crew *const *crew;    /* spari_linear_share; NULL: nobody */
+    /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
+    spari_linear *ends;      /* the chain without these */
+    size_t own;              /* how many in each */
+    double *parts;           /* [elements][block][block] column by column, first those, then the ends */
+    int *part_swap;          /* [elements][own] */
+    double *z, *ends_x;      /* [elements][block], the ends of one at least; [ends->n] room */
+    unsigned char *bad;      /* [elements / ELEMENTS, rounded up] room */
+    spari_crew *const *crew; /* spari_linear_share; NULL: nobody */
 };
 
 /* Room for the matrix, whose size is known. */
@@ -78,10 +89,8 @@ static spari_linear *make_chain(int elements, int block, int overlap) {
     return with_room(s, elements == 1);
 }
 
-spari_linear *spari_linear_create(int elements, int block, int overlap) {
-    if (elements < LONG || overlap < 1) {
-        return make_chain(elements, block, overlap);
-    }
+/* A chain that is cut. */
+static spari_linear *make_halves(int elements, int block, int overlap) {
     int near = elements / 2;
     spari_linear *s = make_chain(near, block, overlap);
     if (!s) {
@@ -100,6 +109,39 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
     return s;
 }
 
+/* A chain whose elements have unknowns to themselves. */
+static spari_linear *make_parts(int elements, int block, int overlap) {
+    spari_linear *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    int64_t m = block, count = elements;
+    s->elements = elements, s->block = block, s->overlap = overlap;
+    s->n = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
+    s->band = (size_t)block - 1;
+    s->own = (size_t)(block - 2 * overlap);
+    s->ends = spari_linear_create(elements, 2 * overlap, overlap);
+    s->parts = spari_zalloc(count * m * m, sizeof *s->parts);
+    s->part_swap = spari_zalloc(count * (int64_t)s->own, sizeof *s->part_swap);
+    int64_t corner = 4 * (int64_t)overlap * overlap;
+    s->z = spari_zalloc(count * m > corner ? count * m : corner, sizeof *s->z);
+    s->ends_x = s->ends ? spari_zalloc((int64_t)s->ends->n, sizeof *s->ends_x) : NULL;
+    s->bad = spari_zalloc((count + ELEMENTS - 1) / ELEMENTS, sizeof *s->bad);
+    if (!s->parts || !s->part_swap || !s->z || !s->ends_x || !s->bad) {
+        spari_linear_free(s);
+        return NULL;
+    }
+    return s;
+}
+
+spari_linear *spari_linear_create(int elements, int block, int overlap) {
+    if (elements > 1 && overlap > 0 && block >= 4 * overlap) { /* fewer are as cheap in the band of all */
+        return make_parts(elements, block, overlap);
+    }
+    return elements < LONG || overlap < 1 ? make_chain(elements, block, overlap)
+                                          : make_halves(elements, block, overlap);
+}
+
 spari_linear *spari_linear_create_banded(int n, int band) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
     if (!s) {
@@ -113,7 +155,13 @@ void spari_linear_free(spari_linear *s) {
     if (s) {
         spari_linear_free(s->far);
         spari_linear_free(s->joint);
+        spari_linear_free(s->ends);
         free(s->x);
+        free(s->parts);
+        free(s->part_swap);
+        free(s->z);
+        free(s->ends_x);
+        free(s->bad);
         gsl_matrix_free(s->A);
         free(s->swap);
         gsl_vector_uint_free(s->band_swap);
@@ -124,9 +172,16 @@ void spari_linear_free(spari_linear *s) {
 
 void spari_linear_share(spari_linear *s, spari_crew *const *crew) {
     s->crew = crew;
+    if (s->ends) {
+        s->ends->crew = crew;
+    }
 }
 
 void spari_linear_zero(spari_linear *s) {
+    if (s->ends) {
+        memset(s->parts, 0, (size_t)s->elements * (size_t)(s->block * s->block) * sizeof *s->parts);
+        return;
+    }
     gsl_matrix_set_zero(s->A);
     if (s->far) {
         gsl_matrix_set_zero(s->far->A);
@@ -143,8 +198,41 @@ double *spari_linear_entries(const spari_linear *s, int64_t *step) {
     return entry(s, 0, 0);
 }
 
+/* Where unknown i of an element stands in its matrix. */
+static size_t stand(const spari_linear *s, size_t i) {
+    size_t left = (size_t)s->overlap;
+    return i < left ? i + s->own : i < left + s->own ? i - left : i;
+}
+
+/* Entry (i, j) of element e. */
+static double *part_entry(const spari_linear *s, size_t e, size_t i, size_t j) {
+    size_t m = (size_t)s->block;
+    return s->parts + m * (m * e + stand(s, j)) + stand(s, i);
+}
+
+/* The elements [*first, *last] that unknown i belongs to. */
+static void elements_of(const spari_linear *s, size_t i, size_t *first, size_t *last) {
+    size_t step = (size_t)(s->block - s->overlap), e = i / step, end = (size_t)s->elements;
+    *last = e < end ? e : end - 1;
+    *first = e > 0 && i - e * step < (size_t)s->overlap ? e - 1 : *last;
+}
+
+static void add_to_element(spari_linear *s, int element, const double *S) {
+    size_t m = (size_t)s->block;
+    for (size_t j = 0; j < m; j++) {
+        double *column = s->parts + m * (m * (size_t)element + stand(s, j));
+        for (size_t i = 0; i < m; i++) {
+            column[stand(s, i)] += S[m * i + j];
+        }
+    }
+}
+
 void spari_linear_add(spari_linear *s, int element, const double *S) {
     size_t first = (size_t)element * (size_t)(s->block - s->overlap), m = (size_t)s->block;
+    if (s->ends) {
+        add_to_element(s, element, S);
+        return;
+    }
     if (s->far && first >= s->inner) { /* S backwards too */
         first = s->n - first - m;
         for (size_t j = 0; j < m; j++) {
@@ -179,10 +267,26 @@ static void read_part(const spari_linear *s, size_t i, double *row, double *colu
     }
 }
 
+static void read_elements(const spari_linear *s, size_t at, double *row, double *column) {
+    size_t first, last, m = (size_t)s->block;
+    elements_of(s, at, &first, &last);
+    for (size_t e = first; e <= last; e++) {
+        size_t from = e * (m - (size_t)s->overlap);
+        for (size_t j = 0; j < m; j++) {
+            row[from + j] += *part_entry(s, e, at - from, j);
+            column[from + j] += *part_entry(s, e, j, at - from);
+        }
+    }
+}
+
 void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
     size_t at = (size_t)i, end = s->n - 1;
     memset(row, 0, s->n * sizeof *row);
     memset(column, 0, s->n * sizeof *column);
+    if (s->ends) {
+        read_elements(s, at, row, column);
+        return;
+    }
     if (at < s->size) {
         read_part(s, at, row, column, 1);
     }
@@ -200,8 +304,24 @@ static void fix_part(spari_linear *s, size_t i, double diagonal) {
     *entry(s, i, i) = diagonal;
 }
 
+static void fix_elements(spari_linear *s, size_t at) {
+    size_t first, last, m = (size_t)s->block;
+    elements_of(s, at, &first, &last);
+    for (size_t e = first; e <= last; e++) {
+        size_t i = at - e * (m - (size_t)s->overlap);
+        for (size_t j = 0; j < m; j++) {
+            *part_entry(s, e, i, j) = *part_entry(s, e, j, i) = 0;
+        }
+        *part_entry(s, e, i, i) = e == first;
+    }
+}
+
 void spari_linear_fix(spari_linear *s, int i) {
     size_t at = (size_t)i;
+    if (s->ends) {
+        fix_elements(s, at);
+        return;
+    }
     if (at < s->size) {
         fix_part(s, at, 1);
     }
@@ -211,10 +331,12 @@ void spari_linear_fix(spari_linear *s, int i) {
 }
 
 typedef struct linear_kernels {
-    int (*factor_dense)(int64_t n, double least, double *A, int *swap);
+    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap);
     int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
                        unsigned *swap);
     void (*dense)(int64_t n, const double *A, double *x);
+    void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
+    void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
                   double *x);
     void (*back)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, double *x);
@@ -224,8 +346,8 @@ typedef struct linear_kernels {
 
 #define LINEAR_KERNELS(width)                                                                                          \
     (linear_kernels) {                                                                                                 \
-        factor_dense_##width, factor_band_##width, solve_dense_##width, forth_band_##width, back_band_##width,         \
-            take_columns_##width, add_rows_##width                                                                     \
+        factor_dense_##width, factor_band_##width, solve_dense_##width, forth_dense_##width, back_dense_##width,       \
+            forth_band_##width, back_band_##width, take_columns_##width, add_rows_##width                              \
     }
 
 static linear_kernels kernels_here(void) {
@@ -250,7 +372,7 @@ static int factor_part(spari_linear *s) {
     int bad = 0;
     double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
     if (s->swap) {
-        bad = kernels_here().factor_dense((int64_t)s->n, least, s->A->data, s->swap);
+        bad = kernels_here().factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, s->swap);
     } else {
         bad = kernels_here().factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
                                          (int64_t)s->A->tda, s->band_swap->data);
@@ -285,8 +407,68 @@ static void factor_half(void *context, int64_t item, int worker) {
     h->bad[item] = factor_part(item ? h->s->far : h->s);
 }
 
+/* ---- element by element ---- */
+
+/* Takes out what the element has to itself, which leaves the corner of its ends. */
+static int factor_element(const spari_linear *s, size_t e) {
+    size_t m = (size_t)s->block;
+    double *A = s->parts + m * m * e;
+    if (spari_first_nonfinite(A, (int64_t)(m * m)) >= 0 ||
+        kernels_here().factor_dense((int64_t)m, (int64_t)s->own, 1, A, s->part_swap + s->own * e)) {
+        return 1;
+    }
+    for (size_t i = 0; i < s->own; i++) {
+        if (!isfinite(A[(m + 1) * i])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void factor_elements(void *context, int64_t from, int64_t to) {
+    const spari_linear *s = context;
+    int bad = 0;
+    for (int64_t e = from; e < to && !bad; e++) {
+        bad = factor_element(s, (size_t)e);
+    }
+    s->bad[from / ELEMENTS] = bad != 0;
+}
+
+/* Elements by whoever there is to work on them. */
+static void spread_elements(const spari_linear *s, spari_span work, void *context) {
+    spari_crew_spread(s->crew ? *s->crew : NULL, s->elements, ELEMENTS, work, context);
+}
+
+static int is_any_bad(const spari_linear *s) {
+    unsigned char bad = 0;
+    for (int k = 0; k < (s->elements + ELEMENTS - 1) / ELEMENTS; k++) {
+        bad |= s->bad[k];
+    }
+    return bad;
+}
+
+static int factor_ends(spari_linear *s) {
+    size_t m = (size_t)s->block, corner = 2 * (size_t)s->overlap;
+    spari_linear_zero(s->ends);
+    for (size_t e = 0; e < (size_t)s->elements; e++) {
+        const double *A = s->parts + m * m * e + (m + 1) * s->own;
+        double *S = s->z; /* row by row */
+        for (size_t i = 0; i < corner; i++) {
+            for (size_t j = 0; j < corner; j++) {
+                S[corner * i + j] = A[m * j + i];
+            }
+        }
+        spari_linear_add(s->ends, (int)e, S);
+    }
+    return spari_linear_factor(s->ends);
+}
+
 int spari_linear_factor(spari_linear *s) {
     linear_halves h = {.s = s};
+    if (s->ends) {
+        spread_elements(s, factor_elements, s);
+        return is_any_bad(s) || factor_ends(s);
+    }
     if (!s->far) {
         return factor_part(s);
     }
@@ -303,7 +485,20 @@ int spari_linear_factor(spari_linear *s) {
     return factor_part(s->joint);
 }
 
+static int sign_of_elements(const spari_linear *s) {
+    size_t m = (size_t)s->block;
+    int sign = 1;
+    for (size_t k = 0; k < s->own * (size_t)s->elements; k++) {
+        size_t i = k % s->own, e = k / s->own;
+        sign = (s->parts[m * m * e + (m + 1) * i] < 0) != (s->part_swap[k] != (int)i + 1) ? -sign : sign;
+    }
+    return sign;
+}
+
 int spari_linear_sign(const spari_linear *s) {
+    if (s->ends) {
+        return sign_of_elements(s) * spari_linear_sign(s->ends);
+    }
     int sign = s->far ? spari_linear_sign(s->far) * spari_linear_sign(s->joint) : 1;
     for (size_t i = 0; i < s->inner; i++) {
         size_t from = s->swap ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
@@ -324,7 +519,17 @@ void spari_linear_unwatch(spari_linear *s) {
 
 /* Entry (i, j), wherever it stands. */
 static double value_at(const spari_linear *s, size_t i, size_t j) {
-    size_t end = s->n - 1;
+    size_t end = s->n - 1, first, last, of_first, of_last;
+    if (s->ends) {
+        double sum = 0;
+        elements_of(s, i, &first, &last);
+        elements_of(s, j, &of_first, &of_last);
+        for (size_t e = first > of_first ? first : of_first; e <= last && e <= of_last; e++) {
+            size_t from = e * (size_t)(s->block - s->overlap);
+            sum += *part_entry(s, e, i - from, j - from);
+        }
+        return sum;
+    }
     double x = i < s->size && j < s->size ? *entry(s, i, j) : 0;
     return s->far && i >= s->inner && j >= s->inner ? x + *entry(s->far, end - i, end - j) : x;
 }
@@ -417,8 +622,68 @@ static int solve_halves(spari_linear *s, double *x) {
     return bad || h.bad[0] || h.bad[1];
 }
 
+/* The solution x of a chain whose elements have unknowns to themselves. */
+typedef struct linear_elements {
+    spari_linear *s;
+    double *x;
+    linear_kernels kernels;
+} linear_elements;
+
+/* Takes out what each has to itself; z is left with what that leaves of its ends, from 0. */
+static void forth_elements(void *context, int64_t from, int64_t to) {
+    const linear_elements *t = context;
+    const spari_linear *s = t->s;
+    size_t m = (size_t)s->block, own = s->own, o = (size_t)s->overlap;
+    for (size_t e = (size_t)from; e < (size_t)to; e++) {
+        double *z = s->z + m * e;
+        const int *swap = s->part_swap + own * e;
+        memcpy(z, t->x + (m - o) * e + o, own * sizeof(double));
+        for (size_t i = 0; i < own; i++) {
+            double there = z[swap[i] - 1];
+            z[swap[i] - 1] = z[i];
+            z[i] = there;
+        }
+        memset(z + own, 0, (m - own) * sizeof *z);
+        t->kernels.forth_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
+    }
+}
+
+static void back_elements(void *context, int64_t from, int64_t to) {
+    const linear_elements *t = context;
+    const spari_linear *s = t->s;
+    size_t m = (size_t)s->block, own = s->own, o = (size_t)s->overlap;
+    for (size_t e = (size_t)from; e < (size_t)to; e++) {
+        double *z = s->z + m * e, *x = t->x + (m - o) * e;
+        memcpy(z + own, s->ends_x + o * e, 2 * o * sizeof(double));
+        t->kernels.back_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
+        memcpy(x, z + own, o * sizeof(double));
+        memcpy(x + o, z, own * sizeof(double));
+    }
+    s->bad[from / ELEMENTS] = spari_first_nonfinite(s->z + m * (size_t)from, (int64_t)m * (to - from)) >= 0;
+}
+
+static int solve_by_ends(spari_linear *s, double *x) {
+    size_t m = (size_t)s->block, own = s->own, o = (size_t)s->overlap, last = (size_t)s->elements;
+    linear_elements t = {s, x, kernels_here()};
+    double *end = s->ends_x;
+    spread_elements(s, forth_elements, &t);
+    for (size_t e = 0; e <= last; e++, end += o) { /* between element e - 1 and element e */
+        for (size_t i = 0; i < o; i++) {
+            double left = e > 0 ? s->z[m * e - o + i] : 0, right = e < last ? s->z[m * e + own + i] : 0;
+            end[i] = x[(m - o) * e + i] + left + right;
+        }
+    }
+    int bad = spari_linear_solve(s->ends, s->ends_x);
+    spread_elements(s, back_elements, &t);
+    memcpy(x + (m - o) * last, s->ends_x + o * last, o * sizeof(double));
+    return is_any_bad(s) || bad;
+}
+
 int spari_linear_solve(spari_linear *s, double *x) {
     int64_t n = (int64_t)s->n;
+    if (s->ends) {
+        return solve_by_ends(s, x);
+    }
     if (s->far) {
         return solve_halves(s, x);
     }
@@ -444,15 +709,59 @@ void spari_linear_add_rows(int n, int count, const double *rows, double by, cons
     kernels_here().rows(n, count, rows, by, x, y);
 }
 
+/* Of elements: their matrices, then what was exchanged in them. */
+static int64_t size_of_parts(const spari_linear *s) {
+    return (int64_t)s->elements * s->block * s->block;
+}
+
+static int64_t swaps_of_parts(const spari_linear *s) {
+    return (int64_t)s->elements * (int64_t)s->own;
+}
+
+static void save_chain(const spari_linear *s, double *state) {
+    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
+    memcpy(state, s->parts, (size_t)n * sizeof *state);
+    for (int64_t i = 0; i < swaps; i++) {
+        state[n + i] = s->part_swap[i];
+    }
+    spari_linear_save(s->ends, state + n + swaps);
+}
+
+static int is_chain(const spari_linear *s, const double *state) {
+    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
+    for (int64_t i = 0; i < swaps; i++) {
+        if (!(state[n + i] >= 1 && state[n + i] < 1 + (double)s->own)) {
+            return 0;
+        }
+    }
+    return spari_linear_is_state(s->ends, state + n + swaps);
+}
+
+static void load_chain(spari_linear *s, const double *state) {
+    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
+    memcpy(s->parts, state, (size_t)n * sizeof *state);
+    for (int64_t i = 0; i < swaps; i++) {
+        s->part_swap[i] = (int)state[n + i];
+    }
+    spari_linear_load(s->ends, state + n + swaps);
+}
+
 static int64_t part_size(const spari_linear *s) {
     return (int64_t)(s->A->size1 * s->A->size2 + s->inner);
 }
 
 int64_t spari_linear_state_size(const spari_linear *s) {
+    if (s->ends) {
+        return size_of_parts(s) + swaps_of_parts(s) + spari_linear_state_size(s->ends);
+    }
     return part_size(s) + (s->far ? part_size(s->far) + part_size(s->joint) : 0);
 }
 
 void spari_linear_save(const spari_linear *s, double *state) {
+    if (s->ends) {
+        save_chain(s, state);
+        return;
+    }
     for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
         memcpy(state, s->A->data + i * s->A->tda, s->A->size2 * sizeof *state);
     }
@@ -466,6 +775,9 @@ void spari_linear_save(const spari_linear *s, double *state) {
 }
 
 int spari_linear_is_state(const spari_linear *s, const double *state) {
+    if (s->ends) {
+        return is_chain(s, state);
+    }
     double first = s->swap ? 1 : 0;
     state += s->A->size1 * s->A->size2;
     for (size_t i = 0; i < s->inner; i++) {
@@ -479,6 +791,10 @@ int spari_linear_is_state(const spari_linear *s, const double *state) {
 }
 
 void spari_linear_load(spari_linear *s, const double *state) {
+    if (s->ends) {
+        load_chain(s, state);
+        return;
+    }
     for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
         memcpy(s->A->data + i * s->A->tda, state, s->A->size2 * sizeof *state);
     }

@@ -72,6 +72,40 @@ TARGET static void NAME(solve_dense)(int64_t n, const double *A, double *x) {
     }
 }
 
+/* Where the columns from `inner` on have not been taken out: x is left with what the others leave of them; and the
+   others from x, which has their solution. */
+TARGET static void NAME(forth_dense)(int64_t n, int64_t inner, const double *A, double *x) {
+    int64_t j = 0;
+    for (; j + 4 <= inner; j += 4) {
+        const double *at = A + (n + 1) * j;
+        NAME(lower_corner)(4, n, at, x + j);
+        NAME(less_columns)(4, n - j - 4, at + 4, n, x + j, x + j + 4);
+    }
+    NAME(lower_corner)((int)(inner - j), n, A + (n + 1) * j, x + j);
+    for (; j < inner; j++) {
+        NAME(less_columns)(1, n - inner, A + n * j + inner, n, x + j, x + inner);
+    }
+}
+
+TARGET static void NAME(back_dense)(int64_t n, int64_t inner, const double *A, double *x) {
+    int rest = (int)(inner % 4);
+    int64_t whole = inner - rest, j = inner;
+    for (; j + 4 <= n; j += 4) {
+        NAME(less_columns)(4, inner, A + n * j, n, x + j, x);
+    }
+    for (; j < n; j++) {
+        NAME(less_columns)(1, inner, A + n * j, n, x + j, x);
+    }
+    NAME(upper_corner)(rest, n, A + (n + 1) * whole, x + whole);
+    for (int k = 0; k < rest; k++) {
+        NAME(less_columns)(1, whole, A + n * (whole + k), n, x + whole + k, x);
+    }
+    for (j = whole - 4; j >= 0; j -= 4) {
+        NAME(upper_corner)(4, n, A + (n + 1) * j, x + j);
+        NAME(less_columns)(4, j, A + n * j, n, x + j, x);
+    }
+}
+
 /* The same for a band with `band` entries on either side, and as many more above that exchanges of rows brought: row
    swap[j] took the place of row j before column j was taken out. A(i, j) is at columns[step j + 2 band + i - j]. The
    columns from `inner` on have not been: x is left with what the others leave of them, and has then their solution. */
@@ -132,27 +166,31 @@ HERE void NAME(scale)(int64_t n, double by, double *x) {
     }
 }
 
-/* A := its triangles, a column at a time against those before it, with exchanges of whole rows: row j with row swap[j]
-   - 1, unless the diagonal has as much as `least` of the largest entry. Columns that it does not meet, four by four,
-   cost nothing: with unknowns in the order in which a tree of parts is taken apart these are most, and the fewer rows
-   are exchanged, the more. 0, or 1 where a pivot is 0 or none at all. */
-TARGET static int NAME(factor_dense)(int64_t n, double least, double *A, int *swap) {
+/* A := its triangles, a column at a time against those before it, with exchanges of whole rows among the first `inner`,
+   which are taken out; the corner of the others is left with what it has beyond them. Row j with row swap[j] - 1,
+   unless the diagonal has as much as `least` of the largest entry. Columns that it does not meet, four by four, cost
+   nothing: with unknowns in the order in which a tree of parts is taken apart these are most, and the fewer rows are
+   exchanged, the more. 0, or 1 where a pivot is 0 or none at all. */
+TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap) {
     for (int64_t j = 0; j < n; j++) {
         double *x = A + n * j;
-        int64_t k = 0;
-        for (; k + 4 <= j; k += 4) {
+        int64_t k = 0, end = j < inner ? j : inner;
+        for (; k + 4 <= end; k += 4) {
             const double *at = A + (n + 1) * k;
             if (!NAME(are_zero)(x + k)) {
                 NAME(lower_corner)(4, n, at, x + k);
                 NAME(less_columns)(4, n - k - 4, at + 4, n, x + k, x + k + 4);
             }
         }
-        for (; k < j; k++) {
+        for (; k < end; k++) {
             if (x[k] != 0) {
                 NAME(less_columns)(1, n - k - 1, A + (n + 1) * k + 1, n, x + k, x + k + 1);
             }
         }
-        int64_t p = j + NAME(pivot_of)(n - j, least, x + j);
+        if (j >= inner) {
+            continue;
+        }
+        int64_t p = j + NAME(pivot_of)(inner - j, least, x + j);
         swap[j] = (int)p + 1;
         for (double *row = A; p != j && row < A + n * n; row += n) {
             double there = row[p];
