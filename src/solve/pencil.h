@@ -6,6 +6,10 @@
 #include <complex.h>
 #include <stdint.h>
 
+#ifndef CMPLX /* the system's header has it for GCC alone; here both parts are finite */
+#define CMPLX(re, im) ((double complex)((re) + (im)*_Complex_I))
+#endif
+
 typedef struct spari_pencil_entry {
     int row, column;
     double k, c, m;

@@ -107,7 +107,8 @@ static void file_name(char to[LONGEST_PATH], const char *name, const char *more)
 static int write_picture(const spar_case *c, const spar_member *member, const spar_fluid *fluid, int rank, double t,
                          int64_t step) {
     char part[64], stem[LONGEST_PATH], file[2 * LONGEST_PATH], path[4 * LONGEST_PATH], series[4 * LONGEST_PATH];
-    (void)snprintf(part, sizeof part, member ? "" : ".%d", rank);
+    (void)snprintf(part, sizeof part, ".%d", rank);
+    part[0] = member ? '\0' : part[0];
     file_name(stem, member ? spar_member_get_name(member) : spar_fluid_get_name(fluid), part);
     (void)snprintf(file, sizeof file, "%s.%06" PRId64 ".vtp", stem, step);
     (void)snprintf(path, sizeof path, "%s/%s", c->output.folder, file);
