@@ -211,6 +211,14 @@ module spar
     generic :: report_effects => session_report_effects_64, session_report_effects_32, &
         session_report_effects_64_single_1, session_report_effects_64_single_2, session_report_effects_64_single_3, &
         session_report_effects_32_single_1, session_report_effects_32_single_2, session_report_effects_32_single_3
+    procedure, private :: session_solve_eigenvalues_64, session_solve_eigenvalues_32
+    procedure, private :: session_solve_eigenvalues_64_single_1, session_solve_eigenvalues_64_single_2, &
+        session_solve_eigenvalues_64_single_3, session_solve_eigenvalues_32_single_1, &
+        session_solve_eigenvalues_32_single_2, session_solve_eigenvalues_32_single_3
+    generic :: solve_eigenvalues => session_solve_eigenvalues_64, session_solve_eigenvalues_32, &
+        session_solve_eigenvalues_64_single_1, session_solve_eigenvalues_64_single_2, &
+        session_solve_eigenvalues_64_single_3, session_solve_eigenvalues_32_single_1, &
+        session_solve_eigenvalues_32_single_2, session_solve_eigenvalues_32_single_3
     procedure, private :: session_advise_64, session_advise_32
     procedure, private :: session_advise_64_single_1, session_advise_64_single_2, session_advise_64_single_3, &
         session_advise_32_single_1, session_advise_32_single_2, session_advise_32_single_3
@@ -1070,6 +1078,66 @@ contains
 
     call self%report_effects(dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
   end subroutine session_report_effects_32
+
+  ! shift(2), eigenvalue(2,n): growth rate and angular frequency; shapes(2,6,nodes of all members,n)
+  subroutine session_solve_eigenvalues_64(self, dt, memory, modes, shift, eigenvalue, amplitude, before, solve, context, &
+      shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: memory, modes
+    real(c_double), intent(in) :: shift(2)
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
+    real(c_double), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+    character(:), allocatable :: fault
+    integer(c_int64_t) :: n, nodes
+    real(c_double) :: size_of_motion
+
+    size_of_motion = 0
+    if (present(amplitude)) size_of_motion = amplitude
+    n = size(eigenvalue, 2, kind=c_int64_t)
+    nodes = 0
+    call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, n])
+    if (present(shapes)) then
+      nodes = size(shapes, 3, kind=c_int64_t)
+      call need(fault, 'shapes', shape(shapes, kind=c_int64_t), [2_c_int64_t, 6_c_int64_t, nodes, n])
+    end if
+    if (allocated(fault)) then
+      call refuse('session%solve_eigenvalues', fault, stat, errmsg)
+      return
+    end if
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_session_solve_eigenvalues(self%handle, dt, memory, size_of_motion, to_before, to_solver, &
+        c_loc(record), modes, n, shift, eigenvalue, nodes, shapes, frame), self%handle, stat, errmsg)
+  end subroutine session_solve_eigenvalues_64
+
+  subroutine session_solve_eigenvalues_32(self, dt, memory, modes, shift, eigenvalue, amplitude, before, solve, context, &
+      shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: memory, modes
+    real(c_double), intent(in) :: shift(2)
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
+    real(c_double), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%solve_eigenvalues(dt, int(memory, c_int64_t), int(modes, c_int64_t), shift, eigenvalue, amplitude, before, &
+        solve, context, shapes, frame, stat, errmsg)
+  end subroutine session_solve_eigenvalues_32
 
   subroutine session_advise_64(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
@@ -4278,6 +4346,186 @@ contains
         solve=solve, context=context, stat=stat, errmsg=errmsg)
     call take(c_table, table)
   end subroutine session_report_effects_32_single_3
+
+  subroutine session_solve_eigenvalues_64_single_1(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: memory
+    integer(c_int64_t), intent(in) :: modes
+    real(c_double), intent(in) :: shift(2)
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
+    real(c_double), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_amplitude
+
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_eigenvalues_64(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=shift, &
+        eigenvalue=eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, shapes=shapes, &
+        frame=frame, stat=stat, errmsg=errmsg)
+  end subroutine session_solve_eigenvalues_64_single_1
+
+  subroutine session_solve_eigenvalues_64_single_2(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: memory
+    integer(c_int64_t), intent(in) :: modes
+    real(c_float), intent(in) :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call session_solve_eigenvalues_64(self, dt=dt, memory=memory, modes=modes, shift=real(shift, c_double), &
+        eigenvalue=c_eigenvalue, amplitude=amplitude, before=before, solve=solve, context=context, shapes=c_shapes, &
+        frame=c_frame, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine session_solve_eigenvalues_64_single_2
+
+  subroutine session_solve_eigenvalues_64_single_3(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: memory
+    integer(c_int64_t), intent(in) :: modes
+    real(c_float), intent(in) :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_amplitude
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call session_solve_eigenvalues_64(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=real(shift, &
+        c_double), eigenvalue=c_eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, &
+        shapes=c_shapes, frame=c_frame, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine session_solve_eigenvalues_64_single_3
+
+  subroutine session_solve_eigenvalues_32_single_1(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: memory
+    integer(c_int), intent(in) :: modes
+    real(c_double), intent(in) :: shift(2)
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
+    real(c_double), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_amplitude
+
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_eigenvalues_32(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=shift, &
+        eigenvalue=eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, shapes=shapes, &
+        frame=frame, stat=stat, errmsg=errmsg)
+  end subroutine session_solve_eigenvalues_32_single_1
+
+  subroutine session_solve_eigenvalues_32_single_2(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: memory
+    integer(c_int), intent(in) :: modes
+    real(c_float), intent(in) :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call session_solve_eigenvalues_32(self, dt=dt, memory=memory, modes=modes, shift=real(shift, c_double), &
+        eigenvalue=c_eigenvalue, amplitude=amplitude, before=before, solve=solve, context=context, shapes=c_shapes, &
+        frame=c_frame, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine session_solve_eigenvalues_32_single_2
+
+  subroutine session_solve_eigenvalues_32_single_3(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
+      solve, context, shapes, frame, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: memory
+    integer(c_int), intent(in) :: modes
+    real(c_float), intent(in) :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_amplitude
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call session_solve_eigenvalues_32(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=real(shift, &
+        c_double), eigenvalue=c_eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, &
+        shapes=c_shapes, frame=c_frame, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine session_solve_eigenvalues_32_single_3
 
   subroutine session_advise_64_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
       errmsg)

@@ -1302,6 +1302,23 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_try
 
+    function spar_session_solve_eigenvalues(session, dt, memory, amplitude, before, solve, context, modes, n, shift, &
+        eigenvalue, nodes, shapes, frame) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: memory
+      real(c_double), value :: amplitude
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      integer(c_int64_t), value :: modes, n
+      real(c_double), intent(in), optional :: shift(2)
+      real(c_double), intent(inout), optional :: eigenvalue(*)
+      integer(c_int64_t), value :: nodes
+      real(c_double), intent(inout), optional :: shapes(*), frame(3)
+      integer(c_int) :: status
+    end function spar_session_solve_eigenvalues
+
     function spar_effect_name(row) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: row

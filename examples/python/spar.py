@@ -221,6 +221,7 @@ call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]
 constants SPAR_TRY_MOTION=0 SPAR_TRY_REACTION=1 SPAR_TRY_LOAD=2 SPAR_TRY_SECONDS=3 SPAR_TRY_SOLUTIONS=4 SPAR_TRY_COUNT=5
 call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]
+call spar_session_solve_eigenvalues int session|session|value| dt|double|value| memory|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_LARGE_ROTATION=4 SPAR_ROW_FLUID_MOMENT=5 SPAR_ROW_FLUID_VELOCITY=6 SPAR_ROW_FLUID_POSES=7 SPAR_ROW_FLUID_HISTORY=8 SPAR_ROW_PREDICTOR=9 SPAR_ROW_ITERATION=10 SPAR_ROW_HALF_STEP=11 SPAR_ROW_MASSES=12 SPAR_ROW_FOUNDATION=13 SPAR_ROW_PRETENSION=14 SPAR_ROW_COUNT=15
 constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
 call spar_effect_name text row|int|value|

@@ -1346,6 +1346,40 @@ enum {
 SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before,
                               spar_fluid_solver solve, void *context, int compare, int64_t capacity, double *report);
 
+/* Eigenvalues of structure and fluid together: those of spar_member_solve_eigenvalues with the fluid's answer to small
+   motions about the present state, one of equilibrium with the loads in use (spar_session_solve_static, or a run that
+   has come to rest or turns steadily). A wing flutters where the largest growth rate, over the speed of the wind,
+   passes 0, with no run in time. All that spar solves for is seen in its lowest undamped modes; along each of these the
+   members are moved in trials, with an amplitude and its opposite, and nothing is solved: the host's solver gives the
+   loads. The session goes back after each, to the last bit. A fluid without a memory is called 6 modes times, once a
+   trial: its loads by displacements, velocities and accelerations, which it may also make of the places at both ends of
+   the step. One with a memory is called 2 modes (22 + memory) times: the motion is a pulse of a few steps, the loads
+   are watched until so many steps behind it, and what they do beyond is the decay of the linear system that they show.
+   What joints hold or drive stands still; what `before` drives or loads does not move (docs/stability.md).
+     dt: in, s, of the trials' steps, as the fluid is run; with a memory eigenvalues are found up to |lambda| dt = 1
+     memory: in, steps that loads answer for once the motion has ended, 0 to 1000000, until they are on their way to
+           rest; 0: none, and no fluid has states (spar_fluid_set_states)
+     amplitude: in, of the motion: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-5. A
+           fluid that is solved to r of its loads needs about sqrt(r)
+     before, solve, context: in, as of spar_session_try, repeatable; called with this dt
+     modes: in, 1 to 200: more until the answer stays
+     n: in, how many eigenvalues, at most 2 modes
+     shift[2]: in, growth rate, 1/s, and angular frequency, rad/s: those nearest to it are found; NULL: zero, the lowest
+     eigenvalue[n][2]: out, growth rate and angular frequency, >= 0, by their distance from the shift. Those of the
+           fluid alone (its wake's) are left out unless they grow
+     nodes: in, of the array shapes: those of all members; 0 where it is NULL
+     shapes[n][nodes][6][2]: out, displacement and rotation of the nodes, member by member as they were created, real
+           and imaginary part, of unit x^H M x, NULL: not wanted
+     frame[3]: out, rad/s, as of spar_member_solve_eigenvalues, NULL: not wanted
+   The structure is exact in time: steps show these growth rates to the order of their integrator. A rotor's eigenvalues
+   are those in a fluid that is steady as seen from it. Collective. SPAR_ERR_STATE: no equilibrium, or one with other
+   loads; SPAR_ERR_NUMERIC: the fluid does not come to rest in this memory, or fewer than n were found;
+   SPAR_ERR_UNSUPPORTED: as of members. */
+SPAR_API int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t memory, double amplitude,
+                                            spar_before_step before, spar_fluid_solver solve, void *context,
+                                            int64_t modes, int64_t n, const double shift[2], double *eigenvalue,
+                                            int64_t nodes, double *shapes, double frame[3]);
+
 /* Rows of the report of effects. */
 enum {
     SPAR_ROW_INERTIA = 0, /* size: its nodal forces relative to the largest of all terms, roots of the sums of squares

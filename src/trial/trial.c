@@ -363,7 +363,10 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     status = status == SPAR_OK ? carry_loads(s, &t) : status;
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
-    if (status == SPAR_OK) {
+    if (status == SPAR_OK && run->instead) {
+        status = spari_session_seal(s, SPAR_OK);
+        status = status == SPAR_OK ? run->instead(s, run->of) : status;
+    } else if (status == SPAR_OK) {
         status = run_there(s, run, balanced, record);
     }
     if (away) {

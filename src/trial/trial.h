@@ -24,6 +24,9 @@ typedef struct spari_run {
     int (*watch)(spar_session *session,
                  void *watcher); /* NULL, or called after each step: a status that all agree on */
     void *watcher;
+    int (*instead)(spar_session *session, void *of); /* NULL, or what is done there in place of steps, with `of`; the
+                                                        record stays empty. Collective, a status that all agree on */
+    void *of;
     int timed; /* whether the time of the fluid's solutions is wanted */
     int goals; /* what the record has beside the motion (record.h) */
 } spari_run;

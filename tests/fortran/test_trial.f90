@@ -90,6 +90,7 @@ program test_trial
   integer :: failures = 0
 
   call trials()
+  call eigenvalues()
   call a_beam()
   call a_wing()
   if (failures > 0) error stop 'test_trial failed'
@@ -183,6 +184,37 @@ contains
     size = maxval(abs(q(1:3,1)))
     call check(abs(t) <= 0 .and. size <= 0, 'all trials have gone back')
   end subroutine trials
+
+  ! 1 kg on a spring of 4 N/m, which is a fluid: 2 rad/s, in three directions; the shape is one of unit mass.
+  subroutine eigenvalues()
+    type(spar_session) :: session
+    type(spar_member) :: body
+    type(spar_fluid), target :: fluid
+    type(spring) :: context
+    real(c_double) :: eigenvalue(2,3), shapes(2,6,1,3), frame(3), few(2,1)
+    real(c_double), parameter :: at(2) = [0.0_c_double, 2.0_c_double]
+    integer(c_int) :: stat
+    character(300) :: errmsg
+
+    call session%create()
+    call body%create_rigid(session, 'body', origin, unit, diagonal([1, 1, 1, 1, 1, 1] * 1.0_c_double))
+    call body%commit()
+    call fluid%create(body, 'spring')
+    call fluid%set_motion_nodes(reshape(origin, [3, 1]))
+    call fluid%set_force_nodes(reshape(origin, [3, 1]))
+    call fluid%map()
+    context%fluid => fluid
+    context%stiffness = 4
+    call session%solve_eigenvalues(dt, 0, 6, at, eigenvalue, 0.0_c_double, count_step, solve, context, shapes, frame)
+    call check(all(abs(eigenvalue(2,:) - 2) < 1e-7_c_double) .and. all(abs(eigenvalue(1,:)) < 1e-7_c_double), 'eigenvalues')
+    call check(context%steps == 36, 'six calls a mode')
+    call check(abs(sum(shapes**2) - 3) < 1e-6_c_double .and. all(abs(frame) <= 0), 'shapes of unit mass')
+    call session%solve_eigenvalues(dt, 10_c_int64_t, 6_c_int64_t, at, few, 1e-4_c_double, solve=solve, context=context)
+    call check(abs(few(2,1) - 2) < 1e-5_c_double, 'an eigenvalue by pulses')
+    call session%solve_eigenvalues(dt, 0, 6, at, eigenvalue, shapes=shapes(:,:,:,:2), solve=solve, context=context, &
+        stat=stat, errmsg=errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'shapes') > 0, 'shapes of too few: ' // trim(errmsg))
+  end subroutine eigenvalues
 
   ! Where trials vary the nodes, shapes follow: a beam whose solver asks for the basis of its fluid.
   subroutine a_beam()

@@ -538,6 +538,20 @@ void do_spar_session_report_effects(call *c) {
     RUN(c, spar_session_report_effects(l->s, dt, steps, before, solve, h, rows, columns, table));
 }
 
+void do_spar_session_solve_eigenvalues(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    int64_t memory = arg_count(c, 0, 12);
+    double amplitude = arg_real(c, 0, 0.05);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    int64_t modes = arg_count(c, 1, 6), n = arg_count(c, 0, 6), room = length(n);
+    double *shift = arg_reals_or_null(c, 2, -30, 100), *eigenvalue = OUT(c, 2 * room), *frame = OUT_OR_NULL(c, 3);
+    RUN(c, spar_session_solve_eigenvalues(l->s, dt, memory, amplitude, before, solve, h, modes, n, shift, eigenvalue, 0,
+                                          NULL, frame));
+}
+
 void do_spar_session_advise(call *c) {
     live_session *l = arg_session(c);
     double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 0.01, 10);

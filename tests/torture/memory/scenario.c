@@ -764,6 +764,47 @@ static void act_try(void) {
     end_session(&h.session);
 }
 
+/* A viscous medium that lags behind. */
+static int solve_flutter(spar_session *s, double t, double dt, int iteration, void *context) {
+    host *h = context;
+    int was = alloc_arm(0);
+    double v[NODES][3], y[NODES][3];
+    (void)s, (void)t, (void)dt, (void)iteration;
+    CALL(spar_fluid_pull_motion, h->fluid[0], 1, NULL, h->n[0] ? v[0] : NULL);
+    int64_t width = 0;
+    memset(y, 0, sizeof y);
+    CALL(spar_fluid_get_states, h->fluid[0], &width, NULL);
+    CALL(spar_fluid_pull_states, h->fluid[0], width, h->n[0] ? y[0] : NULL);
+    for (int64_t i = 0; i < h->n[0]; i++) {
+        for (int c = 0; c < 3; c++) {
+            y[i][c] = 0.5 * y[i][c] - 0.2 * v[i][c];
+        }
+    }
+    CALL(spar_fluid_push_states, h->fluid[0], width, h->n[0] ? y[0] : NULL);
+    CALL(spar_fluid_push_forces, h->fluid[0], h->n[0] ? y[0] : NULL, NULL);
+    (void)alloc_arm(was);
+    return 0;
+}
+
+static void act_flutter(void) {
+    host h = {0};
+    spar_session *s = begin_session();
+    h.session = s;
+    double value[2][2], shift[2] = {0, 1}, frame[3];
+    spar_member *b = begin_beam(s, "wing", 1, 3, 0);
+    CALL(spar_member_set_root, b, SPAR_ROOT_FIXED);
+    CALL(spar_member_commit, b);
+    h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
+    CALL(spar_fluid_map, h.fluid[0]);
+    for (int64_t memory = 0; memory < 7; memory += 6) {
+        CALL(spar_fluid_set_states, h.fluid[0], memory > 0 ? 3 : 0);
+        CALL(spar_session_solve_eigenvalues, s, 0.02, memory, 0, before_step, solve_flutter, &h, 3, 2, shift,
+             &value[0][0], 0, NULL, frame);
+        note(value, sizeof value);
+    }
+    end_session(&h.session);
+}
+
 static void act_effects(void) {
     host h = {0};
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
@@ -915,5 +956,5 @@ const act acts[] = {{"describe", act_describe, 1},     {"step", act_step, 1},
                     {"effects", act_effects, 1},       {"beamdyn", act_beamdyn, 1},
                     {"aerodyn", act_aerodyn, 1},       {"aero", act_aero, 1},
                     {"advise", act_advise, 0},         {"equilibrium", act_equilibrium, 1},
-                    {"joints", act_joints, 1}};
+                    {"joints", act_joints, 1},         {"flutter", act_flutter, 1}};
 const int act_count = (int)(sizeof acts / sizeof *acts);

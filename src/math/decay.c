@@ -1,0 +1,246 @@
+/* Linear systems from how they come to rest: see decay.h. Y_(i + j) in block row i and column j is O X, of as many
+   independent rows as there are states, and Y_(i + j + 1) is O A X: with O X = U S V^T, A = S^-1/2 U^T (O A X) V
+   S^-1/2. Rows and columns need not follow each other: a few, near each other at first and far apart later, see fast
+   parts and slow ones. */
+#include "decay.h"
+
+#include "../base/blas.h"
+#include "../base/status.h"
+#include "schur.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Block rows times size at most; states at most; parts of the largest singular value that are nothing. */
+enum { MOST_ROWS = 160, MOST_STATES = 60 };
+static const double nothing = 1e-10, fits = 1e-9, as_good = 3, nothing_fits = 0.3;
+
+typedef struct hankel {
+    int size, rows, m; /* of Y; blocks; size * rows */
+    int64_t *at;       /* [rows] */
+    gsl_matrix *U, *V, *next, *G;
+    gsl_vector *S, *work;
+    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; more */
+} hankel;
+
+void spari_decay_free(spari_decay *d) {
+    free(d->z);
+    free(d->left);
+    free(d->right);
+    *d = (spari_decay){0};
+}
+
+int spari_decay_solve(int n, double complex *A, int columns, double complex *b) {
+    for (int k = 0; k < n; k++) {
+        int p = k;
+        for (int i = k + 1; i < n; i++) {
+            p = cabs(A[n * i + k]) > cabs(A[n * p + k]) ? i : p;
+        }
+        if (!(cabs(A[n * p + k]) > 0) || !isfinite(cabs(A[n * p + k]))) {
+            return 1;
+        }
+        for (int j = 0; j < n && p != k; j++) {
+            double complex x = A[n * k + j];
+            A[n * k + j] = A[n * p + j], A[n * p + j] = x;
+        }
+        for (int j = 0; j < columns && p != k; j++) {
+            double complex x = b[columns * k + j];
+            b[columns * k + j] = b[columns * p + j], b[columns * p + j] = x;
+        }
+        for (int i = 0; i < n; i++) {
+            double complex f = i == k ? 0 : A[n * i + k] / A[n * k + k];
+            for (int j = k; j < n && i != k; j++) {
+                A[n * i + j] -= f * A[n * k + j];
+            }
+            for (int j = 0; j < columns && i != k; j++) {
+                b[columns * i + j] -= f * b[columns * k + j];
+            }
+        }
+    }
+    for (int i = 0; i < n * columns; i++) {
+        b[i] /= A[(n + 1) * (i / columns)];
+    }
+    return 0;
+}
+
+static void hankel_free(hankel *h) {
+    free(h->at);
+    free(h->A);
+    gsl_matrix_free(h->U), gsl_matrix_free(h->V), gsl_matrix_free(h->next), gsl_matrix_free(h->G);
+    gsl_vector_free(h->S), gsl_vector_free(h->work);
+}
+
+/* Places of the block rows and columns: 0, 1, .. and then further and further apart, up to a third of what there is:
+   the last third of Y is to be foretold, which noise cannot be. */
+static void place_rows(hankel *h, int64_t count) {
+    int64_t last = count / 3 - 1;
+    for (int i = 0; i < h->rows; i++) {
+        double part = h->rows > 1 ? (double)i / (h->rows - 1) : 0;
+        int64_t at = (int64_t)(part * part * (double)last), next = i > 0 ? h->at[i - 1] + 1 : 0;
+        h->at[i] = at > next ? at : next;
+    }
+}
+
+static int hankel_create(hankel *h, int size, int64_t count) {
+    int64_t rows = MOST_ROWS / size > 4 ? MOST_ROWS / size : 4, states = MOST_STATES;
+    rows = rows < count / 3 ? rows : count / 3;
+    *h = (hankel){.size = size, .rows = (int)rows, .m = (int)rows * size};
+    size_t m = (size_t)h->m;
+    h->at = spari_zalloc(rows, sizeof *h->at);
+    h->A = spari_zalloc(3 * states * states + states, sizeof *h->A);
+    h->Q = h->A ? h->A + states * states : NULL;
+    h->room = h->Q ? h->Q + states * states : NULL;
+    h->U = gsl_matrix_alloc(m, m), h->V = gsl_matrix_alloc(m, m);
+    h->next = gsl_matrix_alloc(m, m), h->G = gsl_matrix_alloc(m, m);
+    h->S = gsl_vector_alloc(m), h->work = gsl_vector_alloc(m);
+    return h->at && h->A && h->U && h->V && h->next && h->G && h->S && h->work ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* U, S, V, and G = U^T (O A X) V. */
+static int decompose(hankel *h, const double *y) {
+    int n = h->size, status;
+    for (int i = 0; i < h->m; i++) {
+        for (int j = 0; j < h->m; j++) {
+            const double *Y = y + n * n * (h->at[i / n] + h->at[j / n]) + n * (i % n) + j % n;
+            gsl_matrix_set(h->U, (size_t)i, (size_t)j, Y[0]);
+            gsl_matrix_set(h->next, (size_t)i, (size_t)j, Y[n * n]);
+        }
+    }
+    SPARI_BLAS(status = gsl_linalg_SV_decomp(h->U, h->V, h->S, h->work));
+    if (status != GSL_SUCCESS) {
+        return SPAR_ERR_NUMERIC;
+    }
+    SPARI_BLAS(gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, h->U, h->next, 0, h->G));
+    SPARI_BLAS(gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, h->G, h->V, 0, h->next));
+    gsl_matrix_memcpy(h->G, h->next);
+    return SPAR_OK;
+}
+
+static double root_of(const hankel *h, int i) {
+    return sqrt(gsl_vector_get(h->S, (size_t)i));
+}
+
+/* The system of r states, by its eigenvectors. 0, or 1: it has none that can be told from each other. */
+static int find_system(hankel *h, int r, spari_decay *d) {
+    int n = h->size;
+    for (int i = 0; i < r * r; i++) {
+        h->A[i] = gsl_matrix_get(h->G, (size_t)(i / r), (size_t)(i % r)) / (root_of(h, i / r) * root_of(h, i % r));
+    }
+    if (spari_schur(r, h->A, h->Q, h->room)) {
+        return 1;
+    }
+    double complex *x = h->room, *W = x + MOST_STATES; /* columns of W: eigenvectors */
+    for (int k = 0; k < r; k++) {
+        d->z[k] = h->A[(r + 1) * k];
+        spari_schur_vector(r, h->A, k, x);
+        for (int i = 0; i < r; i++) {
+            W[r * i + k] = 0;
+            for (int l = 0; l <= k; l++) {
+                W[r * i + k] += h->Q[r * i + l] * x[l];
+            }
+        }
+    }
+    for (int k = 0; k < r; k++) {
+        for (int i = 0; i < n; i++) {
+            d->left[n * k + i] = 0;
+            d->right[n * k + i] = root_of(h, k) * gsl_matrix_get(h->V, (size_t)i, (size_t)k);
+            for (int l = 0; l < r; l++) {
+                d->left[n * k + i] += gsl_matrix_get(h->U, (size_t)i, (size_t)l) * root_of(h, l) * W[r * l + k];
+            }
+        }
+    }
+    d->order = r;
+    return spari_decay_solve(r, W, n, d->right);
+}
+
+/* power [order], sum [size]: room */
+static double misfit_of(const spari_decay *d, int64_t count, const double *y, double most, double complex *power) {
+    int n = d->size;
+    double worst = 0;
+    for (int i = 0; i < d->order; i++) {
+        power[i] = 1;
+    }
+    for (int64_t k = 0; k < count; k++) {
+        for (int e = 0; e < n * n; e++) {
+            double complex sum = 0;
+            for (int i = 0; i < d->order; i++) {
+                sum += d->left[n * i + e / n] * power[i] * d->right[n * i + e % n];
+            }
+            double off = cabs(y[n * n * k + e] - sum) / most;
+            worst = off > worst || isnan(off) ? off : worst;
+        }
+        for (int i = 0; i < d->order; i++) {
+            power[i] *= d->z[i];
+        }
+    }
+    return isnan(worst) ? INFINITY : worst;
+}
+
+/* With r states; one that grows is no answer of a fluid that comes to rest, but where there is no other. */
+static double try_order(hankel *h, int r, int64_t count, const double *y, double most, int may_grow, spari_decay *d) {
+    if (find_system(h, r, d)) {
+        return INFINITY;
+    }
+    for (int i = 0; i < r && !may_grow; i++) {
+        if (cabs(d->z[i]) > 1 + 1e-9) {
+            return INFINITY;
+        }
+    }
+    return misfit_of(d, count, y, most, h->room);
+}
+
+/* The fewest states that fit nearly as well as any. */
+static void choose_order(hankel *h, int64_t count, const double *y, double most, spari_decay *d) {
+    int top = 0, best = 0;
+    double least = INFINITY, found = INFINITY;
+    while (top < h->m && top < MOST_STATES && gsl_vector_get(h->S, (size_t)top) > nothing * gsl_vector_get(h->S, 0)) {
+        top++;
+    }
+    for (int may_grow = 0; may_grow < 2 && !(least < INFINITY); may_grow++) {
+        for (int r = 1; r <= top && !(least <= fits); r++) {
+            least = fmin(least, try_order(h, r, count, y, most, may_grow, d));
+        }
+        for (int r = 1; r <= top && !best && least < INFINITY; r++) {
+            found = try_order(h, r, count, y, most, may_grow, d);
+            best = found <= as_good * least ? r : 0;
+        }
+    }
+    int noise = !best || found > nothing_fits; /* which is no system */
+    d->order = noise ? 0 : best;
+    d->misfit = noise ? 1 : found;
+}
+
+int spari_decay_fit(int size, int64_t count, const double *y, double noise, spari_decay *d) {
+    double most = 0;
+    *d = (spari_decay){.size = size};
+    for (int64_t i = 0; i < count * size * size; i++) {
+        if (!isfinite(y[i])) {
+            return SPAR_ERR_NUMERIC;
+        }
+        most = fmax(most, fabs(y[i]));
+    }
+    d->largest = most;
+    if (!(most > noise) || count < 3) {
+        d->misfit = most > noise;
+        return SPAR_OK;
+    }
+    hankel h;
+    d->z = spari_zalloc(MOST_STATES, sizeof *d->z);
+    d->left = spari_zalloc((int64_t)MOST_STATES * size, sizeof *d->left);
+    d->right = spari_zalloc((int64_t)MOST_STATES * size, sizeof *d->right);
+    int status = hankel_create(&h, size, count);
+    status = status == SPAR_OK && d->z && d->left && d->right ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        place_rows(&h, count);
+        status = decompose(&h, y);
+    }
+    if (status == SPAR_OK) {
+        choose_order(&h, count, y, most, d);
+    }
+    hankel_free(&h);
+    return status;
+}

@@ -1,0 +1,49 @@
+/* A step whose motion is given to the members: see forced.h. */
+#include "forced.h"
+
+#include "../comm/enter.h"
+#include "../fluid/fluid.h"
+#include "../member/structure.h"
+#include "exchange.h"
+#include "lend.h"
+
+#include <string.h>
+
+static void end_forced(spar_session *s, double dt) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        memcpy(m->now.q, m->after.q, (size_t)m->nodes * 7 * sizeof(double));
+        memcpy(m->now.v, m->after.v, (size_t)m->nodes * 6 * sizeof(double));
+        memcpy(m->now.a, m->after.a, (size_t)m->nodes * 6 * sizeof(double));
+        m->motion_given = m->drive_given = 0;
+    }
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_accept(f);
+    }
+    s->time += dt;
+    s->step++;
+    s->dt_last[1] = s->dt_last[0];
+    s->dt_last[0] = dt;
+    s->phase = SPARI_IDLE;
+}
+
+int spari_forced_step(spar_session *s, const char *call, double dt, spar_fluid_solver solve, void *context) {
+    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        spari_fluid_begin(f, 0, dt, s->dt_last);
+    }
+    s->dt = dt;
+    s->order = s->iteration = s->iterating = s->failed = 0;
+    s->started = 1;
+    s->phase = SPARI_SOLVED;
+    int status = spari_lend(s, call, solve, dt, context);
+    if (status == SPAR_ERR_COMM) {
+        return status;
+    }
+    status = status == SPAR_OK ? spari_session_pushes(s, call) : status;
+    SPARI_TRY(spari_enter(s, call, status));
+    SPARI_TRY(spari_session_exchange_loads(s, NULL));
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_session_take_loads(s, m, m->load_pushed);
+    }
+    end_forced(s, dt);
+    return SPAR_OK;
+}

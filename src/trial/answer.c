@@ -1,0 +1,298 @@
+/* Loads by motion along shapes, in trials that solve nothing: see answer.h. */
+#include "answer.h"
+
+#include "../math/rotation.h"
+#include "../session/forced.h"
+#include "../session/lend.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The bell's width, steps. */
+static const double bell_width = 1.25;
+/* How far the loads that the trials find about the present state may be from those in use. */
+static const double same_loads = 1e-3;
+/* Of the structure's forces in a trial, what counts as no load. */
+static const double no_load = 1e-6;
+
+void spari_answer_free(spari_answer *answer) {
+    free(answer->load);
+    answer->load = NULL;
+}
+
+/* How far a shape is gone, and how fast. */
+typedef struct answer_law {
+    double x, v, a;
+} answer_law;
+
+/* One trial. */
+typedef struct answer_trial {
+    const spari_answer_ask *ask;
+    const char *call;
+    const double *base; /* [nodes][13]: displacement, quaternion, velocity, angular velocity at the beginning */
+    const spari_answer *answer;
+    int mode, kind; /* kind: memory 0: of displacement, velocity, acceleration */
+    double size;    /* of the motion, with its sign */
+    double *load;   /* [count][modes], out */
+    double *scale;  /* [modes] sums of the sizes of the loads' parts: the largest of all trials so far, */
+    double *left;   /* and how far the loads were from those in use where nothing moves */
+} answer_trial;
+
+/* ---- motion ---- */
+
+/* R = exp(w t), as a quaternion; and of a velocity that turns with it the way in t. */
+static void turn_on(const double w[3], double t, const double v[3], double q[4], double way[3]) {
+    double angle = spari_norm(w) * t, s[3] = {w[0] * t, w[1] * t, w[2] * t}, once[3], twice[3];
+    double b = fabs(angle) > 1e-3 ? (1 - cos(angle)) / (angle * angle) : 0.5 - angle * angle / 24;
+    double c = fabs(angle) > 1e-3 ? (angle - sin(angle)) / (angle * angle * angle) : 1.0 / 6 - angle * angle / 120;
+    spari_quat_exp(s, q);
+    spari_cross(s, v, once);
+    spari_cross(s, once, twice);
+    for (int k = 0; k < 3; k++) {
+        way[k] = t * (v[k] + b * once[k] + c * twice[k]);
+    }
+}
+
+/* Where steady motion takes a node in t. own: angular velocity of its member. */
+static void move_steadily(const double *base, const double own[3], double t, double q[7], double v[6], double a[6]) {
+    double turn[4], way[3];
+    turn_on(own, t, base + 7, turn, way);
+    for (int k = 0; k < 3; k++) {
+        q[k] = base[k] + way[k];
+        a[3 + k] = 0;
+    }
+    spari_quat_mul(turn, base + 3, q + 3);
+    spari_rotate(turn, base + 7, v);
+    spari_rotate(turn, base + 10, v + 3);
+    spari_cross(own, v, a);
+}
+
+/* c += f a x b */
+static void add_cross(double f, const double a[3], const double b[3], double c[3]) {
+    double x[3];
+    spari_cross(a, b, x);
+    for (int k = 0; k < 3; k++) {
+        c[k] += f * x[k];
+    }
+}
+
+/* What motion along a shape adds, (W1) and (W2) of docs/theory.md, in the axes of the frame at t: frame its turn, w its
+   angular velocity, s that of the member against it. */
+static void add_motion(const double shape[6], answer_law at, const double frame[4], const double w[3],
+                       const double s[3], double q[7], double v[6], double a[6]) {
+    double d[3][6] = {{0}}, once[3], turned[4], old[4], ws[3] = {w[0] - s[0], w[1] - s[1], w[2] - s[2]};
+    for (int k = 0; k < 6; k++) {
+        d[0][k] = shape[k] * at.x;
+        d[1][k] = shape[k] * at.v;
+        d[2][k] = shape[k] * at.a;
+    }
+    spari_cross(w, d[0], once);
+    add_cross(2, w, d[1], d[2]);
+    add_cross(1, w, once, d[2]);
+    spari_cross(s, d[0] + 3, once);
+    add_cross(1, ws, d[1] + 3, d[2] + 3);
+    add_cross(-1, w, once, d[2] + 3);
+    add_cross(1, w, d[0], d[1]);
+    add_cross(-1, s, d[0] + 3, d[1] + 3);
+    for (int i = 0; i < 6; i++) {
+        spari_rotate(frame, d[i / 2] + 3 * (i % 2), d[i / 2] + 3 * (i % 2));
+    }
+    spari_quat_exp(d[0] + 3, turned);
+    memcpy(old, q + 3, sizeof old);
+    spari_quat_mul(turned, old, q + 3);
+    spari_quat_normalise(q + 3);
+    for (int k = 0; k < 6; k++) {
+        q[k] += k < 3 ? d[0][k] : 0;
+        v[k] += d[1][k];
+        a[k] += d[2][k];
+    }
+}
+
+/* All members where they are at t, if their mode is at `law`. */
+static void place_members(spar_session *s, const answer_trial *of, double t, answer_law law, int after) {
+    const spari_swing *w = of->ask->swing;
+    const double zero[3] = {0, 0, 0}, *base = of->base, *shape = of->ask->shape + 6 * of->ask->nodes * of->mode;
+    double frame[4], way[3];
+    turn_on(w->w, t, zero, frame, way);
+    for (spar_member *m = s->members; m; m = m->next) {
+        const swing_part *part = spari_swing_part(w, m);
+        const spari_motion *to = after ? &m->after : &m->now;
+        double own[3], seen[3];
+        memcpy(own, base + 10, sizeof own);
+        for (int k = 0; k < 3; k++) {
+            seen[k] = own[k] - w->w[k];
+        }
+        for (int64_t i = 0; i < m->nodes; i++, base += 13, shape += 6) {
+            double *q = to->q + 7 * i, *v = to->v + 6 * i, *a = to->a + 6 * i;
+            move_steadily(base, own, t, q, v, a);
+            if (part) {
+                add_motion(shape, law, frame, w->w, seen, q, v, a);
+            }
+        }
+    }
+}
+
+/* ---- loads ---- */
+
+/* Loads on all shapes at t, and the sizes of their parts. */
+static void see_loads(const spar_session *s, const spari_answer_ask *ask, double t, double *load, double *scale) {
+    const spari_swing *w = ask->swing;
+    const double zero[3] = {0, 0, 0};
+    double frame[4], way[3];
+    turn_on(w->w, t, zero, frame, way);
+    for (int k = 0; k < ask->modes; k++) {
+        const double *shape = ask->shape + 6 * ask->nodes * k;
+        double sum = 0, size = 0;
+        for (const spar_member *m = s->members; m; m = m->next) {
+            for (int64_t i = 0; i < 2 * m->nodes; i++, shape += 3) {
+                double f[3];
+                spari_rotate_back(frame, m->load_pushed + 3 * i, f);
+                sum += spari_dot(shape, f);
+                size += spari_norm(shape) * spari_norm(f);
+            }
+        }
+        load[k] = sum;
+        scale[k] = fmax(scale[k], size);
+    }
+}
+
+static answer_law bell(int64_t sample) {
+    double u = ((double)sample - SPARI_PULSE_MIDDLE) / bell_width, x = exp(-0.5 * u * u);
+    return fabs(u) < 8 ? (answer_law){x, -u / bell_width * x, (u * u - 1) / (bell_width * bell_width) * x}
+                       : (answer_law){0, 0, 0};
+}
+
+/* The law at the end of a step; of the beginning before = 1. */
+static answer_law law_of(const answer_trial *of, int64_t sample, int before) {
+    double dt = of->ask->run.dt, rate = of->ask->rate[of->mode], size = of->size;
+    if (of->ask->memory > 0) {
+        answer_law at = bell(sample - before);
+        return (answer_law){size * at.x, size * at.v / dt, size * at.a / (dt * dt)};
+    }
+    double v = of->kind == 1 ? size * rate : 0, a = of->kind == 2 ? size * rate * rate : 0, t = before ? -dt : 0;
+    return (answer_law){(of->kind == 0 ? size : 0) + v * t + 0.5 * a * t * t, v + a * t, a};
+}
+
+/* The trial itself. */
+static int move_there(spar_session *s, void *self) {
+    const answer_trial *of = self;
+    const spari_answer_ask *ask = of->ask;
+    int64_t steps = ask->memory > 0 ? of->answer->count : 1;
+    place_members(s, of, 0, law_of(of, 0, 1), 0);
+    place_members(s, of, 0, law_of(of, 0, 1), 1);
+    for (int64_t i = 0; i < steps; i++) {
+        double t = ask->run.dt * (double)(i + 1);
+        SPARI_TRY(spari_lend_before(s, ask->run.before, ask->run.dt, ask->run.context));
+        place_members(s, of, t, law_of(of, i, 0), 1);
+        SPARI_TRY(spari_forced_step(s, of->call, ask->run.dt, ask->run.solve, ask->run.context));
+        see_loads(s, ask, t, of->load + ask->modes * i, of->scale);
+    }
+    return SPAR_OK;
+}
+
+/* ---- all trials ---- */
+
+/* Half the difference of two trials, by the unit of their motion, into column `mode`; their mean is what is there
+   without motion. */
+static void take_trials(const spari_answer_ask *ask, const answer_trial *of, const double *in_use, const double *plus,
+                        const double *minus, double unit, double *to) {
+    int n = ask->modes;
+    int64_t steps = ask->memory > 0 ? of->answer->count : 1;
+    for (int64_t k = 0; k < steps; k++) {
+        for (int i = 0; i < n; i++) {
+            double mean = 0.5 * (plus[n * k + i] + minus[n * k + i]);
+            of->left[i] = fmax(of->left[i], fabs(mean - in_use[i]));
+            to[n * (n * k + i) + of->mode] = 0.5 * (plus[n * k + i] - minus[n * k + i]) / unit;
+        }
+    }
+}
+
+/* How much of the shape moves its nodes by one length of their member, or one radian. */
+static double unit_of(const spar_session *s, const spari_answer_ask *ask, int mode) {
+    const double *shape = ask->shape + 6 * ask->nodes * mode;
+    double most = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++, shape += 6) {
+            most = fmax(most, fmax(spari_norm(shape) / spari_member_length(m), spari_norm(shape + 3)));
+        }
+    }
+    return most > 0 ? 1 / most : 1;
+}
+
+/* Both trials of a mode and kind. room [2][count][modes], scale [modes]. */
+static int try_mode(spar_session *s, answer_trial *of, const spari_wish *wish, const double *in_use, double *room,
+                    double *to) {
+    const spari_answer_ask *ask = of->ask;
+    double size = ask->amplitude * unit_of(s, ask, of->mode);
+    double unit = ask->memory > 0 || of->kind == 0 ? size : size * pow(ask->rate[of->mode], of->kind);
+    spari_run run = ask->run;
+    run.instead = move_there;
+    run.of = of;
+    of->scale[of->mode] = fmax(of->scale[of->mode], no_load * size * pow(ask->rate[of->mode], 2));
+    for (int side = 0; side < 2; side++) {
+        spari_record none;
+        of->size = side ? -size : size;
+        of->load = room + side * of->answer->count * ask->modes;
+        (void)spari_trial_run(s, &run, wish, &none);
+        SPARI_TRY(none.own);
+    }
+    take_trials(ask, of, in_use, room, room + of->answer->count * ask->modes, unit, to);
+    return SPAR_OK;
+}
+
+static void keep_base(const spar_session *s, double *base) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++, base += 13) {
+            memcpy(base, m->after.q + 7 * i, 7 * sizeof *base);
+            memcpy(base + 7, m->after.v + 6 * i, 6 * sizeof *base);
+        }
+    }
+}
+
+static int run_trials(spar_session *s, const char *call, const spari_answer_ask *ask, const spari_wish *wish,
+                      spari_answer *answer, double *room) {
+    int n = ask->modes;
+    double *base = room, *in_use = base + 13 * ask->nodes, *scale = in_use + n, *left = scale + n, *both = left + n;
+    answer_trial of = {.ask = ask, .call = call, .base = base, .answer = answer, .scale = scale, .left = left};
+    double worst = 0;
+    keep_base(s, base);
+    see_loads(s, ask, 0, in_use, scale);
+    for (of.mode = 0; of.mode < n; of.mode++) {
+        for (of.kind = 0; of.kind < (ask->memory > 0 ? 1 : 3); of.kind++) {
+            double *to = answer->load + (int64_t)n * n * of.kind;
+            SPARI_TRY(try_mode(s, &of, wish, in_use, both, to));
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        worst = fmax(worst, left[i] > 0 ? left[i] / scale[i] : 0);
+    }
+    SPARI_REQUIRE(s, worst <= same_loads, SPAR_ERR_STATE,
+                  "the fluid's loads in the present state are not those in use, by %.1e of them, or they change while "
+                  "nothing moves: no equilibrium; solve with the fluid first (spar_session_solve_static), or let the "
+                  "run come to rest",
+                  worst);
+    return SPAR_OK;
+}
+
+int spari_answer_find(spar_session *s, const char *call, const spari_answer_ask *ask, spari_answer *answer) {
+    int64_t n = ask->modes;
+    *answer = (spari_answer){.count = ask->memory > 0 ? SPARI_PULSE + ask->memory : 3};
+    for (int k = 0; k < SPARI_PULSE; k++) {
+        answer_law at = bell(k);
+        answer->x[k] = at.x, answer->v[k] = at.v / ask->run.dt, answer->a[k] = at.a / (ask->run.dt * ask->run.dt);
+    }
+    answer->load = spari_zalloc(answer->count * n * n, sizeof *answer->load);
+    double *room = spari_zalloc(13 * ask->nodes + 3 * n + 2 * answer->count * n, sizeof *room);
+    int status = answer->load && room ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's answer");
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    spari_wish wish = {.member = NULL};
+    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    if (status == SPAR_OK) {
+        SPARI_VARY(wish.setting, substeps, 1);
+        status = run_trials(s, call, ask, &wish, answer, room);
+        spari_wish_free(&wish);
+    }
+    free(room);
+    return status;
+}
