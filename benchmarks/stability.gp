@@ -38,3 +38,49 @@ set label "20.05" at 20.3,22
 plot csv."beck.csv" using 1:3 with points pt 7 ps 0.5 lc rgb colour[1] title "frequency", \
      csv."beck.csv" using 1:2 with points pt 7 ps 0.5 lc rgb colour[2] title "growth rate", \
      csv."beck.csv" using 1:4 with lines dt 2 lc rgb "#444444" title "lowest mode of the symmetric part (negative: omega^2 is)"
+
+# V-g: growth rates and frequencies over the speed of the wind
+unset arrow
+unset label
+unset title
+set terminal pngcairo size 760,720 font "sans,11" noenhanced
+set output out."flutter.png"
+set multiplot layout 2,1 title "Goland's wing: eigenvalues of wing and air"
+set xrange [0:180]
+set lmargin 10
+set key bottom left opaque box lc rgb "#cccccc"
+set xlabel ""
+set ylabel "growth rate, 1/s"
+set yrange [-35:15]
+set arrow from 0,0 to 180,0 nohead lc rgb "#444444"
+set arrow from 137.2,-35 to 137.2,15 nohead dt 2 lc rgb "#444444"
+set label "137.2 m/s, Goland & Luke 1948" at 134,12 right
+plot csv."goland.csv" using 1:2 with points pt 7 ps 0.5 lc rgb colour[2] title "eigenvalues"
+unset arrow
+unset label
+set xlabel "speed of the wind, m/s"
+set ylabel "frequency, rad/s"
+set yrange [45:95]
+set key top right opaque box lc rgb "#cccccc"
+set arrow from 137.2,45 to 137.2,95 nohead dt 2 lc rgb "#444444"
+set label "70.7 rad/s" at 139,74 left
+plot csv."goland.csv" using 1:3 with points pt 7 ps 0.5 lc rgb colour[1] title "eigenvalues", \
+     "-" using 1:2 with points pt 6 ps 1.4 lw 2 lc rgb colour[3] title "Goland & Luke"
+137.2,70.7
+e
+unset multiplot
+
+set terminal pngcairo size 760,500 font "sans,11" noenhanced
+set output out."flutter-bent.png"
+unset arrow
+unset label
+set title "The sixteen-metre wing, bent by its lift: the least stable eigenvalue"
+set xlabel "speed of the wind, m/s"
+set ylabel "growth rate, 1/s"
+set xrange [14:36]
+set yrange [-1.2:1]
+set key top left opaque box lc rgb "#cccccc"
+set arrow from 14,0 to 36,0 nohead lc rgb "#444444"
+set arrow from 32.21,-1.2 to 32.21,1 nohead dt 2 lc rgb "#444444"
+set label "32.21 m/s, straight:\nPatil et al. 2001" at 32.5,-0.85 left
+plot for [k=0:3] csv."bent.csv" index k using 2:4 with lines lw 2 lc rgb colour[k+1] title word("0 0.5 1 2", k+1)." degrees at the root"
