@@ -35,3 +35,22 @@ target_compile_options(benchmarks_plain_native PRIVATE $<$<C_COMPILER_ID:GNU,Cla
 # The coupling benchmark plays the flows of the stability tests.
 target_sources(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/flows.c")
 target_include_directories(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+
+# The peers: what of Kynema-FMB is installed; nothing is fetched or built. BeamDyn's driver is looked for on the PATH as the
+# program runs.
+get_property(spar_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+if("CXX" IN_LIST spar_languages)
+  find_package(KynemaFMB QUIET)
+  if(TARGET KynemaFMB::kynema_fmb_library)
+    add_executable(benchmarks_peers_kynema "${PROJECT_SOURCE_DIR}/benchmarks/peers_kynema.cpp")
+    set_target_properties(benchmarks_peers_kynema PROPERTIES OUTPUT_NAME peers_kynema
+      RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/benchmarks")
+    target_link_libraries(benchmarks_peers_kynema PRIVATE KynemaFMB::kynema_fmb_library)
+    add_dependencies(benchmarks_peers benchmarks_peers_kynema)
+  endif()
+endif()
+if(SPAR_BUILD_TESTS)
+  add_test(NAME benchmark_peers COMMAND benchmarks_peers 5)
+  set_tests_properties(benchmark_peers PROPERTIES LABELS unit
+    PASS_REGULAR_EXPRESSION "Kynema-FMB: (not )?here.*BeamDyn: (not )?here.*5 nodes.*spar +0.01 +1e-05.*1e-01 m +spar")
+endif()
