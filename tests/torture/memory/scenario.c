@@ -470,6 +470,8 @@ static void act_fidelities(void) {
         CALL(spar_member_set_root, m, what[k].root);
         CALL(spar_member_set_fidelity, m, what[k].kind, what[k].modes);
         CALL(spar_member_set_effects, m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+        CALL(spar_beam_set_pretension, m, 1, eta, load);
+        CALL(spar_beam_set_foundation, m, what[k].kind == SPAR_FIDELITY_MODAL, eta, load);
         if (k != 3) {
             CALL(spar_member_set_added_mass, m, 2, eta, guess);
             CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
