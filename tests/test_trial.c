@@ -282,6 +282,24 @@ static void test_fluid_rows(void **state) {
     spar_session_destroy(&c.s);
 }
 
+/* From rest velocities come with time, beside a load that is there from the first step on (that of the body): what they
+   are worth is of the run, and steps a tenth as long say the same of it. */
+static void test_fluid_size_from_rest(void **state) {
+    (void)state;
+    double size[2];
+    for (int fine = 0; fine < 2; fine++) {
+        scene c = {.load = 0.5, .drag = 0.05};
+        double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        build(&c, 1);
+        OK(c.s, spar_session_report_effects(c.s, fine ? 1e-3 : 1e-2, fine ? 160 : 16, keep, press, &c, SPAR_ROW_COUNT,
+                                            SPAR_COLUMN_COUNT, table[0]));
+        size[fine] = table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_SIZE];
+        spar_session_destroy(&c.s);
+    }
+    assert_true(size[0] > 0.01);
+    NEAR(size[1] / size[0], 1, 0.2);
+}
+
 /* What is advised keeps the tolerance when it is run by itself against a finer run, and is not dearer than what there
    was. The session built to the advice is another one, as a host would build it. */
 static void advised(double tolerance, double added) {
@@ -812,6 +830,7 @@ int main(void) {
         cmocka_unit_test(test_gyroscopic_row),
         cmocka_unit_test(test_left_out_of_statics),
         cmocka_unit_test(test_fluid_rows),
+        cmocka_unit_test(test_fluid_size_from_rest),
         cmocka_unit_test(test_advice_is_kept),
         cmocka_unit_test(test_copies_get_one_advice),
         cmocka_unit_test(test_advice_stays_stable),

@@ -1320,16 +1320,16 @@ SPAR_API int spar_session_load(spar_session *session, const char *path);
    where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
    accelerations from the balance of forces. All calls here are collective, between steps; before and
    solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8. Runs are
-   compared at 128 times, evenly spread, between steps by cubics. The seconds of a run are the processor time of its steps, the fluid's included,
-   on all ranks; advice goes by counted work, not by them. */
+   compared at 128 times, evenly spread, between steps by cubics. The seconds of a run are the processor time of its
+   steps, the fluid's included, on all ranks; advice goes by counted work, not by them. */
 
 /* What a trial says. Errors are roots of the mean square over members, places along them and the times. */
 enum {
-    SPAR_TRY_MOTION = 0,    /* change of the motion, relative to the motion beyond that of a fixed or driven root (else
-                               since the beginning of the run) */
-    SPAR_TRY_REACTION = 1,  /* change of what the roots give the members, moments by their lengths, relative to that */
-    SPAR_TRY_LOAD = 2,      /* change of the fluid's loads after the first step, relative to these */
-    SPAR_TRY_SECONDS = 3,   /* processor time of the steps, s */
+    SPAR_TRY_MOTION = 0,   /* change of the motion, relative to the motion beyond that of a fixed or driven root (else
+                              since the beginning of the run) */
+    SPAR_TRY_REACTION = 1, /* change of what the roots give the members, moments by their lengths, relative to that */
+    SPAR_TRY_LOAD = 2,     /* change of the fluid's loads, after the first step and at 8 even times, relative to them */
+    SPAR_TRY_SECONDS = 3,  /* processor time of the steps, s */
     SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
     SPAR_TRY_COUNT = 5
 };
@@ -1388,7 +1388,7 @@ enum {
     SPAR_ROW_GRAVITY = 2,
     SPAR_ROW_DAMPING = 3,
     SPAR_ROW_LARGE_ROTATION = 4, /* size: largest turn of a node against its root (free: against the reference), rad */
-    SPAR_ROW_FLUID_MOMENT = 5,   /* size, as of the next three: change of the fluid's loads in the first step */
+    SPAR_ROW_FLUID_MOMENT = 5,   /* size, as of the next three: change of the fluid's loads, as SPAR_TRY_LOAD */
     SPAR_ROW_FLUID_VELOCITY = 6, /* velocities pulled; without: a fluid that sees them as zero */
     SPAR_ROW_FLUID_POSES = 7,    /* orientations, angular velocities, accelerations pulled; without: the reference's */
     SPAR_ROW_FLUID_HISTORY = 8,  /* node forces pulled back; without: zeros */
@@ -1437,7 +1437,7 @@ enum {
     SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
-    SPAR_ADVICE_WORK = 10,         /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
+    SPAR_ADVICE_WORK = 10, /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
     SPAR_ADVICE_COUNT = 11
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and

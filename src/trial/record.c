@@ -123,7 +123,7 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
     }
     r->value = spari_zalloc(SPARI_SAMPLES * width(r), sizeof *r->value);
     r->recent = spari_zalloc(RECENT * width(r), sizeof *r->recent);
-    r->load = spari_zalloc(6 * (int64_t)r->members, sizeof *r->load);
+    r->load = spari_zalloc(SPARI_LOADS * 6 * (int64_t)r->members, sizeof *r->load);
     r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
     r->room = spari_zalloc(room, sizeof *r->room);
@@ -235,7 +235,7 @@ double spari_record_distance(const spari_record *a, const spari_record *b, int b
 
 double spari_record_load(const spari_record *a, const spari_record *b) {
     double difference = 0, scale = 0;
-    for (int i = 0; i < 6 * b->members; i++) {
+    for (int i = 0; i < SPARI_LOADS * 6 * b->members; i++) {
         difference += (a->load[i] - b->load[i]) * (a->load[i] - b->load[i]);
         scale += b->load[i] * b->load[i];
     }

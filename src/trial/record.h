@@ -16,6 +16,8 @@ enum {
 };
 #define SPARI_GOAL(block) (1 << (block))
 
+enum { SPARI_LOADS = 9 }; /* times at which those of the fluid are compared: the first step's end, and 8 */
+
 struct spari_record {
     int64_t steps, taken, stations;  /* of the run, and so many it came to; places looked at, all members */
     int64_t first[SPARI_BLOCKS + 1]; /* where a block begins in a sample, and what a sample has */
@@ -23,8 +25,8 @@ struct spari_record {
     double *value;                   /* [SPARI_SAMPLES][first[SPARI_BLOCKS]] */
     double *recent;                  /* [4][the same], of the last steps */
     double *start, *room;            /* displacements at the beginning; work for reactions */
-    double *load; /* [members][6]: fluid loads after the first step, their sum and moment by the length about the root's
-                     reference place */
+    double *load; /* [SPARI_LOADS][members][6]: fluid loads after the first step and at even times, their sum and moment
+                     by the length about the root's reference place */
     double *trail;         /* [4][members][6] the same of the last three steps, and their second difference */
     double alternating[2]; /* part of the loads that turns round from step to step, squared, in the second and in the
                               last quarter of the run, relative to the loads of both */

@@ -245,6 +245,9 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     if (i == 1) {
         memcpy(r->load, now, (size_t)n * sizeof *now);
     }
+    if (i * SPARI_MULTIPLE % steps == 0) {
+        memcpy(r->load + i * SPARI_MULTIPLE / steps * n, now, (size_t)n * sizeof *now);
+    }
     if (quarter % 2 == 1) {
         r->alternating[quarter / 2] += fmax(-product, 0);
     }
