@@ -128,7 +128,7 @@ enum {
     CALL(spar_member_solve_static, 30, FUZZ_CHANGES)                                                                   \
     CALL(spar_member_solve_modes, 60, FUZZ_PURE)                                                                       \
     CALL(spar_member_solve_eigenvalues, 60, FUZZ_PURE)                                                                 \
-    CALL(spar_member_get_advice, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_member_get_advice, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_write_vtk, 10, FUZZ_PURE)                                                                         \
     CALL(spar_joint_create, 80, FUZZ_CHANGES)                                                                          \
     CALL(spar_line_create, 40, FUZZ_CHANGES)                                                                           \
