@@ -100,12 +100,12 @@ HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t sl
         NAME(strain)(SPARI_BLOCK(body->tangent, 3, slot), SPARI_BLOCK(body->C, 36, slot), &s);
         if (how->beyond) {
             NAME(beyond_strain)(how->damped, body, slot, &s);
+            if (how->damped) {
+                NAME(tally_sum)(tally->power + at, w * s.damped);
+            }
         }
         NAME(elastic_forces)(&s, value, slope);
         scale = NAME(norm)(s.s) + NAME(norm)(s.s + 3) * per_length;
-        if (how->damped) {
-            NAME(tally_sum)(tally->power + at, w * s.damped);
-        }
     }
     if (shown != SPARI_MASSLESS) {
         NAME(point_inertia) n;
