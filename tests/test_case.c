@@ -380,13 +380,14 @@ static void test_blade(void **state) {
 static void test_beamdyn(void **state) {
     (void)state;
     static const char primary[] = SPAR_SOURCE_DIR "/tests/data/bend_primary.inp",
-                      blade[] = SPAR_SOURCE_DIR "/tests/data/bend_blade.inp";
+                      blade[] = SPAR_SOURCE_DIR "/tests/data/bend_blade.inp",
+                      quoted[] = "\"" SPAR_SOURCE_DIR "/tests/data/bend_blade.inp\"";
     for (int named = 0; named < 2; named++) {
         char text[2048];
         spar_session *s[2] = {scene_session(), scene_session()};
         spar_member *m[2] = {NULL, NULL};
         (void)snprintf(text, sizeof text, "[session]\ngravity 0 0 -9\n[beam b]\nnodes 9\nbeamdyn \"%s\" %s\n", primary,
-                       named ? blade : "");
+                       named ? quoted : "");
         spar_case *c = read_text(s[0], NULL, text);
         GOOD(spar_case_member(c, "b", &m[0]));
         OK(s[1], spar_session_set_gravity(s[1], (double[]){0, 0, -9}));
