@@ -259,6 +259,59 @@ static void test_same_feet(void **state) {
     assert_memory_equal(flags[0], flags[1], sizeof flags[0]);
 }
 
+/* ---- more nodes than caches hold: their motion goes past them ---- */
+
+/* The nodes of a fluid of many, and each by the side of it in one of few, have the same bits, wherever the host's
+   arrays begin: at a double, within a line of the cache, within a double. */
+static void test_past_caches(void **state) {
+    (void)state;
+    enum { ALL = (1 << 19) + 77, SOME = 999 };
+    double K[36], M[36], some[2][3 * SOME];
+    double *place = malloc(3 * ALL * sizeof *place), few[3 * SOME];
+    char *room = malloc(2 * (3 * ALL + 9) * sizeof(double));
+    scene_box(K, M);
+    for (int64_t i = 0; i < 3 * ALL; i++) {
+        place[i] = 2 * weight_of(7 * i);
+    }
+    for (int64_t i = 0; i < SOME; i++) { /* the last ones, with the part of a tile */
+        memcpy(few + 3 * i, place + 3 * (ALL - SOME + i), 3 * sizeof *few);
+    }
+    for (int threads = 1; threads <= 3; threads += 2) {
+        spar_session *s = scene_session();
+        spar_fluid *all = NULL, *part = NULL;
+        OK(s, spar_session_set_threads(s, threads));
+        spar_member *b = scene_beam(s, "b", 1, 5, 2, K, M);
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_set_load(b, 4, SPAR_LOAD_DEAD, (const double[6]){0, 30, 100, 0, 0, 5}));
+        OK(s, spar_fluid_create(b, "all", &all));
+        OK(s, spar_fluid_set_motion_nodes(all, ALL, place));
+        OK(s, spar_fluid_map(all));
+        OK(s, spar_fluid_create(b, "part", &part));
+        OK(s, spar_fluid_set_motion_nodes(part, SOME, few));
+        OK(s, spar_fluid_map(part));
+        scene_run(s, 0.01, 3);
+        OK(s, spar_fluid_pull_motion(part, 1, some[0], some[1]));
+        const int at[] = {0, 8, 24, 56, 4};
+        for (int i = 0; i < 5; i++) {
+            memset(room, 0xff, 2 * (3 * ALL + 9) * sizeof(double));
+            char *x = room + at[i], *v = x + (3 * ALL + 1) * sizeof(double);
+            OK(s, spar_fluid_pull_motion(all, 1, (double *)(void *)x, (double *)(void *)v));
+            size_t last = 3 * (size_t)(ALL - SOME) * sizeof(double);
+            assert_memory_equal(x + last, some[0], sizeof some[0]);
+            assert_memory_equal(v + last, some[1], sizeof some[1]);
+            assert_int_equal((unsigned char)x[3 * ALL * sizeof(double)], 0xff); /* and nothing beyond */
+            for (int64_t k = 0; k < 3 * ALL; k += 11) {
+                double value;
+                memcpy(&value, x + k * (int64_t)sizeof value, sizeof value);
+                assert_true(fabs(value - place[k]) < 2);
+            }
+        }
+        spar_session_destroy(&s);
+    }
+    free(place);
+    free(room);
+}
+
 /* ---- failures ---- */
 
 /* Two of five bodies are given loads beyond the numbers: the message is that of the first, no log hears of the other,
@@ -345,8 +398,13 @@ static void test_number(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_number),    cmocka_unit_test(test_same_feet), cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_long_beam), cmocka_unit_test(test_rounding_of_the_host),
+        cmocka_unit_test(test_number),
+        cmocka_unit_test(test_same_feet),
+        cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_past_caches),
+        cmocka_unit_test(test_long_beam),
+        cmocka_unit_test(test_rounding_of_the_host),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

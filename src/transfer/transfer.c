@@ -308,8 +308,46 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
     }
 }
 
+#if defined(__GNUC__) && defined(__SSE2__)
+/* Past the caches, in whole lines: of an array that is longer than they are nothing is there again when it is read, and
+   a line that is written whole needs not be read before. */
+static void stream(int64_t n, const double *from, double *to) {
+    int64_t head = (int64_t)((64 - ((uintptr_t)to & 63)) & 63) / 8, i = head < n ? head : n;
+    memcpy(to, from, (size_t)i * sizeof *to);
+    for (; i + 8 <= n; i += 8) {
+        for (int k = 0; k < 8; k += 2) {
+            _mm_stream_pd(to + i + k, _mm_loadu_pd(from + i + k));
+        }
+    }
+    memcpy(to + i, from + i, (size_t)(n - i) * sizeof *to);
+}
+
+static int stream_triples(const spari_nodes *s, int count, double (*row)[SPARI_ROW], double *x) {
+    enum { MANY = 1 << 19, PART = 128 };
+    double triples[3 * PART];
+    if (s->n < MANY || ((uintptr_t)x & 7) != 0) {
+        return 0;
+    }
+    for (int i = 0; i < count; i += PART) {
+        int n = count - i < PART ? count - i : PART;
+        choose_kernels(s).store((double(*)[SPARI_ROW])(row[0] + i), n, triples);
+        stream(3 * (int64_t)n, triples, x + 3 * (int64_t)i);
+    }
+    _mm_sfence(); /* before another thread is told that they are there */
+    return 1;
+}
+#else
+static int stream_triples(const spari_nodes *s, int count, double (*row)[SPARI_ROW], double *x) {
+    (void)s, (void)count, (void)row, (void)x;
+    return 0;
+}
+#endif
+
 void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
     int count = spari_tile_count(s, first);
+    if (!s->place && stream_triples(s, count, row, x + 3 * first)) {
+        return;
+    }
     if (!s->place) {
         choose_kernels(s).store(row, count, x + 3 * first);
         return;
