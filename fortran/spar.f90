@@ -58,7 +58,7 @@ module spar
   ! constants of the headers {
   integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
-      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
+      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
   integer, parameter, public :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
   integer, parameter, public :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
@@ -106,6 +106,8 @@ module spar
       SPAR_ROW_COUNT = 15
   integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
+  integer, parameter, public :: SPAR_GOAL_MOTION = 1, SPAR_GOAL_REACTION = 2, SPAR_GOAL_SECTION = 4, &
+      SPAR_GOAL_LOAD = 8, SPAR_GOAL_NUMBERS = 16
   integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &
@@ -177,6 +179,10 @@ module spar
     generic :: step_begin_start => session_step_begin_start, session_step_begin_start_single_1
     procedure :: save => session_save
     procedure :: load => session_load
+    procedure :: set_goal => session_set_goal
+    procedure :: get_goal => session_get_goal
+    procedure, private :: session_push_numbers, session_push_numbers_single_1
+    generic :: push_numbers => session_push_numbers, session_push_numbers_single_1
     procedure :: create => session_create
     procedure :: destroy => session_destroy
     procedure :: exists => session_exists
@@ -2633,6 +2639,37 @@ contains
 
     call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
   end subroutine session_load
+
+  subroutine session_set_goal(self, goals, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: goals
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_goal(self%handle, to_c(goals)), self%handle, stat, errmsg)
+  end subroutine session_set_goal
+
+  subroutine session_get_goal(self, goals, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout) :: goals
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_goals
+
+    status = spar_session_get_goal(self%handle, c_goals)
+    call hand(status, c_goals, goals)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_goal
+
+  subroutine session_push_numbers(self, numbers, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: numbers(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_push_numbers(self%handle, size(numbers, kind=c_int64_t), numbers), self%handle, stat, &
+        errmsg)
+  end subroutine session_push_numbers
 
   ! Written by cmake/make-bindings.sh.
 
@@ -5918,6 +5955,15 @@ contains
 
     call session_step_begin_start(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
   end subroutine session_step_begin_start_single_1
+
+  subroutine session_push_numbers_single_1(self, numbers, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: numbers(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_push_numbers(self, numbers=real(numbers, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_push_numbers_single_1
 
   subroutine member_set_axis_single_1(self, eta, xyz, twist, stat, errmsg)
     class(spar_member), intent(inout) :: self

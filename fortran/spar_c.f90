@@ -1338,6 +1338,28 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_report_effects
 
+    function spar_session_set_goal(session, goals) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: goals
+      integer(c_int) :: status
+    end function spar_session_set_goal
+
+    function spar_session_get_goal(session, goals) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: goals
+      integer(c_int) :: status
+    end function spar_session_get_goal
+
+    function spar_session_push_numbers(session, n, numbers) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: numbers(*)
+      integer(c_int) :: status
+    end function spar_session_push_numbers
+
     function spar_session_advise(session, tolerance, dt, steps, length, before, solve, context, capacity, advice) &
         bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
@@ -1583,7 +1605,7 @@ module spar_c
   ! spar.h
   integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
-      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10
+      SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
   integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
   integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
@@ -1630,6 +1652,8 @@ module spar_c
       SPAR_ROW_COUNT = 15
   integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
       SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
+  integer(c_int), parameter :: SPAR_GOAL_MOTION = 1, SPAR_GOAL_REACTION = 2, SPAR_GOAL_SECTION = 4, &
+      SPAR_GOAL_LOAD = 8, SPAR_GOAL_NUMBERS = 16
   integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
       SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
       SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &

@@ -123,11 +123,159 @@ static void test_bad_lengths(void **state) {
     spar_session_destroy(&p.s);
 }
 
+/* ---- what is asked for ---- */
+
+/* A rod of 1 m and 1 kg on a hinge falls from the horizontal through still air. */
+typedef struct rod {
+    spar_session *s;
+    spar_member *b;
+    spar_joint *hinge;
+    spar_fluid *f;
+    double v[3];
+} rod;
+
+static int air(spar_session *s, double t, double dt, int iteration, void *context) {
+    rod *r = context;
+    (void)t, (void)dt, (void)iteration;
+    int status = spar_fluid_pull_motion(r->f, 1, NULL, r->v);
+    const double force[3] = {-0.05 * r->v[0], 0, -0.05 * r->v[2]}, power = force[0] * r->v[0] + force[2] * r->v[2];
+    status = status ? status : spar_session_push_numbers(s, 1, &power);
+    return status ? status : spar_fluid_push_forces(r->f, force, NULL);
+}
+
+static void hang(rod *r) {
+    const double g[3] = {0, 0, -9.81}, end[3] = {1, 0, 0}, origin[3] = {0, 0, 0}, unit[4] = {1, 0, 0, 0};
+    const double mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3};
+    double K[36], M[36];
+    r->s = scene_session();
+    scene_diagonal(K, 2e4, 1e4, 1e4, 50, 50, 50);
+    scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
+    OK(r->s, spar_session_set_gravity(r->s, g));
+    OK(r->s, spar_session_set_integrator(r->s, 0.9, 1));
+    r->b = scene_beam(r->s, "rod", 1, 6, 1, K, M);
+    OK(r->s, spar_beam_set_damping(r->b, mu));
+    OK(r->s, spar_member_set_root(r->b, SPAR_ROOT_FREE));
+    OK(r->s, spar_member_commit(r->b));
+    OK(r->s, spar_joint_create(r->s, "hinge", r->b, 0, NULL, 0, SPAR_FREE_RY, &r->hinge));
+    OK(r->s, spar_joint_set_frame(r->hinge, origin, unit));
+    OK(r->s, spar_fluid_create(r->b, "air", &r->f));
+    OK(r->s, spar_fluid_set_motion_nodes(r->f, 1, end));
+    OK(r->s, spar_fluid_set_force_nodes(r->f, 1, end));
+    OK(r->s, spar_fluid_map(r->f));
+}
+
+enum { OF_MOTION, OF_ROOT, OF_NUMBER, KINDS };
+
+enum { FINE = 16, STEPS_OF_TRUTH = 160 * FINE };
+
+static void look(const rod *r, double now[KINDS][3]) {
+    double q[7 * 32], load[6];
+    int64_t n;
+    OK(r->s, spar_member_get_count(r->b, &n));
+    OK(r->s, spar_member_get_motion(r->b, q, NULL, NULL));
+    OK(r->s, spar_joint_get_load(r->hinge, load));
+    memcpy(now[OF_MOTION], q + 7 * (n - 1), sizeof now[0]);
+    memcpy(now[OF_ROOT], load, sizeof now[0]);
+    now[OF_NUMBER][0] = -0.05 * (r->v[0] * r->v[0] + r->v[2] * r->v[2]);
+}
+
+/* Errors of a run of 1.6 s at the ends of its steps, each relative to its own size. */
+static void swing(rod *r, double dt, double (*truth)[KINDS][3], double off[KINDS]) {
+    double d[KINDS] = {0}, size[KINDS] = {0};
+    for (int i = 1; i * dt <= 1.6 + 1e-9; i++) {
+        double now[KINDS][3] = {{0}}, at = fmin(i * dt / 1.6 * STEPS_OF_TRUTH - 1, STEPS_OF_TRUTH - 1.001);
+        int before = (int)fmax(at, 0);
+        OK(r->s, spar_step(r->s, dt, air, r, NULL));
+        look(r, now);
+        for (int c = 0; c < 3 * KINDS; c++) {
+            int k = c / 3;
+            double low = truth[before][k][c % 3], high = truth[before + 1][k][c % 3],
+                   exact = low + (at - before) * (high - low), rest = c == 0 ? 1 : 0; /* where it began */
+            d[k] += pow(now[k][c % 3] - exact, 2), size[k] += pow(exact - rest, 2);
+        }
+    }
+    for (int k = 0; k < KINDS; k++) {
+        off[k] = sqrt(d[k] / size[k]);
+    }
+}
+
+/* What motion keeps a root's force need not keep: the rod rings along itself. Each is kept where it is asked for. */
+static void test_goals(void **state) {
+    (void)state;
+    static double truth[STEPS_OF_TRUTH][KINDS][3];
+    static const int goals[] = {SPAR_GOAL_MOTION, SPAR_GOAL_REACTION, SPAR_GOAL_NUMBERS,
+                                SPAR_GOAL_SECTION | SPAR_GOAL_LOAD};
+    const double tolerance = 2e-2, step = 0.01;
+    double off[4][KINDS], dt[4];
+    rod r;
+    hang(&r);
+    OK(r.s, spar_session_set_coupling(r.s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-8, 50));
+    for (int i = 0; i < STEPS_OF_TRUTH; i++) {
+        OK(r.s, spar_step(r.s, step / FINE, air, &r, NULL));
+        look(&r, truth[i]);
+    }
+    spar_session_destroy(&r.s);
+    for (int g = 0; g < 4; g++) {
+        double advice[SPAR_ADVICE_COUNT];
+        hang(&r);
+        OK(r.s, spar_session_set_goal(r.s, goals[g]));
+        OK(r.s, spar_session_advise(r.s, tolerance, step, 160, 1.6, NULL, air, &r, SPAR_ADVICE_COUNT, advice));
+        OK(r.s, spar_session_apply_advice(r.s, &dt[g]));
+        swing(&r, dt[g], truth, off[g]);
+        print_message("goals %d: dt %.4g, asking cost %.3g; motion off by %.2g, root's force by %.2g, power by %.2g\n",
+                      goals[g], dt[g], advice[SPAR_ADVICE_WORK], off[g][OF_MOTION], off[g][OF_ROOT], off[g][OF_NUMBER]);
+        spar_session_destroy(&r.s);
+    }
+    assert_true(off[0][OF_MOTION] <= tolerance);
+    assert_true(off[0][OF_ROOT] > tolerance); /* what asking for it is good for */
+    assert_true(off[1][OF_ROOT] <= tolerance);
+    assert_true(off[2][OF_NUMBER] <= tolerance);
+}
+
+/* Refusals of the goal and of numbers; the default; what was set is read. */
+static void test_goal_input(void **state) {
+    (void)state;
+    const double x[2] = {1, NAN};
+    int goals = 0;
+    spar_session *s = scene_session();
+    OK(s, spar_session_get_goal(s, &goals));
+    assert_int_equal(goals, SPAR_GOAL_MOTION);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_session_set_goal(s, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_session_set_goal(s, 32));
+    OK(s, spar_session_set_goal(s, SPAR_GOAL_LOAD | SPAR_GOAL_NUMBERS));
+    OK(s, spar_session_get_goal(s, &goals));
+    assert_int_equal(goals, SPAR_GOAL_LOAD | SPAR_GOAL_NUMBERS);
+    OK(s, spar_session_push_numbers(s, 0, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "number 1 is nan", spar_session_push_numbers(s, 2, x));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give 0 to 32", spar_session_push_numbers(s, 33, x));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "without an array", spar_session_push_numbers(s, 1, NULL));
+    spar_session_destroy(&s);
+}
+
+/* ---- what asking costs ---- */
+
+/* A limit that is reached is said, with what has been spent, and all is as it was; a larger one is kept. */
+static void test_limit(void **state) {
+    (void)state;
+    pile p = {.load = 0.1, .rate = 2.1, .drag = 0.3};
+    double advice[SPAR_ADVICE_COUNT] = {7};
+    build(&p, SPAR_FIDELITY_EXACT, 0);
+    OK(p.s, spar_session_set_option(p.s, "advise.limit", "1.5"));
+    REFUSED(p.s, SPAR_ERR_LIMIT, "advise.limit allows 1.5",
+            spar_session_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+    assert_true(advice[0] == 7);
+    NEAR(tip(&p), 0, 0);
+    OK(p.s, spar_session_set_option(p.s, "advise.limit", "15"));
+    OK(p.s, spar_session_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+    assert_true(advice[SPAR_ADVICE_WORK] > 1.5 && advice[SPAR_ADVICE_WORK] < 16);
+    spar_session_destroy(&p.s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kept_over_ten_times),
-        cmocka_unit_test(test_trials_too_short),
-        cmocka_unit_test(test_bad_lengths),
+        cmocka_unit_test(test_kept_over_ten_times), cmocka_unit_test(test_trials_too_short),
+        cmocka_unit_test(test_bad_lengths),         cmocka_unit_test(test_goals),
+        cmocka_unit_test(test_goal_input),          cmocka_unit_test(test_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

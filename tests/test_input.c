@@ -248,6 +248,7 @@ static void test_read_back(void **state) {
                                             {"advise.nodes", "vary", "keep"},
                                             {"advise.fidelity", "vary", "keep"},
                                             {"advise.coupling", "vary", "keep"},
+                                            {"advise.limit", "0", "12"},
                                             {"advise.fluid_cost", "0", "0.25"}};
     const double g[3] = {1, -2, 3};
     double rho, atol, rtol, omega, now[3];

@@ -14,7 +14,7 @@ static const struct {
 } codes[] = {
     {0, "SPAR_OK"},          {1, "SPAR_ERR_ARGUMENT"},    {2, "SPAR_ERR_STATE"}, {3, "SPAR_ERR_MEMORY"},
     {4, "SPAR_ERR_NUMERIC"}, {5, "SPAR_ERR_MAPPING"},     {6, "SPAR_ERR_COMM"},  {7, "SPAR_ERR_PEER"},
-    {8, "SPAR_ERR_IO"},      {9, "SPAR_ERR_UNSUPPORTED"}, {10, "SPAR_ERR_USER"},
+    {8, "SPAR_ERR_IO"},      {9, "SPAR_ERR_UNSUPPORTED"}, {10, "SPAR_ERR_USER"}, {11, "SPAR_ERR_LIMIT"},
 };
 
 /* Every code has a text of its own that begins with its name. */
@@ -27,7 +27,7 @@ static void test_texts(void **state) {
         assert_int_equal(text[length], ':');
         assert_true(strlen(text) > length + 5);
     }
-    for (int code = 11; code < 14; code++) {
+    for (int code = 12; code < 15; code++) {
         assert_string_equal(spar_status_text(code), "unknown status");
         assert_string_equal(spar_status_text(-code), "unknown status");
     }

@@ -32,7 +32,7 @@ import numpy
 
 # the interface, as cmake/interface.awk reads it {
 TABLE = """
-constants SPAR_OK=0 SPAR_ERR_ARGUMENT=1 SPAR_ERR_STATE=2 SPAR_ERR_MEMORY=3 SPAR_ERR_NUMERIC=4 SPAR_ERR_MAPPING=5 SPAR_ERR_COMM=6 SPAR_ERR_PEER=7 SPAR_ERR_IO=8 SPAR_ERR_UNSUPPORTED=9 SPAR_ERR_USER=10
+constants SPAR_OK=0 SPAR_ERR_ARGUMENT=1 SPAR_ERR_STATE=2 SPAR_ERR_MEMORY=3 SPAR_ERR_NUMERIC=4 SPAR_ERR_MAPPING=5 SPAR_ERR_COMM=6 SPAR_ERR_PEER=7 SPAR_ERR_IO=8 SPAR_ERR_UNSUPPORTED=9 SPAR_ERR_USER=10 SPAR_ERR_LIMIT=11
 call spar_status_text text status|int|value|
 call spar_version text
 call spar_has int feature|char|in|[]
@@ -226,6 +226,10 @@ constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_D
 constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
 call spar_effect_name text row|int|value|
 call spar_session_report_effects int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]
+constants SPAR_GOAL_MOTION=1 SPAR_GOAL_REACTION=2 SPAR_GOAL_SECTION=4 SPAR_GOAL_LOAD=8 SPAR_GOAL_NUMBERS=16
+call spar_session_set_goal int session|session|value| goals|int|value|
+call spar_session_get_goal int session|session|value| goals|int|out|
+call spar_session_push_numbers int session|session|value| n|int64_t|value| numbers|double|in|[n]
 constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_WORK=10 SPAR_ADVICE_COUNT=11
 call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| length|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
 call spar_session_apply_advice int session|session|value| dt|double|out|

@@ -124,7 +124,8 @@ enum {
     SPAR_ERR_PEER = 7,        /* another rank failed; the message is that rank's */
     SPAR_ERR_IO = 8,          /* a file */
     SPAR_ERR_UNSUPPORTED = 9, /* not in this build, or not there yet */
-    SPAR_ERR_USER = 10        /* the host's callback failed */
+    SPAR_ERR_USER = 10,       /* the host's callback failed */
+    SPAR_ERR_LIMIT = 11       /* a limit of work that the host has set is reached */
 };
 
 /* Name and text of a status, for any int; static storage, never NULL. */
@@ -281,6 +282,8 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
                             has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change
+     advise.limit           >= 0, default 0 (none): what asking for advice may cost, counted, in trials with the session
+                            as it is; SPAR_ERR_LIMIT where there is no advice by then
      advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
                             what its nodes lead one to expect; where those of the first run take more than
                             thirty times that, their time in powers of 900 of it */
@@ -1425,6 +1428,26 @@ SPAR_API int spar_session_report_effects(spar_session *session, double dt, int64
                                          spar_fluid_solver solve, void *context, int64_t rows, int64_t columns,
                                          double *table);
 
+/* What the tolerance of advice is for. Each is relative to its own root of the mean square, and compared by itself. */
+enum {
+    SPAR_GOAL_MOTION = 1,   /* motion, as SPAR_TRY_MOTION */
+    SPAR_GOAL_REACTION = 2, /* what roots and joints give the members, moments by their lengths */
+    SPAR_GOAL_SECTION = 4,  /* section forces at nine places, eta 0 to 1, of the beams that have sections, as
+                               spar_beam_get_section; moments by the lengths */
+    SPAR_GOAL_LOAD = 8,     /* the fluid's loads on each member: their sum and moment about its root */
+    SPAR_GOAL_NUMBERS = 16  /* each number of spar_session_push_numbers */
+};
+/* Local, alike on all ranks, between steps.
+     goals: in, SPAR_GOAL_* or-ed; the tolerance holds for each; default SPAR_GOAL_MOTION */
+SPAR_API int spar_session_set_goal(spar_session *session, int goals);
+/* goals: out */
+SPAR_API int spar_session_get_goal(const spar_session *session, int *goals);
+/* Numbers of the host's own that advice is to keep, as they are now (thrust, power, lift): pushed by the fluid solver
+   in each iteration, or before a step; the last ones of a step count. Nothing else is done with them. Local, at any
+   time; on several ranks their sum counts, so that each gives its part, or one of them all. n: in, 0 to 32 numbers[n]:
+   in */
+SPAR_API int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers);
+
 /* Advice for a session. */
 enum {
     SPAR_ADVICE_DT = 0, /* s */
@@ -1433,7 +1456,7 @@ enum {
     SPAR_ADVICE_COUPLING_RTOL = 3, /* of an iterated scheme; its atol is the session's */
     SPAR_ADVICE_PREDICTOR = 4,
     SPAR_ADVICE_NEWTON_RTOL = 5,   /* its atol is the session's */
-    SPAR_ADVICE_ERROR = 6,         /* estimated, as SPAR_TRY_MOTION */
+    SPAR_ADVICE_ERROR = 6,         /* estimated, of the goal that is off farthest */
     SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
@@ -1442,7 +1465,7 @@ enum {
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
-     tolerance: in, as SPAR_TRY_MOTION, in (0, 1)
+     tolerance: in, in (0, 1): of each goal (spar_session_set_goal), by default of the motion, as SPAR_TRY_MOTION
      dt, steps: in, the host's dt in s, and how many of it the trials last, a multiple of 8
      length: in, > 0: how long the run will be that the advice is for, s. If it is longer than the trials, their errors
            count for as much more as they grow with time; SPAR_ERR_NUMERIC if the trials do not tell what comes after
@@ -1455,7 +1478,8 @@ enum {
    (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the same scene gets
    the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. What is kept as it
    is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is
-   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached. */
+   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached;
+   SPAR_ERR_LIMIT: the option advise.limit. After a failure all is as it was. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);

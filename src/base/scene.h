@@ -71,6 +71,8 @@ struct spar_session {
     int theta_on_group;                     /* option fluid.theta = average (default) | group */
     int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
     int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
+    int goals;                                             /* SPAR_GOAL_* that advice is for */
+    double advise_limit;                                   /* option advise.limit */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
     int touched;                                           /* option ranks.state = all (default) | touched */

@@ -18,6 +18,8 @@ typedef struct spari_pace {
     int64_t rejected;
 } spari_pace;
 
+enum { SPARI_MOST_NUMBERS = 32 };
+
 struct spari_own {
     double *pack; /* loads of all members, stacked, for the ranks' sum: [6 * nodes of all members], the fluids that
                     push, the status */
@@ -32,7 +34,8 @@ struct spari_own {
     spari_coupling *coupling;    /* from the first step on */
     spari_coupling *aside; /* that of the steps, while a solution is under way that is none; NULL: there was none */
     spari_pace pace;       /* of steps to a tolerance */
-    spari_record *kept;    /* of a trial that others are compared with; NULL: none */
+    double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers, this rank's; 0: not pushed */
+    spari_record *kept;                /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);
     spari_advised *advised; /* of spar_session_advise; NULL: none */
 };

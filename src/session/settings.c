@@ -19,7 +19,7 @@
 #include <string.h>
 
 /* Calls that set, beside spar_session_set_option. */
-enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, OPTION };
+enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, GOAL, OPTION };
 
 /* Rows: of an argument of a setter, in the order of its arguments; of an option that is a number, or one of two words,
    for 0 and 1; and of what a setter has done though the setting may be as it was, which nobody sets. Each with field,
@@ -78,6 +78,8 @@ static const spari_setting settings[] = {
     WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_ALIKE),
     REAL(TOLERANCE, "tolerance", "drift", tolerance_drift, 0, DBL_MAX, not_negative, 0, SPARI_ALIKE),
     REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE),
+    WHOLE(GOAL, "goal", "goals", goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
+          SPARI_ALIKE),
     OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_ALIKE),
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_ALIKE),
@@ -102,6 +104,7 @@ static const spari_setting settings[] = {
     OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_ALIKE),
+    OPTION_REAL("advise.limit", advise_limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_ALIKE),
     OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
     STATE("numbers of members", member_count),
     STATE("numbers of joints", joint_count),
@@ -319,6 +322,14 @@ int spar_session_set_reproducible(spar_session *session, int on) {
 
 int spar_session_get_reproducible(const spar_session *session, int *on) {
     return get(session, __func__, REPRODUCIBLE, (void *const[]){on});
+}
+
+int spar_session_set_goal(spar_session *session, int goals) {
+    return set(session, __func__, GOAL, (const double[]){goals});
+}
+
+int spar_session_get_goal(const spar_session *session, int *goals) {
+    return get(session, __func__, GOAL, (void *const[]){goals});
 }
 
 int spar_session_set_tolerance(spar_session *session, double drift, double rtol) {

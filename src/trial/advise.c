@@ -311,7 +311,7 @@ static const struct {
 /* Whether asking on can pay: what it has cost is less than a part of what it has saved. */
 static int pays(const spari_advisor *d, const spari_outcome *best) {
     double runs = fmax(d->longer, spari_rule.least_runs), now = d->now > 0 ? d->now : best->cost;
-    return d->known_count < spari_rule.tried &&
+    return d->known_count < spari_rule.tried && d->spent + best->cost < d->limit * now &&
            d->spent + best->cost <= spari_rule.worth_asking * runs * (now - best->cost);
 }
 
@@ -490,12 +490,14 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
         .session = s,
         .run = {.dt = dt, .length = length, .steps = steps, .before = before, .solve = solve, .context = context},
         .tolerance = tolerance,
-        .goals = SPARI_GOAL(SPARI_OF_MOTION)};
+        .limit = INFINITY};
     spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     spari_remake **room = NULL;
+    d.goals = d.run.goals = s->goals;
+    d.limit = s->advise_limit > 0 ? s->advise_limit : INFINITY;
     d.longer = fmax(1, length / (dt * (double)steps));
     int status = spari_plan_groups(&d);
     status = status == SPAR_OK ? make_remakes(&d, &room) : status;

@@ -97,6 +97,11 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
     spari_wish wish;
     spari_run run = d->run;
     *record = (spari_record){0};
+    SPARI_REQUIRE(
+        s, d->now <= 0 || d->spent < d->limit * d->now, SPAR_ERR_LIMIT,
+        "%s: %d trials have cost %.3g times what one costs with the session as it is; the option advise.limit "
+        "allows %.3g: give a larger one, a larger tolerance, or no limit (0)",
+        SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
     SPARI_TRY(spari_wish_create(s, &wish));
     spari_plan_settings(p, wish.setting);
     for (int k = 0; k < s->member_count; k++) {

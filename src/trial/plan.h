@@ -45,8 +45,9 @@ typedef struct spari_advisor {
     spar_session *session;
     spari_run run; /* as the host asked */
     double tolerance;
-    double longer; /* the host's run, relative to the trials */
-    int goals;
+    double longer;      /* the host's run, relative to the trials */
+    int goals;          /* SPAR_GOAL_* */
+    double limit;       /* of all that is spent, in trials with the session as it is; INFINITY: none */
     int groups, *group; /* [members] of which group; -1: as it is */
     spari_level *level; /* [SPARI_LEVELS] */
     int levels;

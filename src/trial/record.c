@@ -2,9 +2,12 @@
 #include "record.h"
 
 #include "../base/scene.h"
+#include "../comm/comm.h"
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
+#include "../member/beam.h"
+#include "../member/joint.h"
 #include "../member/structure.h"
 #include "../solve/reaction.h"
 #include "rules.h"
@@ -14,7 +17,7 @@
 #include <string.h>
 
 /* Places looked at along a beam; a member of one node has its place and three arms. RECENT: points of a cubic. */
-enum { STATIONS = 8, ARMS = 4, RECENT = 4 };
+enum { STATIONS = 8, ARMS = 4, PLACES = 9, RECENT = 4 };
 /* What turns less often in a run looks like the beginning of something. */
 enum { LEAST_PERIODS = 4 };
 static const double pi = 3.14159265358979323846;
@@ -85,6 +88,52 @@ static void look_at_motion(const spar_session *s, const double *start, double *m
     }
 }
 
+void spari_record_loads(const spar_session *s, double *load) {
+    for (const spar_member *m = s->members; m; m = m->next, load += 6) {
+        memset(load, 0, 6 * sizeof *load);
+        for (int64_t i = 0; i < m->nodes; i++) {
+            const double *f = m->load_pushed + 6 * i, *x = m->xr + 3 * i;
+            double arm[3] = {x[0] - m->xr[0], x[1] - m->xr[1], x[2] - m->xr[2]}, t[3];
+            spari_cross(arm, f, t);
+            for (int c = 0; c < 3; c++) {
+                load[c] += f[c];
+                load[3 + c] += (t[c] + f[3 + c]) / spari_member_length(m);
+            }
+        }
+    }
+}
+
+static void look_at_joints(const spar_session *s, double *load) {
+    for (const spar_joint *j = s->joints; j; j = j->next, load += 6) {
+        double length = spari_member_length(j->member[0]);
+        memcpy(load, j->after.load, 6 * sizeof *load);
+        for (int c = 3; c < 6; c++) {
+            load[c] /= length;
+        }
+    }
+}
+
+static int has_sections(const spar_member *m) {
+    return m->kind == SPARI_BEAM && m->beam->stiffness && !m->external;
+}
+
+static int look_at_sections(const spar_session *s, double *force) {
+    double eta[PLACES];
+    for (int i = 0; i < PLACES; i++) {
+        eta[i] = i / (PLACES - 1.0);
+    }
+    for (const spar_member *m = s->members; m; m = m->next) {
+        if (has_sections(m)) {
+            SPARI_TRY(spar_beam_get_section(m, PLACES, eta, NULL, force, NULL, NULL));
+            for (int i = 0; i < 6 * PLACES; i++) {
+                force[i] /= i % 6 < 3 ? 1 : spari_member_length(m);
+            }
+            force += 6 * PLACES;
+        }
+    }
+    return SPAR_OK;
+}
+
 static void look_at_reactions(const spar_session *s, double *room, double *reaction) {
     for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
         spari_member_reaction_in(m, room, reaction);
@@ -108,6 +157,12 @@ static void lay_sample_out(const spar_session *s, int goals, spari_record *r) {
     }
     size[SPARI_OF_MOTION] = size[SPARI_OF_BEYOND] = 3 * r->stations;
     size[SPARI_OF_REACTION] = goals & SPARI_GOAL(SPARI_OF_REACTION) ? 6 * (int64_t)r->members : 0;
+    size[SPARI_OF_JOINT] = goals & SPARI_GOAL(SPARI_OF_REACTION) ? 6 * (int64_t)s->joint_count : 0;
+    size[SPARI_OF_LOAD] = goals & SPARI_GOAL(SPARI_OF_LOAD) ? 6 * (int64_t)r->members : 0;
+    size[SPARI_OF_NUMBERS] = goals & SPARI_GOAL(SPARI_OF_NUMBERS) ? SPARI_MOST_NUMBERS : 0;
+    for (const spar_member *m = s->members; m && goals & SPARI_GOAL(SPARI_OF_SECTION); m = m->next) {
+        size[SPARI_OF_SECTION] += has_sections(m) ? 6 * PLACES : 0;
+    }
     for (int b = 0; b < SPARI_BLOCKS; b++) {
         r->first[b + 1] = r->first[b] + size[b];
     }
@@ -184,12 +239,33 @@ static void interpolate(spari_record *r, int64_t i, double from, double to) {
     }
 }
 
+/* Beside the motion, what is asked for; numbers are the sum of the ranks'. */
+static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
+    int status = SPAR_OK;
+    if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
+        look_at_reactions(s, r->room, now + r->first[SPARI_OF_REACTION]);
+        look_at_joints(s, now + r->first[SPARI_OF_JOINT]);
+    }
+    if (r->goals & SPARI_GOAL(SPARI_OF_LOAD)) {
+        spari_record_loads(s, now + r->first[SPARI_OF_LOAD]);
+    }
+    if (r->goals & SPARI_GOAL(SPARI_OF_SECTION)) {
+        status = look_at_sections(s, now + r->first[SPARI_OF_SECTION]);
+        status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    }
+    if (r->goals & SPARI_GOAL(SPARI_OF_NUMBERS) && status == SPAR_OK) {
+        double sum[SPARI_MOST_NUMBERS + 1];
+        memcpy(sum, s->own->number, sizeof s->own->number);
+        status = spari_comm_sum(s->comm, sum, SPARI_MOST_NUMBERS, SPAR_OK, s->message, sizeof s->message);
+        memcpy(now + r->first[SPARI_OF_NUMBERS], sum, sizeof s->own->number);
+    }
+    return status;
+}
+
 int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
     double *now = recent(r, i);
     look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
-    if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
-        look_at_reactions(s, r->room, now + r->first[SPARI_OF_REACTION]);
-    }
+    SPARI_TRY(look_at_goals(r, s, now));
     r->taken = i;
     int64_t bad = spari_first_nonfinite(now, width(r));
     SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
@@ -202,13 +278,24 @@ int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
 
 /* ---- comparison ---- */
 
-/* Squares of a sample's difference in a block, and of what it is relative to. */
-static void add_squares(const spari_record *a, const spari_record *b, int block, int k, double *difference,
+/* Entries of a block that are compared together. */
+typedef struct part_of {
+    int block;
+    int64_t from, to;
+} part_of;
+
+static part_of whole_of(const spari_record *r, int block) {
+    return (part_of){block, 0, r->first[block + 1] - r->first[block]};
+}
+
+/* Squares of a sample's difference in a part of a block, and of what it is relative to. */
+static void add_squares(const spari_record *a, const spari_record *b, part_of of_which, int k, double *difference,
                         double *scale) {
+    int block = of_which.block;
     int of = block == SPARI_OF_MOTION ? SPARI_OF_BEYOND : block;
     const double *x = a->value + k * width(a) + a->first[block], *y = b->value + k * width(b) + b->first[block],
                  *z = b->value + k * width(b) + b->first[of];
-    for (int64_t i = 0; i < b->first[block + 1] - b->first[block]; i++) {
+    for (int64_t i = of_which.from; i < of_which.to; i++) {
         *difference += (x[i] - y[i]) * (x[i] - y[i]);
         *scale += z[i] * z[i];
     }
@@ -225,12 +312,16 @@ static double relative(double difference, double scale) {
     return difference == 0 ? 0 : scale > 0 ? sqrt(difference / scale) : 1;
 }
 
-double spari_record_distance(const spari_record *a, const spari_record *b, int block) {
+static double distance_of(const spari_record *a, const spari_record *b, part_of which) {
     double difference = 0, scale = 0;
-    for (int k = first_sample(a, b, block); k < SPARI_SAMPLES; k++) {
-        add_squares(a, b, block, k, &difference, &scale);
+    for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
+        add_squares(a, b, which, k, &difference, &scale);
     }
     return relative(difference, scale);
+}
+
+double spari_record_distance(const spari_record *a, const spari_record *b, int block) {
+    return distance_of(a, b, whole_of(b, block));
 }
 
 double spari_record_load(const spari_record *a, const spari_record *b) {
@@ -249,11 +340,11 @@ static double line_mean(double a, double b, double h) {
 
 /* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as from
    the second third of it to the last. In the first it begins, from nothing. */
-static double error_growth(const spari_record *a, const spari_record *b, int block, double longer) {
+static double error_growth(const spari_record *a, const spari_record *b, part_of which, double longer) {
     enum { PARTS = 3 };
     double e[PARTS] = {0}, all = 0, none = 0;
-    for (int k = first_sample(a, b, block); k < SPARI_SAMPLES; k++) {
-        add_squares(a, b, block, k, &e[PARTS * k / SPARI_SAMPLES], &none);
+    for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
+        add_squares(a, b, which, k, &e[PARTS * k / SPARI_SAMPLES], &none);
     }
     for (int i = 0; i < PARTS; i++) {
         all += e[i];
@@ -267,16 +358,27 @@ static double error_growth(const spari_record *a, const spari_record *b, int blo
     if (level < 0) { /* it was not there, at no time: it began with nothing */
         level = 0, slope = e[2] / middle;
     }
-    return fmax(line_mean(level, slope, longer) / seen, 1);
+    return seen > 0 ? fmax(line_mean(level, slope, longer) / seen, 1) : 1;
 }
 
+static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer) {
+    double e = distance_of(a, b, which);
+    return longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, which, longer) - 1)) : e;
+}
+
+/* Reactions are of roots and of joints; numbers stand for themselves. */
 double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
     double most = 0;
-    for (int block = 0; block < SPARI_BLOCKS; block++) {
+    for (int block = 0; block <= SPARI_OF_LOAD; block++) {
         if (goals & SPARI_GOAL(block)) {
-            double e = spari_record_distance(a, b, block);
-            most = fmax(most, longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, block, longer) - 1)) : e);
+            most = fmax(most, error_of_part(a, b, whole_of(b, block), longer));
         }
+    }
+    if (goals & SPARI_GOAL(SPARI_OF_REACTION)) {
+        most = fmax(most, error_of_part(a, b, whole_of(b, SPARI_OF_JOINT), longer));
+    }
+    for (int64_t i = 0; i < SPARI_MOST_NUMBERS && goals & SPARI_GOAL(SPARI_OF_NUMBERS); i++) {
+        most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer));
     }
     return most;
 }

@@ -11,6 +11,10 @@ enum { SPARI_SAMPLES = 128 };
 enum {
     SPARI_OF_MOTION,   /* displacements of places along the members */
     SPARI_OF_REACTION, /* [members][6], moments by the member's length */
+    SPARI_OF_SECTION,  /* [beams with sections][PLACES][6], likewise */
+    SPARI_OF_LOAD,     /* [members][6]: sum and moment of the fluid's loads, likewise */
+    SPARI_OF_NUMBERS,  /* of the host's */
+    SPARI_OF_JOINT,    /* [joints][6]: a part of the reactions, where these are a goal */
     SPARI_OF_BEYOND,   /* displacements beyond what moves with the root, or, where nothing holds it, since the begin */
     SPARI_BLOCKS
 };
@@ -45,8 +49,12 @@ struct spari_record {
 int spari_record_create(spar_session *session, int64_t steps, int goals, spari_record *record);
 void spari_record_free(spari_record *record);
 void spari_record_begin(spari_record *record, const spar_session *session);
-/* Looks at the state after step i of 1 .. steps. SPAR_ERR_NUMERIC: it is not finite. */
+/* Looks at the state after step i of 1 .. steps. SPAR_ERR_NUMERIC: it is not finite. Collective. */
 int spari_record_look(spari_record *record, spar_session *session, int64_t i);
+/* Sum of the fluids' loads on each member [members][6], and their moment by the length about the root's reference
+ * place.
+ */
+void spari_record_loads(const spar_session *session, double *load);
 
 /* Root of the mean square of the difference over that of b's; of the motion: over b's beyond its root. */
 double spari_record_distance(const spari_record *a, const spari_record *b, int block);

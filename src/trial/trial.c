@@ -8,7 +8,6 @@
 #include "../base/quiet.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
-#include "../math/rotation.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/lend.h"
@@ -191,21 +190,6 @@ static void go_back(spar_session *s, stash *t) {
 
 /* ---- the run ---- */
 
-static void look_at_loads(const spar_session *s, double *load) {
-    for (const spar_member *m = s->members; m; m = m->next, load += 6) {
-        memset(load, 0, 6 * sizeof *load);
-        for (int64_t i = 0; i < m->nodes; i++) {
-            const double *f = m->load_pushed + 6 * i, *x = m->xr + 3 * i;
-            double arm[3] = {x[0] - m->xr[0], x[1] - m->xr[1], x[2] - m->xr[2]}, t[3];
-            spari_cross(arm, f, t);
-            for (int c = 0; c < 3; c++) {
-                load[c] += f[c];
-                load[3 + c] += (t[c] + f[3 + c]) / spari_member_length(m);
-            }
-        }
-    }
-}
-
 static void free_kept(spari_record *kept) {
     spari_record_free(kept);
     free(kept);
@@ -235,7 +219,7 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     int n = 6 * r->members, quarter = (int)((i - 1) * 4 / steps);
     double *now = r->trail + i % 3 * n, *last = r->trail + (i + 2) % 3 * n, *before = r->trail + (i + 1) % 3 * n,
            *turn = r->trail + 3 * n, product = 0;
-    look_at_loads(s, now);
+    spari_record_loads(s, now);
     for (int k = 0; k < n; k++) {
         double second = now[k] - 2 * last[k] + before[k];
         product += second * turn[k];
@@ -336,7 +320,7 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
 /* The failing rank's status, on all ranks, where it is of the run: they go on alike. Of a failure of the machine, after
    which none goes on, each keeps its own, or learns that it is a peer's. */
 static int share_failure(spar_session *s, int own, double *work) {
-    enum { CODES = SPAR_ERR_USER + 1 };
+    enum { CODES = SPAR_ERR_LIMIT + 1 };
     double there[CODES + 2] = {0}; /* and what the run has cost */
     if (own == SPAR_OK || own == SPAR_ERR_COMM) {
         return own; /* known to all; and there is no asking through a broken communicator */

@@ -198,6 +198,25 @@ void do_spar_session_set_reproducible(call *c) {
     RUN(c, spar_session_set_reproducible(l->s, on));
 }
 
+void do_spar_session_set_goal(call *c) {
+    live_session *l = arg_session(c);
+    int goals = arg_int(c, 1, 31);
+    RUN(c, spar_session_set_goal(l->s, goals));
+}
+
+void do_spar_session_get_goal(call *c) {
+    live_session *l = arg_session(c);
+    int *goals = arg_out(c, (int64_t)sizeof *goals, 1);
+    RUN(c, spar_session_get_goal(l->s, goals));
+}
+
+void do_spar_session_push_numbers(call *c) {
+    live_session *l = arg_session(c);
+    int64_t n = arg_count(c, 0, 32);
+    double *numbers = arg_reals(c, length(n), -10, 10);
+    RUN(c, spar_session_push_numbers(l->s, n, numbers));
+}
+
 void do_spar_session_set_threads(call *c) {
     live_session *l = arg_session(c);
     int threads = arg_int(c, 1, 3);
@@ -205,13 +224,13 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",       "fluid.far",
-                                       "fluid.audit",          "advise.dt",         "advise.nodes",
-                                       "advise.fidelity",      "advise.coupling",   "coupling.columns",
-                                       "coupling.reuse",       "coupling.filter",   "coupling.motion_atol",
-                                       "coupling.motion_rtol", "coupling.target",   "advise.fluid_cost",
-                                       "coupling.norm",        "coupling.patience", "coupling.estimate",
-                                       "ranks.state",          "fluid.added_mass"};
+    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",     "fluid.far",
+                                       "fluid.audit",          "advise.dt",       "advise.nodes",
+                                       "advise.fidelity",      "advise.coupling", "coupling.columns",
+                                       "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
+                                       "coupling.motion_rtol", "coupling.target", "advise.fluid_cost",
+                                       "advise.limit",         "coupling.norm",   "coupling.patience",
+                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -227,6 +246,7 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1e-6", "0.1"},
                                             {"0.01", "1", "1e-15"},
                                             {"0", "1", "1e-6"},
+                                            {"0", "1000", "0.5"},
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
@@ -554,7 +574,7 @@ void do_spar_session_solve_eigenvalues(call *c) {
 
 void do_spar_session_advise(call *c) {
     live_session *l = arg_session(c);
-    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 0.01, 10);
+    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 1e-3, 0.02);
     int64_t steps = arg_steps(c);
     spar_fluid_solver solve;
     spar_before_step before;

@@ -44,6 +44,9 @@ enum {
     CALL(spar_session_set_predictor, 60, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_set_coupling, 100, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
+    CALL(spar_session_set_goal, 20, FUZZ_CHANGES)                                                                      \
+    CALL(spar_session_get_goal, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_session_push_numbers, 20, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
     CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_tolerance, 60, FUZZ_CHANGES)                                                                 \

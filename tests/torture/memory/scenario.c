@@ -275,6 +275,7 @@ static void settings(spar_session *s) {
                                             {"fluid.audit", "on"},
                                             {"ranks.state", "all"},
                                             {"advise.fluid_cost", "0"},
+                                            {"advise.limit", "0"},
                                             {"advise.coupling", "vary"}};
     CALL(spar_session_set_gravity, s, g);
     CALL(spar_session_set_integrator, s, 0.8, 1);
@@ -283,6 +284,8 @@ static void settings(spar_session *s) {
     CALL(spar_session_set_tolerance, s, 1e9, 0);
     CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 40);
     CALL(spar_session_set_relaxation, s, 0.9);
+    CALL(spar_session_set_goal, s, SPAR_GOAL_MOTION | SPAR_GOAL_SECTION | SPAR_GOAL_NUMBERS);
+    CALL(spar_session_push_numbers, s, 1, (const double[]){1});
     if (run.ranks == 1) {
         CALL(spar_session_set_reproducible, s, 1);
         CALL(spar_session_set_threads, s, 3);
@@ -352,6 +355,7 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_session_get_coupling, s, whole + 0, number + 8, number + 16, whole + 24);
     CALL(spar_session_get_relaxation, s, number + 0);
     CALL(spar_session_get_reproducible, s, whole + 0);
+    CALL(spar_session_get_goal, s, whole + 0);
     CALL(spar_session_get_threads, s, whole + 0);
     CALL(spar_member_get_placement, b, number + 0, number + 8);
     CALL(spar_member_get_root, b, whole + 0);

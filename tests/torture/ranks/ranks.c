@@ -785,6 +785,7 @@ static const struct setting {
     {"max_iterations of spar_session_set_coupling", NULL, NULL, NULL},
     {"omega", NULL, NULL, NULL},
     {"drift of spar_session_set_tolerance", NULL, NULL, NULL},
+    {"goals of spar_session_set_goal", NULL, NULL, NULL},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
     {"coupling.norm", "coupling.norm", "loads", "motion"},
@@ -803,6 +804,7 @@ static const struct setting {
     {"advise.fidelity", "advise.fidelity", "vary", "keep"},
     {"advise.coupling", "advise.coupling", "vary", "keep"},
     {"advise.fluid_cost", "advise.fluid_cost", "1", "0"},
+    {"advise.limit", "advise.limit", "90", "0"},
 };
 enum { SET = sizeof set / sizeof *set };
 
@@ -829,6 +831,8 @@ static int apply_number(spar_session *s, int k, int other) {
         return spar_session_set_relaxation(s, other ? 0.9 : 1);
     case 14:
         return spar_session_set_tolerance(s, other ? 1e9 : 0, 0);
+    case 15:
+        return spar_session_set_goal(s, other ? SPAR_GOAL_REACTION : SPAR_GOAL_MOTION);
     default:
         return spar_session_set_coupling(s, other && k == 9 ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_IQN_ILS,
                                          other && k == 10 ? 1e-9 : 0, other && k == 11 ? 1e-7 : 1e-8,

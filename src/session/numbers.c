@@ -1,0 +1,23 @@
+/* Numbers of the host's own that advice is to keep. */
+#include "../base/quiet.h"
+#include "../base/scene.h"
+#include "own.h"
+
+#include <string.h>
+
+int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST_NUMBERS && (numbers || n == 0), SPAR_ERR_ARGUMENT,
+                  "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",
+                  SPARI_MOST_NUMBERS);
+    int64_t bad = spari_first_nonfinite(numbers, n);
+    SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite ones", __func__,
+                  (long long)bad, numbers[bad]);
+    double *own = session->own->number;
+    memset(own, 0, sizeof session->own->number);
+    for (int64_t i = 0; i < n; i++) {
+        own[i] = numbers[i];
+    }
+    return SPAR_OK;
+}
