@@ -14,7 +14,7 @@
 static const double shown = 1, modelled = 1.5;
 /* Slower than so much of the fastest shape is no motion. */
 static const double still = 1e-6;
-enum { NEAREST = 9, POLISH = 30 };
+enum { NEAREST = 9, POLISH = 30, MORE = 6 };
 
 int spari_reduced_create(spari_reduced *r) {
     int64_t size = (int64_t)r->n * r->n;
@@ -325,11 +325,16 @@ static int is_of_structure(const spari_reduced *r, const reduced_work *w, const 
     return cabs(root->s) * fluid <= structure;
 }
 
-static void bring_all_nearer(const spari_reduced *r, reduced_work *w) {
+/* In the order of their distance from the shift, until there are so many that no other can be among the n nearest. */
+static void bring_all_nearer(const spari_reduced *r, reduced_work *w, int n) {
     double slack = 1 / (r->dt * (double)(r->answer.count + 1));
-    for (int k = 0; k < w->roots; k++) {
+    for (int k = 0, enough = 0; k < w->roots; k++) {
         reduced_root *root = w->root + k;
         int copy = 0, known = 0;
+        if (enough > 2 * n + MORE) {
+            root->wanted = 0;
+            continue;
+        }
         for (int j = 0; j < k; j++) {
             copy += cabs(w->root[j].begun - root->begun) <= 1e-6 * cabs(root->begun);
         }
@@ -342,6 +347,7 @@ static void bring_all_nearer(const spari_reduced *r, reduced_work *w) {
             known += w->root[j].wanted && cabs(w->root[j].s - root->s) <= 1e-8 * cabs(root->s);
         }
         root->wanted = root->wanted && known <= copy;
+        enough += root->wanted;
     }
 }
 
@@ -398,9 +404,11 @@ int spari_reduced_solve(const spari_reduced *r, int n, double complex shift, int
     if (status == SPAR_OK) {
         for (int k = 0; k < w.roots; k++) {
             w.root[k].wanted = 1;
+            w.root[k].distance = cabs(w.root[k].s - shift);
         }
+        qsort(w.root, (size_t)w.roots, sizeof *w.root, by_nearness);
         if (r->memory > 0) {
-            bring_all_nearer(r, &w);
+            bring_all_nearer(r, &w, n);
         }
         sort_roots(r, &w, shift);
     }
