@@ -1,8 +1,9 @@
 /* What accuracy costs: every knob of five scenes is turned on its own, and a few together.
 
-     accuracy [--full] [--scene name] [--out file.csv]
-         plays every setting and writes its error against a converged reference and the processor time of its steps
-         (the least of several runs) over that of the scene's default
+     accuracy [--full] [--phases n] [--scene name] [--out file.csv]
+         plays every setting and writes its errors (motion, loads) against a converged reference and the processor time
+         of its steps (the least of several runs) over that of the scene's default; with phases, the least and the
+         largest error of the scene as it is and begun n - 1 times elsewhere
      valgrind --tool=callgrind accuracy --count [--full] [--scene name]
          plays them once and dumps the instructions of the steps of each, labelled with its number; without --full only
          those of knobs default, fidelity and together (at the default's dt)
@@ -25,7 +26,7 @@
 #endif
 #endif
 
-enum { SETTINGS_MAX = 1000 };
+enum { SETTINGS_MAX = 1000, PHASES_MAX = 9 };
 
 typedef struct setting {
     const scene *scene;
@@ -289,12 +290,21 @@ static int repeat(int i, int times, scene_result *result) {
     return status;
 }
 
-/* The reference, and how far a coarser one on other nodes is from it: an upper estimate of its own error. */
-static int converge(const scene *s, int full, scene_reference *reference, double *own) {
+/* Where a scene begins: as it is, or elsewhere. */
+static double phase_of(int p) {
+    return 0.9 * p;
+}
+
+/* The references, one to a phase, and how far a coarser one on other nodes is from the first: an upper estimate of its
+   own error. */
+static int converge(const scene *s, int full, int phases, scene_reference *reference, double *own) {
     scene_reference coarse;
     const double refine = full ? 64 : 32;
-    fprintf(stderr, "\r     %-7s reference%30s", s->name, "");
-    int status = scene_converge(s, refine, s->spins ? 8 : 1, s->spins ? 8 : 18, reference);
+    int status = SPAR_OK, elements = s->spins ? 8 : 1, nodes = s->spins ? 8 : 18;
+    for (int p = 0; p < phases && status == SPAR_OK; p++) {
+        fprintf(stderr, "\r     %-7s reference %d of %d%30s", s->name, p + 1, phases, "");
+        status = scene_converge_at(s, phase_of(p), p ? refine / 2 : refine, elements, nodes, &reference[p]);
+    }
     status = status == SPAR_OK ? scene_converge(s, refine / 2, 1, 24, &coarse) : status;
     if (status != SPAR_OK) {
         fprintf(stderr, "\n%s: the reference fails: %s\n", s->name, spar_status_text(status));
@@ -304,34 +314,57 @@ static int converge(const scene *s, int full, scene_reference *reference, double
     return 0;
 }
 
-static int measure(const char *only, int full, FILE *csv) {
-    scene_reference reference;
+typedef struct errors {
+    double motion, load, least, most; /* the last two over phases, of the motion */
+} errors;
+
+/* A setting that fails in one phase fails. */
+static int errors_of(int i, int full, int phases, const scene_reference *reference, scene_result *r, errors *e) {
+    int status = repeat(i, full ? 5 : 3, r);
+    *e = (errors){0};
+    if (status == SPAR_OK) {
+        e->motion = e->least = e->most = scene_error(reference, r);
+        e->load = scene_load_error(reference, r);
+    }
+    for (int p = 1; p < phases && status == SPAR_OK; p++) {
+        scene_result other;
+        list[i].knobs.phase = phase_of(p);
+        status = play(i, &other);
+        list[i].knobs.phase = 0;
+        double error = status == SPAR_OK ? scene_error(&reference[p], &other) : 0;
+        e->least = fmin(e->least, error), e->most = fmax(e->most, error);
+    }
+    return status;
+}
+
+static int measure(const char *only, int full, int phases, FILE *csv) {
+    scene_reference reference[PHASES_MAX];
     scene_result r;
     double own = 0, standard = 1;
     const scene *s = NULL;
-    fprintf(csv, "index,scene,knob,value,error,time ratio,iterations per step,steps,note\n");
+    fprintf(csv, "index,scene,knob,value,error,time ratio,iterations per step,steps,note,load error,least,most\n");
     for (int i = 0; i < count; i++) {
         const setting *at = &list[i];
+        errors e;
         if (only && strcmp(only, at->scene->name) != 0) {
             continue;
         }
         if (at->scene != s) {
             s = at->scene;
-            if (converge(s, full, &reference, &own) || repeat(i, 5, &r) != SPAR_OK) {
+            if (converge(s, full, phases, reference, &own) || repeat(i, 5, &r) != SPAR_OK) {
                 return 1;
             }
             standard = r.seconds;
-            fprintf(csv, ",%s,reference,own error,%.2e,,,,\n", s->name, own);
+            fprintf(csv, ",%s,reference,own error,%.2e,,,,,,,\n", s->name, own);
         }
         fprintf(stderr, "\r%4d of %d %-7s %-12s %-24s", i + 1, count, s->name, at->knob, at->value);
         fprintf(csv, "%d,%s,%s,%s,", i, s->name, at->knob, at->value);
-        if (repeat(i, full ? 5 : 3, &r) == SPAR_OK) {
-            double error = scene_error(&reference, &r);
-            fprintf(csv, "%.4e,%.4f,%.3f,%lld,%s\n", error, r.seconds / standard,
+        if (errors_of(i, full, phases, reference, &r, &e) == SPAR_OK) {
+            fprintf(csv, "%.4e,%.4f,%.3f,%lld,%s,%.4e,%.4e,%.4e\n", e.motion, r.seconds / standard,
                     (double)r.iterations / (double)r.steps, (long long)r.steps,
-                    error < own ? "below the reference's error" : "");
+                    e.motion < own ? "below the reference's error" : "", e.load, e.least, e.most);
         } else {
-            fprintf(csv, ",,,,fails\n");
+            fprintf(csv, ",,,,fails,,,\n");
         }
         fflush(csv);
     }
@@ -384,12 +417,17 @@ static int count_all(const char *only, int full) {
 
 int main(int argc, char **argv) {
     const char *out = "accuracy.csv", *only = NULL;
-    int full = 0, counting = 0;
+    int full = 0, counting = 0, phases = 1;
     for (int i = 1; i < argc; i++) {
         full |= strcmp(argv[i], "--full") == 0;
         out = strcmp(argv[i], "--out") == 0 && i + 1 < argc ? argv[++i] : out;
         only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
+        phases = strcmp(argv[i], "--phases") == 0 && i + 1 < argc ? atoi(argv[++i]) : phases;
         counting |= strcmp(argv[i], "--count") == 0;
+    }
+    if (phases < 1 || phases > PHASES_MAX) {
+        fprintf(stderr, "accuracy: --phases 1 to %d\n", PHASES_MAX);
+        return 2;
     }
     for (int i = 0; i < SCENE_COUNT; i++) {
         settings_of(&scenes[i]);
@@ -405,7 +443,7 @@ int main(int argc, char **argv) {
         return 1;
     }
     clock_t since = clock();
-    int failed = measure(only, full, csv);
+    int failed = measure(only, full, phases, csv);
     failed |= fclose(csv) != 0;
     scenes_free();
     fprintf(stderr, "\r%.0f s of processor time; %s%40s\n", (double)(clock() - since) / CLOCKS_PER_SEC, out, "");

@@ -111,7 +111,7 @@ static int solve_air(air *b) {
 static int blow(spar_session *s, double t, double dt, int iteration, void *context) {
     air *b = context;
     (void)s, (void)iteration;
-    double part = (t + b->run->knobs.theta * dt - 0.5) / 1.5;
+    double part = (t + b->run->knobs.theta * dt - 0.5 - 0.1 * b->run->knobs.phase) / 1.5;
     double u = b->wind + (part > 0 && part < 1 ? 0.5 * b->gust * (1 - cos(2 * pi * part)) : 0);
     for (int64_t i = 0; i < b->n; i++) {
         b->inflow[3 * i] = u;
@@ -141,7 +141,8 @@ static int build_blade(scene_run *r, double gust) {
         return SPAR_ERR_UNSUPPORTED;
     }
     nrel5mw_rotor_default(&turbine, &b->rotor);
-    b->density = turbine.density, b->speed = 12.1 * pi / 30, b->wind = 11.4, b->gust = gust, b->n = turbine.aero_n;
+    b->density = turbine.density, b->speed = 12.1 * pi / 30, b->wind = 11.4 * (1 + 0.03 * r->knobs.phase),
+    b->gust = gust, b->n = turbine.aero_n;
     r->solve = blow, r->before = turn;
     TRY(spar_session_set_gravity(r->session, g));
     TRY(nrel5mw_create_blade(&turbine, &b->rotor, r->session, 0, r->knobs.elements, r->knobs.nodes, &r->member));
@@ -169,10 +170,11 @@ static int glide(spar_session *s, double t, double dt, int iteration, void *cont
     return solve_air(context);
 }
 
-/* At 25 m/s and 2 degrees */
+/* At 25 m/s and 2 degrees, or half a degree more or less */
 static int build_wing(scene_run *r) {
     const double alpha[3] = {-0.5, 0, 0.5}, cl[3] = {-pi, 0, pi}, zero[3] = {0}, cd[3] = {0.01, 0.01, 0.01};
     double C[36], M[36], xi[WING_STRIPS], offset[3 * WING_STRIPS] = {0};
+    double angle = (2 + 0.5 * sin(r->knobs.phase)) * pi / 180;
     spar_polar *polar = NULL;
     air *b = take_air(r);
     if (!b) {
@@ -186,7 +188,7 @@ static int build_wing(scene_run *r) {
     for (int i = 0; i < WING_STRIPS; i++) { /* aerodynamic centre a quarter chord ahead of the elastic axis */
         xi[i] = (2 * i + 1.0) / WING_STRIPS - 1;
         offset[3 * i + 1] = -0.25;
-        b->inflow[3 * i + 1] = 25 * cos(2 * pi / 180), b->inflow[3 * i + 2] = -25 * sin(2 * pi / 180);
+        b->inflow[3 * i + 1] = 25 * cos(angle), b->inflow[3 * i + 2] = -25 * sin(angle);
     }
     TRY(spar_fluid_create(r->member, "strips", &r->fluid));
     TRY(spar_fluid_set_sections(r->fluid, WING_STRIPS, xi, offset));
@@ -236,8 +238,8 @@ static int press(spar_session *s, double t, double dt, int iteration, void *cont
     for (int i = 2; i < 6 * STRIPS; i += 3) {
         double over = k->theta > 0 ? k->theta * dt : dt;
         double gain = k->acceleration ? f->a[i] : over > 0 ? (f->v[i] - f->old[i]) / over : 0;
-        f->force[i] = f->load * sin(f->rate * (t + dt)) - f->added * gain - f->damper * f->v[i] -
-                      f->spring * (f->x[i] - f->rest[i]);
+        f->force[i] = f->load * sin(f->rate * (1 + 0.04 * k->phase) * (t + dt)) - f->added * gain -
+                      f->damper * f->v[i] - f->spring * (f->x[i] - f->rest[i]);
     }
     return k->single ? push_single(f->run->fluid, 2 * STRIPS, f->force, NULL)
                      : spar_fluid_push_forces(f->run->fluid, f->force, NULL);
@@ -358,6 +360,21 @@ int scene_step(scene_run *run, double *seconds, int64_t *iterations) {
     return status;
 }
 
+/* What the structure hands on, or, where nothing holds it, is given. */
+static int look(const scene_run *run, double *q, double displacement[3], double load[3]) {
+    int64_t n;
+    double reaction[6];
+    TRY(spar_member_get_count(run->member, &n));
+    TRY(spar_member_get_motion(run->member, q, NULL, NULL));
+    memcpy(displacement, q + 7 * (n - 1), 3 * sizeof *q);
+    if (run->scene->floats) {
+        return spar_fluid_get_total(run->fluid, (const double[3]){0}, load, NULL);
+    }
+    TRY(spar_member_get_reaction(run->member, reaction));
+    memcpy(load, reaction + 3, 3 * sizeof *load);
+    return SPAR_OK;
+}
+
 int scene_march(scene_run *run, scene_result *result) {
     double t, T = run->scene->T, dt = run->knobs.dt;
     int64_t n, steps = llround(T / dt);
@@ -378,10 +395,9 @@ int scene_march(scene_run *run, scene_result *result) {
         status = scene_step(run, &result->seconds, &result->iterations);
         result->steps += status == SPAR_OK;
         if (i * SCENE_SAMPLES % steps == 0 && status == SPAR_OK) {
-            const double *tip = q + 7 * (n - 1);
-            status = spar_member_get_motion(run->member, q, NULL, NULL);
-            memcpy(result->history + 3 * (i * SCENE_SAMPLES / steps - 1), tip, 3 * sizeof *tip);
-            if (!(fabs(tip[2]) < 1e3)) {
+            int64_t at = 3 * (i * SCENE_SAMPLES / steps - 1);
+            status = look(run, q, result->history + at, result->load + at);
+            if (!(fabs(result->history[at + 2]) < 1e3)) {
                 status = SPAR_ERR_NUMERIC; /* it has blown up */
             }
         }
@@ -409,16 +425,21 @@ static int play(const scene *s, const knobs *k, scene_result *result) {
     return status;
 }
 
-int scene_converge(const scene *s, double refine, int elements, int nodes, scene_reference *reference) {
+int scene_converge_at(const scene *s, double phase, double refine, int elements, int nodes,
+                      scene_reference *reference) {
     knobs fine = s->standard, still;
     scene_result result;
+    fine.phase = phase;
     fine.dt = scene_dt(s, s->standard.dt / refine), fine.elements = elements, fine.nodes = nodes;
     fine.scheme = SPAR_COUPLING_IQN_ILS, fine.tolerance = 1e-9;
     TRY(play(s, &fine, &result));
     memcpy(reference->history, result.history, sizeof result.history);
+    memcpy(reference->load, result.load, sizeof result.load);
     reference->scale = scene_distance(result.history, NULL);
+    reference->load_scale = scene_distance(result.load, NULL);
     if (s->spins) {
         still = s->standard;
+        still.phase = phase;
         still.fidelity = SPAR_FIDELITY_PRESCRIBED, still.nodes = nodes;
         TRY(play(s, &still, &result));
         reference->scale = scene_distance(reference->history, result.history);
@@ -426,6 +447,14 @@ int scene_converge(const scene *s, double refine, int elements, int nodes, scene
     return SPAR_OK;
 }
 
+int scene_converge(const scene *s, double refine, int elements, int nodes, scene_reference *reference) {
+    return scene_converge_at(s, 0, refine, elements, nodes, reference);
+}
+
 double scene_error(const scene_reference *reference, const scene_result *result) {
     return scene_distance(result->history, reference->history) / reference->scale;
+}
+
+double scene_load_error(const scene_reference *reference, const scene_result *result) {
+    return scene_distance(result->load, reference->load) / reference->load_scale;
 }

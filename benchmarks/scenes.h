@@ -49,6 +49,8 @@ typedef struct knobs {
     int aero;         /* SPAR_AERO_* or-ed; -1: default */
     int fidelity;     /* SPAR_FIDELITY_* */
     int64_t modes;
+    double phase; /* the same scene a little otherwise: 3 per cent of the wind and 0.1 s of the gust's beginning, 4 per
+                     cent of the waves' rate, its sine half a degree of the wing's angle */
 } knobs;
 
 typedef struct scene_run scene_run;
@@ -83,13 +85,15 @@ struct scene_run {
 /* What scene_march keeps. */
 typedef struct scene_result {
     double history[3 * SCENE_SAMPLES]; /* displacement of the tip at even times, the last T; m */
+    double load[3 * SCENE_SAMPLES];    /* moment at the root then, N m; of what floats the fluid's force, N */
     double seconds;                    /* processor time of the steps, fluid and driving included */
     int64_t steps, iterations;
 } scene_result;
 
 typedef struct scene_reference {
-    double history[3 * SCENE_SAMPLES];
-    double scale; /* root mean square of the motion, or of what it has beyond the rigid turn; m */
+    double history[3 * SCENE_SAMPLES], load[3 * SCENE_SAMPLES];
+    double scale;      /* root mean square of the motion, or of what it has beyond the rigid turn; m */
+    double load_scale; /* and of the load */
 } scene_reference;
 
 /* The scenes, in the order above: scenes[SCENE_COUNT]. */
@@ -112,8 +116,12 @@ double scene_distance(const double a[3 * SCENE_SAMPLES], const double b[3 * SCEN
 /* The scene with the coupling converged to 1e-9, dt that of the standard knobs over `refine`, on elements * nodes
    nodes. How far it is from the limit, two of them tell: scene_distance of their histories over the scale. */
 int scene_converge(const scene *s, double refine, int elements, int nodes, scene_reference *reference);
+/* The same, begun at that phase. */
+int scene_converge_at(const scene *s, double phase, double refine, int elements, int nodes, scene_reference *reference);
 /* Distance from the reference over its scale: 1 is a result without any deformation. */
 double scene_error(const scene_reference *reference, const scene_result *result);
+/* The same of the load. */
+double scene_load_error(const scene_reference *reference, const scene_result *result);
 /* Frees the rotor's tables; they are read again when a scene needs them. */
 void scenes_free(void);
 
