@@ -98,6 +98,19 @@ static int is_elastic(const spari_plan *p, int g) {
     return p->group[g].fidelity >= SPAR_FIDELITY_LINEAR;
 }
 
+/* Of what does not bend: the fewest, where the loads find the same line. */
+static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
+    double part = INFINITY, cost;
+    p->group[g].nodes = spari_plan_member(d, g)->per_element;
+    spari_plan q = *p;
+    q.group[g].nodes = spari_rule.least_nodes;
+    if (!d->session->keep_nodes && q.group[g].nodes < p->group[g].nodes) {
+        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
+    }
+    *p = part <= spari_rule.fidelity ? q : *p;
+    return SPAR_OK;
+}
+
 static int choose_shapes(spari_advisor *d, spari_plan *p, const spari_record *base) {
     for (int g = 0; g < d->groups; g++) {
         if (!d->session->keep_fidelity) {
@@ -107,7 +120,7 @@ static int choose_shapes(spari_advisor *d, spari_plan *p, const spari_record *ba
             SPARI_TRY(choose_points(d, p, g, base));
             SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, base));
         } else {
-            p->group[g].nodes = spari_plan_member(d, g)->per_element;
+            SPARI_TRY(choose_stiff_nodes(d, p, g, base));
         }
     }
     return SPAR_OK;
