@@ -23,7 +23,7 @@ typedef struct hankel {
     int size, rows, m; /* of Y; blocks; size * rows */
     int64_t *at;       /* [rows] */
     gsl_matrix *U, *V, *next, *G;
-    gsl_vector *S, *work;
+    gsl_vector *S;
     double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; more */
 } hankel;
 
@@ -71,7 +71,7 @@ static void hankel_free(hankel *h) {
     free(h->at);
     free(h->A);
     gsl_matrix_free(h->U), gsl_matrix_free(h->V), gsl_matrix_free(h->next), gsl_matrix_free(h->G);
-    gsl_vector_free(h->S), gsl_vector_free(h->work);
+    gsl_vector_free(h->S);
 }
 
 /* Places of the block rows and columns: 0, 1, .. and then further and further apart, up to a third of what there is:
@@ -96,8 +96,8 @@ static int hankel_create(hankel *h, int size, int64_t count) {
     h->room = h->Q ? h->Q + states * states : NULL;
     h->U = gsl_matrix_alloc(m, m), h->V = gsl_matrix_alloc(m, m);
     h->next = gsl_matrix_alloc(m, m), h->G = gsl_matrix_alloc(m, m);
-    h->S = gsl_vector_alloc(m), h->work = gsl_vector_alloc(m);
-    return h->at && h->A && h->U && h->V && h->next && h->G && h->S && h->work ? SPAR_OK : SPAR_ERR_MEMORY;
+    h->S = gsl_vector_alloc(m);
+    return h->at && h->A && h->U && h->V && h->next && h->G && h->S ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
 /* U, S, V, and G = U^T (O A X) V. */
@@ -110,7 +110,7 @@ static int decompose(hankel *h, const double *y) {
             gsl_matrix_set(h->next, (size_t)i, (size_t)j, Y[n * n]);
         }
     }
-    SPARI_BLAS(status = gsl_linalg_SV_decomp(h->U, h->V, h->S, h->work));
+    SPARI_BLAS(status = gsl_linalg_SV_decomp_jacobi(h->U, h->V, h->S)); /* the others take memory, unasked */
     if (status != GSL_SUCCESS) {
         return SPAR_ERR_NUMERIC;
     }
