@@ -186,8 +186,9 @@ int rotor_view_advice(const rotor_trial *t, rotor_options *o, int show) {
     double advice[SPAR_ADVICE_COUNT];
     int fidelity = 0, nodes = 0, points = 0;
     int64_t modes = 0;
-    int status = spar_session_advise(t->session, o->tolerance, t->dt, t->steps, (double)t->steps * t->dt, t->before,
-                                     t->solve, t->context, SPAR_ADVICE_COUNT, advice);
+    int status =
+        spar_session_advise(t->session, o->tolerance, t->dt, t->steps, fmax(o->seconds, (double)t->steps * t->dt),
+                            t->before, t->solve, t->context, SPAR_ADVICE_COUNT, advice);
     if (status == SPAR_OK) {
         status = spar_member_get_advice(t->blade, &fidelity, &modes, &nodes, &points);
     }
