@@ -221,7 +221,7 @@ function document_line(line,   out, text, target) {
     return out line
 }
 
-BEGIN { split("spar_log spar_fluid_solver spar_before_step", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
+BEGIN { split("spar_log spar_fluid_solver spar_before_step spar_progress", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
 FNR == 1 { title = comment = held = last = ""; in_comment = 0; blank = 1 }
 FILENAME ~ /\.md$/ { print document_line($0); next }
 { header($0) }

@@ -98,7 +98,7 @@ function call(prototype,   head, f, answer, n, i, part, line) {
 }
 
 BEGIN { LIST = "[a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: " }
-BEGIN { split("spar_log spar_fluid_solver spar_before_step", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
+BEGIN { split("spar_log spar_fluid_solver spar_before_step spar_progress", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
 /^#/ { next }
 { text = text $0 "\n" }
 

@@ -43,6 +43,7 @@ typedef struct scene {
     int64_t solutions, samples, pictures;
     int trials;                                     /* begun */
     double trials_from, trials_begun, trials_shown; /* simulated time; wall time */
+    double trials_part;                             /* of what advice expects to cost; 0: it has not said */
     char trial_text[160];
 } scene;
 
@@ -498,7 +499,11 @@ static void show_trials(scene *s) {
         return;
     }
     s->trials_shown = wall;
-    fprintf(stderr, "%srotor: %.0f s, trial %d%s%.*s%s", terminal ? "\r" : "", wall, s->trials,
+    char part[40] = "";
+    if (s->trials_part > 0) {
+        snprintf(part, sizeof part, " (%.0f %%)", 100 * s->trials_part);
+    }
+    fprintf(stderr, "%srotor: %.0f s, trial %d%s%s%.*s%s", terminal ? "\r" : "", wall, s->trials, part,
             s->trial_text[0] ? "; last: " : "", terminal ? 90 : 159, s->trial_text, terminal ? "\033[K" : "\n");
     fflush(stderr);
 }
@@ -515,6 +520,14 @@ static void hear(const spar_session *session, int level, const char *text, void 
     if (level == SPAR_LOG_INFO && trial) {
         snprintf(s->trial_text, sizeof s->trial_text, "%s", strchr(trial + 2, ':') + 2);
     }
+}
+
+/* What advice says of itself ahead of a trial. */
+static int hear_progress(spar_session *session, double done, double expected, void *context) {
+    scene *s = context;
+    (void)session;
+    s->trials_part = expected > 0 ? done / expected : 0;
+    return 0;
 }
 
 static int before_step(spar_session *session, double t, double dt, void *context) {
@@ -560,7 +573,10 @@ static int show_effects(scene *s) {
 
 static int ask_advice(scene *s) {
     rotor_trial t = begin_trials(s, 1);
+    spar_session_set_progress(s->session, hear_progress, s);
     int status = rotor_view_advice(&t, &s->options, s->rank == 0);
+    spar_session_set_progress(s->session, NULL, NULL);
+    s->trials_part = 0;
     end_trials(s);
     TRY(status);
     return SPAR_OK;

@@ -52,7 +52,7 @@ module spar
   private
 
   public :: spar_session, spar_member, spar_joint, spar_fluid, spar_polar, spar_aero
-  public :: spar_fluid_solver, spar_before_step, spar_log
+  public :: spar_fluid_solver, spar_before_step, spar_log, spar_progress
   public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
 
   ! constants of the headers {
@@ -129,6 +129,7 @@ module spar
     private
     type(c_ptr) :: handle = c_null_ptr
     type(log_record), pointer :: log => null()
+    type(progress_record), pointer :: progress => null()
   contains
     procedure, private :: session_set_gravity, session_set_gravity_single_1
     generic :: set_gravity => session_set_gravity, session_set_gravity_single_1
@@ -189,6 +190,7 @@ module spar
     procedure :: c_handle => session_handle
     procedure :: message => session_message
     procedure :: set_log => session_set_log
+    procedure :: set_progress => session_set_progress
     procedure, private :: session_get_balance, session_get_balance_single_1, session_get_balance_single_2
     generic :: get_balance => session_get_balance, session_get_balance_single_1, session_get_balance_single_2
     procedure, private :: session_sum, session_sum_single_1
@@ -613,6 +615,14 @@ module spar
       character(*), intent(in) :: text
       class(*), intent(inout), optional :: context
     end subroutine spar_log
+
+    ! Hears how far a call that makes trials is, see session%set_progress; stat other than SPAR_OK (as it comes in) ends the call.
+    subroutine spar_progress(done, expected, context, stat)
+      import :: c_double
+      real(c_double), intent(in) :: done, expected
+      class(*), intent(inout), optional :: context
+      integer, intent(inout) :: stat
+    end subroutine spar_progress
   end interface
 
   ! What C carries for a call back into Fortran.
@@ -627,6 +637,11 @@ module spar
     procedure(spar_log), pointer, nopass :: log => null()
     class(*), pointer :: context => null()
   end type log_record
+
+  type :: progress_record
+    procedure(spar_progress), pointer, nopass :: progress => null()
+    class(*), pointer :: context => null()
+  end type progress_record
 
   interface spar_status_text
     procedure :: status_text
@@ -696,6 +711,7 @@ contains
 
     call spar_session_destroy(self%handle)
     if (associated(self%log)) deallocate (self%log)
+    if (associated(self%progress)) deallocate (self%progress)
   end subroutine session_destroy
 
   impure elemental subroutine session_final(self)
@@ -809,6 +825,54 @@ contains
       call record%log(int(level), words)
     end if
   end subroutine call_log
+
+  ! progress is called ahead of each run of advise and report_effects; without it nothing is. What is given is kept as by set_log,
+  ! and is not to be set anew from progress itself.
+  subroutine session_set_progress(self, progress, context, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    procedure(spar_progress), optional :: progress
+    class(*), pointer, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(progress_record), pointer :: record
+    integer(c_int) :: status
+
+    nullify (record)
+    if (present(progress)) then
+      allocate (record)
+      record%progress => progress
+      if (present(context)) record%context => context
+      status = spar_session_set_progress(self%handle, c_funloc(call_progress), c_loc(record))
+    else
+      status = spar_session_set_progress(self%handle, c_null_funptr, c_null_ptr)
+    end if
+    if (status /= SPAR_OK) then
+      if (associated(record)) deallocate (record)
+    else
+      if (associated(self%progress)) deallocate (self%progress)
+      self%progress => record
+    end if
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_set_progress
+
+  function call_progress(session, done, expected, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: done, expected
+    integer(c_int) :: answer
+    integer :: stat
+    type(progress_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    stat = SPAR_OK
+    if (associated(record%context)) then
+      call record%progress(done, expected, record%context, stat=stat)
+    else
+      call record%progress(done, expected, stat=stat)
+    end if
+    answer = to_c(stat)
+  end function call_progress
 
   ! value is as long as what is set.
   subroutine session_get_option(self, key, value, stat, errmsg)

@@ -1288,6 +1288,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_load
 
+    function spar_session_set_progress(session, progress, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: progress
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_progress
+
     function spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report) bind(c) &
         result(status)
       import :: c_double, c_funptr, c_int, c_int64_t, c_ptr

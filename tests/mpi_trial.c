@@ -314,6 +314,61 @@ static void same_steps(void **state) {
     spar_session_destroy(&alone.session);
 }
 
+typedef struct hearing {
+    int calls, stop; /* answers 5 in this call, from 1; 0: in none */
+    double heard[2];
+} hearing;
+
+static int hear(spar_session *s, double done, double expected, void *context) {
+    hearing *h = context;
+    (void)s;
+    h->heard[0] = done, h->heard[1] = expected;
+    return ++h->calls == h->stop ? 5 : 0;
+}
+
+/* A rank that stops stops all, in the same call; all hear the same. Set on one rank only it is refused: the ranks would
+   part. */
+static void stopped_on_one_rank(void **state) {
+    (void)state;
+    scene c;
+    double advice[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], held[STATE];
+    create(&c, rank, size);
+    go(&c, 2);
+    state_of(&c, held);
+    for (int k = 0; k < 2 * size; k++) {
+        int bad = k / 2, stop = k % 2 ? 7 : 1;
+        hearing h = {.stop = rank == bad ? stop : 0};
+        OK(c.session, spar_session_set_progress(c.session, hear, &h));
+        told(spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice),
+             SPAR_ERR_USER, bad, c.session, "the host has stopped it");
+        assert_int_equal(h.calls, stop);
+        same_on_all(h.heard, 2);
+        same_bits(held, &c);
+        h.calls = 0;
+        told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
+                                         table[0]),
+             SPAR_ERR_USER, bad, c.session, "the host has stopped it");
+        assert_int_equal(h.calls, stop);
+        same_on_all(h.heard, 2);
+        same_bits(held, &c);
+    }
+    hearing h = {0};
+    if (size > 1) {
+        OK(c.session, spar_session_set_progress(c.session, rank == 0 ? hear : NULL, &h));
+        REFUSED(
+            c.session, SPAR_ERR_COMM, "progress call",
+            spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+        assert_int_equal(h.calls, 0);
+        same_bits(held, &c);
+    }
+    OK(c.session, spar_session_set_progress(c.session, hear, &h));
+    OK(c.session,
+       spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
+    go(&c, 1);
+    spar_session_destroy(&c.session);
+}
+
 /* Arguments that are wrong on one rank. */
 static void bad_arguments(void **state) {
     (void)state;
@@ -337,9 +392,10 @@ static void bad_arguments(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_table),         cmocka_unit_test(same_advice),       cmocka_unit_test(failing_callbacks),
-        cmocka_unit_test(failing_in_a_table), cmocka_unit_test(failing_in_advice), cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(same_steps),
+        cmocka_unit_test(same_table),        cmocka_unit_test(same_advice),
+        cmocka_unit_test(failing_callbacks), cmocka_unit_test(failing_in_a_table),
+        cmocka_unit_test(failing_in_advice), cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(same_steps),        cmocka_unit_test(stopped_on_one_rank),
     };
     return RANKS_RUN(argc, argv, tests);
 }

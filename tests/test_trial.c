@@ -17,12 +17,13 @@ typedef struct scene {
     spar_fluid *f, *g;
     double x[3 * NODES], v[3 * NODES], old[3 * NODES], force[3 * NODES], moment[3 * NODES];
     double load, drag, added;
-    int moments, fails;
+    int moments, fails, solutions;
 } scene;
 
 static int press(spar_session *s, double t, double dt, int iteration, void *context) {
     scene *c = context;
     (void)s, (void)iteration;
+    c->solutions++;
     if (c->fails) {
         return c->fails;
     }
@@ -821,6 +822,138 @@ static void test_fluid_that_does_not_repeat(void **state) {
     spar_session_destroy(&s);
 }
 
+/* What a progress call hears. */
+typedef struct hearing {
+    scene *c;
+    int calls, stop;             /* answers 5 in this call, from 1; 0: in none */
+    int first;                   /* solutions of the fluid before the first */
+    double done, expected, most; /* of the last call; the most that was expected */
+} hearing;
+
+static int hear(spar_session *s, double done, double expected, void *context) {
+    hearing *h = context;
+    assert_ptr_equal(s, h->c->s);
+    h->first = h->calls == 0 ? h->c->solutions : h->first;
+    assert_true(h->calls == 0 ? done == 0 && expected > 0 : done >= h->done);
+    assert_true(isfinite(expected) && expected >= done);
+    h->done = done, h->expected = expected, h->most = fmax(h->most, expected);
+    return ++h->calls == h->stop ? 5 : 0;
+}
+
+static int ask_for(scene *c, int table, double *answer) {
+    return table ? spar_session_report_effects(c->s, 0.01, 8, keep, press, c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, answer)
+                 : spar_session_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, SPAR_ADVICE_COUNT, answer);
+}
+
+/* Advice calls once ahead of each trial, with what has been spent so far: 0 at first, before the fluid is solved, and
+   less than SPAR_ADVICE_WORK at last; it says what it says without. advise.limit bounds what is expected. Effects: one
+   run with all and six for each row in force, as which that many are expected in the end. Unset, nothing is called. */
+static void test_progress(void **state) {
+    (void)state;
+    scene c = {.load = 0.02, .drag = 0.01, .moments = 1};
+    hearing h = {.c = &c};
+    double advice[SPAR_ADVICE_COUNT], quiet[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    build(&c, 0);
+    assert_int_equal(spar_session_set_progress(NULL, hear, &h), SPAR_ERR_ARGUMENT);
+    OK(c.s, spar_session_set_option(c.s, "advise.fluid_cost", "1e-6"));
+    step(&c, 0.01, 3);
+    OK(c.s, ask_for(&c, 0, quiet));
+    c.solutions = 0;
+    OK(c.s, spar_session_set_progress(c.s, hear, &h));
+    OK(c.s, ask_for(&c, 0, advice));
+    assert_memory_equal(advice, quiet, sizeof quiet);
+    assert_true(h.first == 0 && c.solutions > 0);
+    assert_true(h.calls == (int)advice[SPAR_ADVICE_TRIALS]);
+    assert_true(h.done > 0 && h.done < advice[SPAR_ADVICE_WORK]);
+    assert_true(h.most > 3 && h.most < 10 * advice[SPAR_ADVICE_WORK]);
+    OK(c.s, spar_session_set_option(c.s, "advise.limit", "2"));
+    h = (hearing){.c = &c};
+    assert_int_equal(ask_for(&c, 0, advice), SPAR_ERR_LIMIT);
+    assert_true(h.calls > 1 && h.most == 2);
+    h = (hearing){.c = &c};
+    OK(c.s, ask_for(&c, 1, table[0]));
+    int rows = 0;
+    for (int r = 0; r < SPAR_ROW_COUNT; r++) {
+        rows += table[r][SPAR_COLUMN_IN_FORCE] > 0;
+    }
+    assert_true(rows > 3);
+    assert_int_equal(h.calls, 1 + 6 * rows);
+    assert_true(h.done == 6 * rows && h.expected == 1 + 6 * rows);
+    OK(c.s, spar_session_set_progress(c.s, NULL, &h));
+    h.calls = 0;
+    OK(c.s, ask_for(&c, 1, table[0]));
+    assert_int_equal(h.calls, 0);
+    spar_session_destroy(&c.s);
+}
+
+/* Stopped at each call that there is: SPAR_ERR_USER, the message says who has, the saved session is the same file,
+   nothing comes out; then it is asked again to the end, and the run goes on. */
+static void test_stopped_at_each_call(void **state) {
+    (void)state;
+    for (int table = 0; table < 2; table++) {
+        scene c = {.load = 0.02, .drag = 0.01};
+        hearing h = {.c = &c};
+        double answer[SPAR_ROW_COUNT * SPAR_COLUMN_COUNT];
+        long size;
+        build(&c, 0);
+        step(&c, 0.01, 2);
+        OK(c.s, spar_session_set_progress(c.s, hear, &h));
+        OK(c.s, ask_for(&c, table, answer));
+        int calls = h.calls;
+        assert_true(calls > 6);
+        OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
+        char *file = contents("trial_apply.spar", &size);
+        for (int stop = 1; stop <= calls; stop++) {
+            h = (hearing){.c = &c, .stop = stop};
+            answer[0] = 77;
+            REFUSED(c.s, SPAR_ERR_USER,
+                    table ? "spar_session_report_effects: the host has stopped it: its progress call returned 5"
+                          : "spar_session_advise: the host has stopped it: its progress call returned 5",
+                    ask_for(&c, table, answer));
+            assert_int_equal(h.calls, stop);
+            assert_true(answer[0] == 77);
+            same_file(c.s, file, size);
+        }
+        h = (hearing){.c = &c};
+        OK(c.s, ask_for(&c, table, answer));
+        assert_int_equal(h.calls, calls);
+        step(&c, 0.01, 2);
+        free(file);
+        spar_session_destroy(&c.s);
+    }
+}
+
+/* From within: the session can be read; what tries or saves is refused; another progress call holds for the next call.
+ */
+static int meddle_between(spar_session *s, double done, double expected, void *context) {
+    hearing *h = context;
+    double report[SPAR_TRY_COUNT], t = -1;
+    (void)done, (void)expected;
+    OK(s, spar_session_get_time(s, &t, NULL, NULL));
+    NEAR(t, 0.02, 1e-12);
+    REFUSED(s, SPAR_ERR_STATE, "trial run is under way",
+            spar_session_try(s, 0.01, 8, keep, press, h->c, 0, SPAR_TRY_COUNT, report));
+    assert_int_equal(spar_session_save(s, "trial_apply.spar"), SPAR_ERR_STATE);
+    OK(s, spar_session_set_progress(s, NULL, NULL));
+    h->calls++;
+    return 0;
+}
+
+static void test_progress_meddles(void **state) {
+    (void)state;
+    scene c = {.load = 0.02, .drag = 0.01};
+    hearing h = {.c = &c};
+    double advice[SPAR_ADVICE_COUNT];
+    build(&c, 0);
+    step(&c, 0.01, 2);
+    OK(c.s, spar_session_set_progress(c.s, meddle_between, &h));
+    OK(c.s, ask_for(&c, 0, advice));
+    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
+    OK(c.s, ask_for(&c, 0, advice));
+    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
+    spar_session_destroy(&c.s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_goes_back_to_the_bit),
@@ -844,6 +977,9 @@ int main(void) {
         cmocka_unit_test(test_nothing_to_try),
         cmocka_unit_test(test_loads_that_are_not_there),
         cmocka_unit_test(test_fluid_that_does_not_repeat),
+        cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_stopped_at_each_call),
+        cmocka_unit_test(test_progress_meddles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

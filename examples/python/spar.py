@@ -19,7 +19,8 @@ The headers under include/spar say what each call does; here is what is differen
   fluid.pull_motion(1.0, x=x, v=v). One given as None is not wanted.
 - Failures raise spar.Error with the library's message, .status is its SPAR_ERR_*.
 - A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
-  (session, t, dt), a log one of (level, text). What they raise ends the step and is raised again.
+  (session, t, dt), a log one of (level, text), a progress one of (done, expected), which answers 0 or None to go on. What
+  they raise ends the step, or the call that tells progress, and is raised again.
 - A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints and fluids keep it.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
 The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.1.
@@ -220,6 +221,7 @@ call spar_session_solve_static int session|session|value| load_steps|int|value| 
 call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]
 constants SPAR_TRY_MOTION=0 SPAR_TRY_REACTION=1 SPAR_TRY_LOAD=2 SPAR_TRY_SECONDS=3 SPAR_TRY_SOLUTIONS=4 SPAR_TRY_COUNT=5
+call spar_session_set_progress int session|session|value| progress|progress|callback| context|context|value|
 call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]
 call spar_session_solve_eigenvalues int session|session|value| dt|double|value| memory|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_LARGE_ROTATION=4 SPAR_ROW_FLUID_MOMENT=5 SPAR_ROW_FLUID_VELOCITY=6 SPAR_ROW_FLUID_POSES=7 SPAR_ROW_FLUID_HISTORY=8 SPAR_ROW_PREDICTOR=9 SPAR_ROW_ITERATION=10 SPAR_ROW_HALF_STEP=11 SPAR_ROW_MASSES=12 SPAR_ROW_FOUNDATION=13 SPAR_ROW_PRETENSION=14 SPAR_ROW_COUNT=15
@@ -287,6 +289,7 @@ _CALLBACKS = {
     'fluid_solver': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int,
                                      ctypes.c_void_p),
     'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
+    'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
 _IN_AND_OUT = {('spar_session_sum', 'x')}  # a result that is read too
 _OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_force_places', 'pull_forces_f32',
@@ -364,11 +367,20 @@ class _Running:
         if self.call.name == 'spar_has':
             return bool(answer)
         if self.call.answer == 'int' and answer != 0:
-            if self.raised:
-                raise self.raised[0]
+            raised = self.raised + self._stopped()
+            if raised:
+                raise raised[0]
             raise Error(answer, self._message())
         results = [r() for r in self.results]
         return results[0] if len(results) == 1 else tuple(results) or None
+
+    def _stopped(self):
+        session = self.owner.session if self.owner is not None else None
+        if session is None:
+            return []
+        raised = session.stopped[:]
+        session.stopped.clear()
+        return raised
 
     def _message(self):
         session = self.owner.session.handle if self.owner is not None and self.owner.session is not None else None
@@ -488,6 +500,19 @@ class _Running:
         self.results.append(lambda: number.value)
         return ctypes.addressof(number)
 
+    def _progress(self, kind, function):
+        """What is raised there ends the call that it is of, which raises it again."""
+        stopped = self.owner.stopped
+
+        def called(_session, done, expected, _context):
+            try:
+                return int(function(done, expected) or 0)
+            except BaseException as fault:  # pylint: disable=broad-except
+                stopped.append(fault)
+                return 1
+        self.owner.progress.append(kind(called))  # kept as long as the session: it may be set anew from within
+        return self.owner.progress[-1]
+
     def _callback(self, p, function):
         kind = _CALLBACKS[p.type]
         if function is None:
@@ -497,6 +522,8 @@ class _Running:
                 function(level, text.decode(errors='replace'))
             self.owner.log = kind(called)  # kept as long as the session
             return self.owner.log
+        if p.type == 'progress':
+            return self._progress(kind, function)
 
         def called(_session, *rest):
             try:
@@ -558,6 +585,7 @@ class Session(_Thing):
 
     def __init__(self, comm=None):
         super().__init__(None)
+        self.progress, self.stopped = [], []  # of set_progress: what C calls, and what was raised there
         made = ctypes.c_void_p()
         if comm is None:
             status = _calls['spar_session_create'].function(ctypes.addressof(made))

@@ -1336,6 +1336,19 @@ enum {
     SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
     SPAR_TRY_COUNT = 5
 };
+/* How far a call that makes many trials is (spar_session_advise, spar_session_report_effects): called before each of
+   its runs, between which the session is as it was. It may read the session, and changes nothing of it. Answer 0 to go
+   on; anything else ends the call: SPAR_ERR_USER, and all is as it was.
+     done: what has been run so far, from 0, in trials with the session as it is: of advice counted, as
+           SPAR_ADVICE_WORK, or runs where the session as it is fails; of effects runs
+     expected: what it will come to, at first by what such calls have come to, later by what the runs show; never below
+           done, nor, unless done is, above the option advise.limit */
+typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
+/* Who is told. Local, at any time; from within a call it holds for the next.
+     progress: in, NULL: nobody (default). On all ranks or on none; where one rank stops the others answer
+           SPAR_ERR_PEER
+     context: in, handed to progress; must live as long as the session uses it */
+SPAR_API int spar_session_set_progress(spar_session *session, spar_progress progress, void *context);
 /* One trial with the session as it is, for hosts that compare settings of their own. Failures as of spar_step.
      dt: in, s
      steps: in, a multiple of 8

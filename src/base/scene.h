@@ -40,6 +40,8 @@ struct spar_session {
     int64_t failures; /* messages written so far: tells whether a callback has left one */
     spar_log log;
     void *log_context;
+    spar_progress progress; /* of calls that make trials */
+    void *progress_context;
     spar_member *members;              /* list, in order of creation */
     spar_fluid *fluids;                /* list, this rank's */
     spar_joint *joints;                /* list, in order of creation */

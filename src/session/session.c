@@ -105,6 +105,13 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
     return SPAR_OK;
 }
 
+int spar_session_set_progress(spar_session *session, spar_progress progress, void *context) {
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    session->progress = progress;
+    session->progress_context = context;
+    return SPAR_OK;
+}
+
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);

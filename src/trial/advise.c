@@ -408,13 +408,17 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
     status = status == SPAR_OK ? judge_present(d, present, &run, now) : status;
     spari_record_free(&run);
     SPARI_TRY(status);
+    spari_plan_begin(d, SPARI_STAGE_SHAPES);
     SPARI_TRY(choose_structure(d, &structure));
+    spari_plan_begin(d, SPARI_STAGE_TIME);
     SPARI_TRY(choose_rest(d, structure, &finest, best));
     if (spari_plan_is_good(d, now) && now->cost < best->cost) {
         *best = *now;
     }
     if (isfinite(best->cost)) {
+        spari_plan_begin(d, SPARI_STAGE_MOVES);
         SPARI_TRY(improve(d, best));
+        spari_plan_begin(d, SPARI_STAGE_LOOKS);
         return find_stable(d, best);
     }
     double least = INFINITY;
@@ -503,7 +507,9 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
         .session = s,
         .run = {.dt = dt, .length = length, .steps = steps, .before = before, .solve = solve, .context = context},
         .tolerance = tolerance,
-        .limit = INFINITY};
+        .limit = INFINITY,
+        .progress = spari_progress_of(s, SPARI_ADVISE)};
+    d.run.progress = &d.progress;
     spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
@@ -517,7 +523,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
-        status = search_plans(&d, &present, &now, &best);
+        status = spari_progress_ends(&d.progress, search_plans(&d, &present, &now, &best));
     }
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */

@@ -324,9 +324,35 @@ static void tell_failure(spar_session *s, const char *call, int r) {
     }
 }
 
+enum { REPEATS = 3 }; /* times of a row are the least of so many, with and without in turn */
+
+/* Runs there are in rows from r on. asked: as of in_force. */
+static int count_runs(const spar_session *s, int r, int asked) {
+    int runs = 0;
+    for (; r < SPAR_ROW_COUNT; r++) {
+        runs += in_force(s, r, asked) ? 2 * REPEATS : 0;
+    }
+    return runs;
+}
+
+/* Runs made, and those to come. */
+typedef struct run_tally {
+    int done, left;
+} run_tally;
+
+/* A run that the host hears of first. */
+static int run_told(spar_session *s, const spari_run *run, const spari_wish *wish, run_tally *runs,
+                    spari_record *record) {
+    *record = (spari_record){0};
+    record->own = spari_progress_tell(s, run->progress, runs->done, runs->done + runs->left);
+    SPARI_TRY(record->own);
+    runs->done++;
+    runs->left--;
+    return spari_trial_run(s, run, wish, record);
+}
+
 static int try_row_out(spar_session *s, const char *call, const spari_run *run, int r, const spari_record *base,
-                       double *out) {
-    enum { REPEATS = 3 }; /* times are the least of so many, with and without in turn */
+                       run_tally *runs, double *out) {
     double with = cost_of_row(base, r), without = INFINITY;
     spari_wish wish;
     SPARI_TRY(spari_wish_create(s, &wish));
@@ -334,7 +360,7 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
     for (int k = 0; k < REPEATS && status == SPAR_OK; k++) {
         spari_record record;
         leave_row_out(s, r, &wish);
-        status = spari_trial_run(s, run, &wish, &record);
+        status = run_told(s, run, &wish, runs, &record);
         if (status == SPAR_OK && k == 0) {
             out[SPAR_COLUMN_MOTION] = spari_record_distance(&record, base, SPARI_OF_MOTION);
             out[SPAR_COLUMN_REACTION] = spari_record_distance(&record, base, SPARI_OF_REACTION);
@@ -347,7 +373,7 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
         spari_wish_free(&wish);
         status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
         if (status == SPAR_OK) {
-            status = spari_trial_run(s, run, &wish, &record);
+            status = run_told(s, run, &wish, runs, &record);
             with = fmin(with, cost_of_row(&record, r));
             spari_record_free(&record);
         }
@@ -378,30 +404,39 @@ static int asked_anywhere(spar_session *s, int *asked) {
     return SPAR_OK;
 }
 
+static int try_rows(spar_session *s, const char *call, const spari_run *run, const spari_record *base,
+                    const double size[SPAR_ROW_COUNT], int asked, run_tally *runs, double (*table)[SPAR_COLUMN_COUNT]) {
+    int status = SPAR_OK;
+    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
+        double *out = table[r];
+        runs->left = count_runs(s, r, asked);
+        if (in_force(s, r, asked)) {
+            out[SPAR_COLUMN_IN_FORCE] = 1;
+            out[SPAR_COLUMN_SIZE] = size[r];
+            status = try_row_out(s, call, run, r, base, runs, out);
+        }
+    }
+    return status;
+}
+
 static int fill_rows(spar_session *s, const char *call, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
     double size[SPAR_ROW_COUNT] = {0};
     sizes seen = {{0}, 0, 0};
     spari_run watched = *run;
     spari_wish wish;
     spari_record base;
+    run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* what the fluid asks for the first run tells */
     watched.watch = add_state, watched.watcher = &seen;
     SPARI_TRY(add_state(s, &seen));
     SPARI_TRY(spari_wish_create(s, &wish));
-    (void)spari_trial_run(s, &watched, &wish, &base);
+    (void)run_told(s, &watched, &wish, &runs, &base);
     find_sizes(&seen, run->dt, size);
     int status = base.own, asked = base.asked;
     spari_wish_free(&wish);
     size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];
     size[SPAR_ROW_ITERATION] = base.report[SPAR_REPORT_ADDED_MASS];
     status = status == SPAR_OK ? asked_anywhere(s, &asked) : status;
-    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
-        double *out = table[r];
-        if (in_force(s, r, asked)) {
-            out[SPAR_COLUMN_IN_FORCE] = 1;
-            out[SPAR_COLUMN_SIZE] = size[r];
-            status = try_row_out(s, call, run, r, &base, out);
-        }
-    }
+    status = status == SPAR_OK ? try_rows(s, call, run, &base, size, asked, &runs, table) : status;
     spari_record_free(&base);
     return status;
 }
@@ -418,6 +453,8 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
                      .solve = solve,
                      .context = context,
                      .goals = SPARI_GOAL(SPARI_OF_REACTION)};
+    spari_progress progress = spari_progress_of(s, __func__);
+    run.progress = &progress;
     double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
     int status = spari_trial_check(s, __func__, &run);
     status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_rows) : status;
@@ -425,7 +462,7 @@ int spar_session_report_effects(spar_session *session, double dt, int64_t steps,
     SPARI_TRY(spari_trial_enter(s, __func__, &run, 0, 0, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, fill_rows(s, __func__, &run, made)));
+    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, fill_rows(s, __func__, &run, made))));
     spari_put_message_back(s, message);
     spari_fill_table(table_rows, table_columns, table, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
     return SPAR_OK;

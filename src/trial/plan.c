@@ -92,6 +92,27 @@ int spari_plan_fails(int status) {
            status == SPAR_ERR_UNSUPPORTED || status == SPAR_ERR_ARGUMENT || status == SPAR_ERR_MAPPING;
 }
 
+/* What has been spent, in trials with the session as it is; where that fails, in runs. */
+static double spent_so_far(const spari_advisor *d) {
+    return d->now > 0 ? d->spent / d->now : d->trials;
+}
+
+void spari_plan_begin(spari_advisor *d, int stage) {
+    d->foreseen = spent_so_far(d) / spari_rule.comes_to[stage - 1];
+    d->stage = stage;
+}
+
+/* A stage that takes longer than its share tells that all will. */
+static int tell_progress(spari_advisor *d) {
+    double done = spent_so_far(d), expected = d->foreseen;
+    if (expected <= 0) {
+        expected = d->now > 0 || d->trials == 0 ? spari_rule.asks / sqrt(d->tolerance) : spari_rule.asks_runs;
+    }
+    expected = fmax(expected, done / spari_rule.comes_to[d->stage]);
+    expected = fmax(done, fmin(expected, d->limit));
+    return spari_progress_tell(d->session, &d->progress, done, expected);
+}
+
 int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_record *record) {
     spar_session *s = d->session;
     spari_wish wish;
@@ -102,6 +123,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_reco
         "%s: %d trials have cost %.3g times what one costs with the session as it is; the option advise.limit "
         "allows %.3g: give a larger one, a larger tolerance, or no limit (0)",
         SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
+    SPARI_TRY(tell_progress(d));
     SPARI_TRY(spari_wish_create(s, &wish));
     spari_plan_settings(p, wish.setting);
     for (int k = 0; k < s->member_count; k++) {
@@ -150,7 +172,7 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
 static void tell_plan(const spari_advisor *d, const spari_plan *p, double error, double cost) {
     spar_session *s = d->session;
     char what[SPARI_MESSAGE_SIZE / 2], text[SPARI_MESSAGE_SIZE];
-    if (!s->log) {
+    if (!s->log || d->progress.stopped != SPAR_OK) {
         return;
     }
     (void)describe_plan(d, p, what, sizeof what);
@@ -347,8 +369,9 @@ static int reference_nodes(spari_advisor *d, const spari_plan *present, int *lev
     for (; (status = spari_plan_run(d, &p, 1, &few)) != SPAR_OK; p = rough_plan(d, present, ++*level, *more)) {
         spari_record_free(&few);
         tell_plan(d, &p, INFINITY, 0);
-        SPARI_REQUIRE(d->session, spari_plan_fails(status) && *level < last, status,
-                      "%s: no reference run comes to its end: %.400s", SPARI_ADVISE, d->session->message);
+        SPARI_TRY(spari_plan_fails(status) ? SPAR_OK : status);
+        SPARI_REQUIRE(d->session, *level < last, status, "%s: no reference run comes to its end: %.400s", SPARI_ADVISE,
+                      d->session->message);
     }
     weigh_fluid(d, &few);
     while (status == SPAR_OK && *more < MOST_MORE && part > spari_rule.reference_nodes) {

@@ -15,6 +15,9 @@ enum {
     SPARI_KNOWN = 400 /* settings remembered at most */
 };
 
+/* What asking goes through, in this order. */
+enum { SPARI_STAGE_REFERENCE, SPARI_STAGE_SHAPES, SPARI_STAGE_TIME, SPARI_STAGE_MOVES, SPARI_STAGE_LOOKS };
+
 /* What of a beam is chosen. */
 typedef struct spari_shape {
     int nodes, fidelity, points;
@@ -61,6 +64,9 @@ typedef struct spari_advisor {
     int64_t solutions;    /* and those of the fluid before that was weighed */
     spari_outcome *known; /* [SPARI_KNOWN] settings measured against the reference */
     int known_count, trials;
+    int stage;       /* SPARI_STAGE_*, */
+    double foreseen; /* and what all was reckoned to come to as it began, in the unit of progress; 0: not yet */
+    spari_progress progress;
 } spari_advisor;
 
 /* Fills groups, group and the memory for what is known; both to be freed. Local. */
@@ -76,6 +82,9 @@ int64_t spari_plan_steps(const spari_advisor *advisor, int j);
 int spari_plan_grid(const spari_advisor *advisor, int64_t steps);
 /* Whether a status says that the settings will not do, and nothing worse. */
 int spari_plan_fails(int status);
+
+/* The next stage begins: what asking will come to is reckoned anew. */
+void spari_plan_begin(spari_advisor *advisor, int stage);
 
 /* All below are collective. A run over `longer` times what the host asked for; the record is to be freed also after a
    failure. */

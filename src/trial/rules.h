@@ -62,6 +62,9 @@ typedef struct spari_rules {
     double stays_rtol;       /* and coupled */
     double seesaw, grows;    /* loads that turn round with every step: the share of the tolerance that counts, and their
                                 growth, squared, from the second quarter of the longer look to the last */
+    double asks;        /* what asking comes to, by the root of the tolerance, in trials with the session as it is, */
+    double asks_runs;   /* and in runs where that fails: medians of benchmarks/kept */
+    double comes_to[5]; /* the part of it that is spent by the end of each stage (SPARI_STAGE_*), as there */
     spari_prices price;
 } spari_rules;
 extern const spari_rules spari_rule;

@@ -371,7 +371,8 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
                                  spari_given("solve", run->solve != NULL),
                                  spari_real("tolerance", tolerance),
                                  spari_real("length", run->length),
-                                 spari_whole("compare", compare != 0)};
+                                 spari_whole("compare", compare != 0),
+                                 spari_given("progress call", run->progress && run->progress->tell)};
     return spari_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
 }
 

@@ -7,6 +7,7 @@
 #include "../fluid/fluid.h"
 #include "../session/own.h"
 #include "../session/settings.h"
+#include "progress.h"
 #include "record.h"
 #include "remake.h"
 
@@ -27,8 +28,9 @@ typedef struct spari_run {
     int (*instead)(spar_session *session, void *of); /* NULL, or what is done there in place of steps, with `of`; the
                                                         record stays empty. Collective, a status that all agree on */
     void *of;
-    int timed; /* whether the time of the fluid's solutions is wanted */
-    int goals; /* what the record has beside the motion (record.h) */
+    int timed;                /* whether the time of the fluid's solutions is wanted */
+    int goals;                /* what the record has beside the motion (record.h) */
+    spari_progress *progress; /* who hears of each run ahead of it, of calls that make many; else NULL */
 } spari_run;
 
 /* What is to be otherwise than the session has it. */

@@ -199,6 +199,7 @@ program test_bindings
   call refused(spar_session_save(none), 'spar_session_save')
   call refused(spar_session_load(none), 'spar_session_load')
   call refused(spar_session_set_log(none, c_null_funptr, none), 'spar_session_set_log')
+  call refused(spar_session_set_progress(none, c_null_funptr, none), 'spar_session_set_progress')
 
   ! spar_aero.h
   call refused(spar_polar_create(0_c_int64_t, polar=made), 'spar_polar_create')

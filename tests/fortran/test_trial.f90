@@ -10,6 +10,12 @@ module trial_fluid
     integer :: steps = 0, fails_at = -1
   end type spring
 
+  type :: hearing
+    integer :: calls = 0, stops_at = -1
+    real(c_double) :: done = -1
+  end type hearing
+  type(hearing), target :: heard ! here, as gfortran keeps what is local to a caller in registers
+
   type :: wing
     type(spar_aero), pointer :: aero => null()
   end type wing
@@ -70,6 +76,30 @@ contains
     end select
   end subroutine count_step
 
+  subroutine hear(done, expected, context, stat)
+    real(c_double), intent(in) :: done, expected
+    class(*), intent(inout), optional :: context
+    integer, intent(inout) :: stat
+
+    select type (context)
+    type is (hearing)
+      if (done < context%done .or. expected < done .or. (context%calls == 0 .and. done > 0)) stat = 6
+      context%done = done
+      context%calls = context%calls + 1
+      if (context%calls == context%stops_at) stat = 9
+    class default
+      stat = 5
+    end select
+  end subroutine hear
+
+  subroutine hear_nothing(done, expected, context, stat)
+    real(c_double), intent(in) :: done, expected
+    class(*), intent(inout), optional :: context
+    integer, intent(inout) :: stat
+
+    if (present(context) .or. expected < done) stat = 8
+  end subroutine hear_nothing
+
   ! A host that keeps nothing: without a context.
   subroutine count_nothing(session, t, dt, context, stat)
     class(spar_session), intent(inout) :: session
@@ -128,6 +158,7 @@ contains
     real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1), q(7,1), t, size
     integer(c_int) :: stat, fidelity, nodes, points
     integer(c_int64_t) :: modes
+    class(*), pointer :: listener
     character(300) :: errmsg
     integer :: row
 
@@ -177,6 +208,21 @@ contains
     call check(nodes == 1, 'the body stays as it is')
     call session%advise(2.0_c_double, dt, 16_c_int64_t, 16 * dt, advice, solve=solve, context=context, stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'a tolerance of 2')
+
+    ! progress: once ahead of each trial; what it answers ends the call; without it nothing is called
+    listener => heard
+    call session%set_progress(hear, listener)
+    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context)
+    call check(heard%calls == nint(advice(SPAR_ADVICE_TRIALS)), 'told ahead of each trial')
+    heard = hearing(stops_at=2)
+    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context, stat)
+    call check(stat == SPAR_ERR_USER .and. heard%calls == 2, 'stopped')
+    call check(index(session%message(), 'returned 9') > 0, 'what has stopped it')
+    call session%set_progress(hear_nothing)
+    call session%report_effects(dt, 16, table, count_step, solve, context)
+    call session%set_progress()
+    call session%report_effects(dt, 16, table, count_step, solve, context)
+    call check(heard%calls == 2, 'nobody is told')
 
     ! back where it was: g t^2 / 2 to the order of the spring
     call session%get_time(t)

@@ -252,6 +252,33 @@ class Edges(unittest.TestCase):
         self.assertEqual(told[0][0], spar.LOG_ERROR)
         self.assertIn('dt', told[0][1])
 
+    def test_progress(self):
+        """Told ahead of each trial; an answer and a fault end the call; another progress may be set from within."""
+        told = []
+        with spar.Session() as s:
+            body(s)
+            s.set_progress(lambda done, expected: told.append((done, expected)))
+            gc.collect()
+            s.report_effects(0.1, 8)
+            self.assertEqual(told[0][0], 0)
+            self.assertEqual(told, sorted(told, key=lambda one: one[0]))
+            self.assertTrue(all(expected > done for done, expected in told))
+            s.set_progress(lambda done, expected: 4)
+            with self.assertRaises(spar.Error) as refused:
+                s.report_effects(0.1, 8)
+            self.assertEqual(refused.exception.status, spar.ERR_USER)
+            self.assertIn('returned 4', str(refused.exception))
+
+            def broken(*_):
+                s.set_progress(None)
+                gc.collect()
+                raise KeyError('enough')
+
+            s.set_progress(broken)
+            with self.assertRaises(KeyError):
+                s.report_effects(0.1, 8)
+            s.report_effects(0.1, 8)
+
     def test_life(self):
         """A member keeps its session; what is closed twice is closed."""
         session = spar.Session()

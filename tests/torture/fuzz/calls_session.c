@@ -404,6 +404,13 @@ void do_spar_session_set_log(call *c) {
     }
 }
 
+void do_spar_session_set_progress(call *c) {
+    live_session *l = arg_session(c);
+    int on = chance(c, 70);
+    text(c, on ? ", progress" : ", NULL");
+    RUN(c, spar_session_set_progress(l->s, on ? fuzz_progress : NULL, l));
+}
+
 /* ---- steps ---- */
 
 void do_spar_step_begin(call *c) {

@@ -86,6 +86,7 @@ enum {
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_time, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
+    CALL(spar_session_set_progress, 10, FUZZ_CHANGES)                                                                  \
     CALL(spar_point_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_rigid_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_beam_create, 30, FUZZ_CHANGES)                                                                           \
@@ -424,6 +425,7 @@ typedef struct host {
 } host;
 enum { HOST_PLAIN, HOST_FAILS, HOST_CHAOS, HOST_NOTHING, HOST_MODES };
 host *arg_host(call *c, spar_fluid_solver *solve, spar_before_step *before);
+int fuzz_progress(spar_session *session, double done, double expected, void *context);
 void fuzz_log(const spar_session *session, int level, const char *message, void *context);
 
 #define FUZZ_DECLARE(name, weight, flags) void do_##name(call *c);

@@ -102,6 +102,15 @@ host *arg_host(call *c, spar_fluid_solver *solve, spar_before_step *before) {
     return h;
 }
 
+/* Stops about one call in five, always at the same progress. */
+int fuzz_progress(spar_session *session, double done, double expected, void *context) {
+    live_session *l = context;
+    if (session != l->s || !(done >= 0) || !(expected >= done) || !isfinite(expected)) {
+        fuzz_finding("callback", "progress was given %g of %g", done, expected);
+    }
+    return done > 0 && (int64_t)(8 * done) % 40 == 7 ? 3 : 0;
+}
+
 void fuzz_log(const spar_session *session, int level, const char *message, void *context) {
     world *w = &fuzz_world;
     live_session *l = context;

@@ -811,10 +811,16 @@ static void act_flutter(void) {
     end_session(&h.session);
 }
 
+static int hear_progress(spar_session *session, double done, double expected, void *context) {
+    (void)session, (void)context;
+    return expected < done;
+}
+
 static void act_effects(void) {
     host h = {0};
     double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
     describe_trial(&h);
+    CALL(spar_session_set_progress, h.session, hear_progress, NULL);
     CALL(spar_session_report_effects, h.session, 0.02, 8, before_step, solve, &h, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
          table[0]);
     go(&h, 1);
@@ -829,6 +835,7 @@ static void act_advise(void) {
     describe_trial(&h);
     CALL(spar_session_set_option, h.session, "advise.dt", "keep");
     CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
+    CALL(spar_session_set_progress, h.session, hear_progress, NULL);
     CALL(spar_session_advise, h.session, 0.5, 0.01, 8, 0.08, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
     CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
     go(&h, 1);

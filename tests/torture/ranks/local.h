@@ -31,6 +31,7 @@
     "spar_member_get_error "
     "spar_session_message "
     " spar_session_set_coupling spar_session_set_gravity spar_session_set_integrator spar_session_set_log "
+    " spar_session_set_progress "
     " spar_session_set_newton spar_session_set_option spar_session_set_predictor spar_session_set_relaxation "
     " spar_session_set_goal spar_session_get_goal spar_session_push_numbers "
     " spar_session_set_reproducible spar_session_set_threads spar_session_get_threads spar_status_text spar_version "
