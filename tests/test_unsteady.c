@@ -589,6 +589,7 @@ static void test_report(void **state) {
 static void test_refusals(void **state) {
     (void)state;
     wing_scene c;
+    double was[N][3], is[N][3];
     spar_polar *polar = stall_polar();
     build_flexible(&c, polar, SPAR_AERO_DRAG);
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "SPAR_AERO_ effects", spar_aero_set_effects(c.aero, 2 * SPAR_AERO_UNSTEADY));
@@ -602,10 +603,13 @@ static void test_refusals(void **state) {
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 0.5)); /* before the first step */
     OK(c.s, spar_step_begin(c.s, 0.01));
     OK(c.s, spar_step_solve(c.s));
+    OK(c.s, spar_aero_get_loads(c.aero, NULL, was[0], NULL));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "theta is 0.5", spar_aero_solve(c.aero, rho, c.wind[0], 0.5));
     OK(c.s, spar_step_reject(c.s));
     OK(c.s, spar_fluid_set_states(c.fluid, 0));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "15 numbers a node, but 0", spar_aero_solve(c.aero, rho, c.wind[0], 1));
+    REFUSED(c.s, SPAR_ERR_STATE, "keeps 0 numbers a node, no more the 15", spar_aero_solve(c.aero, rho, c.wind[0], 1));
+    OK(c.s, spar_aero_get_loads(c.aero, NULL, is[0], NULL)); /* the results are still there */
+    assert_memory_equal(was, is, sizeof was);
     release(&c);
     spar_polar_destroy(&polar);
 }

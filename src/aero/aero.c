@@ -472,6 +472,23 @@ static int check_described(const spar_aero *aero, const char *call) {
     return SPAR_OK;
 }
 
+/* What is remembered goes over whole steps. */
+static int check_memory(const spar_aero *aero, double theta, const char *call) {
+    for (int b = 0; b < aero->blades && (aero->rotor.effects & memory_effects) != 0; b++) {
+        double dt;
+        int64_t numbers;
+        SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &numbers, &dt));
+        SPARI_REQUIRE(aero->session, numbers == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
+                      "%s: fluid '%s' keeps %lld numbers a node, no more the %d of effects that remember (inflow, "
+                      "stall, unsteady); call spar_aero_set_effects without these and with them again",
+                      call, spar_fluid_get_name(aero->fluid[b]), (long long)numbers, SPARI_MEMORY_NUMBERS);
+        SPARI_REQUIRE(aero->session, theta >= 1.0 || dt <= 0.0, SPAR_ERR_ARGUMENT,
+                      "%s: theta is %g; effects that remember (inflow, stall, unsteady) go from t^n to t^{n+1}: give 1",
+                      call, theta);
+    }
+    return SPAR_OK;
+}
+
 static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     spar_session *session = aero->session;
     SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT, "%s: density %g; give a number >= 0",
@@ -494,7 +511,8 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
                           spar_fluid_get_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n),
                           (int)(bad % 3), inflow[bad]);
     }
-    return check_blades(aero, call);
+    SPARI_TRY(check_blades(aero, call));
+    return check_memory(aero, theta, call);
 }
 
 static int pull_centres(spar_aero *aero, double theta) {
@@ -552,16 +570,13 @@ static void flag_inside(spar_aero *aero) {
 }
 
 /* What the sections remember of t^n, and the time since. A rank without blades has none. */
-static int recall_sections(spar_aero *aero, double theta, double *dt, const char *call) {
+static int recall_sections(spar_aero *aero, double *dt) {
     *dt = 0.0;
     for (int b = 0; b < aero->blades; b++) {
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], NULL, dt));
         SPARI_TRY(
             spar_fluid_pull_states(aero->fluid[b], SPARI_MEMORY_NUMBERS, (double *)(void *)(aero->was + b * aero->n)));
     }
-    SPARI_REQUIRE(aero->session, theta >= 1.0 || *dt <= 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: theta is %g; effects that remember (inflow, stall, unsteady) go from t^n to t^{n+1}: give 1",
-                  call, theta);
     for (int64_t k = 0; k < count(aero); k++) {
         aero->is[k] = aero->was[k];
         aero->is[k].begun = 0.0;
@@ -605,7 +620,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
     int moments = has_moments(aero->rotor.effects), remembers = (aero->rotor.effects & memory_effects) != 0,
         changed = (aero->rotor.effects & wind_effects) != 0;
     inflow = changed ? meet_wind(aero, inflow) : inflow;
-    SPARI_TRY(remembers ? recall_sections(aero, theta, &dt, call) : SPAR_OK);
+    SPARI_TRY(remembers ? recall_sections(aero, &dt) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         for (int64_t i = 0; i < aero->n; i++) {
             int64_t k = b * aero->n + i;

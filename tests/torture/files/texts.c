@@ -138,7 +138,7 @@ static void spoil(text *t) {
 
 static void refused(int status, const char *message, const char *call) {
     refusals++;
-    if (status < SPAR_ERR_ARGUMENT || status > SPAR_ERR_USER || !message[0]) {
+    if (status < SPAR_ERR_ARGUMENT || status > SPAR_ERR_LIMIT || !message[0]) {
         fault("answers without a word", status, message);
     } else if (call && strncmp(message, call, strlen(call)) != 0) {
         fault("does not name the call", status, message);

@@ -286,7 +286,7 @@ void fuzz_after(call *c, int status) {
     if (w->verbose) {
         fuzz_say("%*s= %d%s%s", 4 * w->depth + 2, "", status, status ? " " : "", status ? message_of(c) : "");
     }
-    if (status < SPAR_OK || status > SPAR_ERR_USER) {
+    if (status < SPAR_OK || status > SPAR_ERR_LIMIT) {
         fuzz_finding("status", "%s answers %d", c->what->name, status);
     }
     fuzz_count(c->index, status);
