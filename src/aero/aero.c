@@ -473,7 +473,7 @@ static int check_described(const spar_aero *aero, const char *call) {
 }
 
 /* What is remembered goes over whole steps. */
-static int check_memory(const spar_aero *aero, double theta, const char *call) {
+static int check_remembered(const spar_aero *aero, double theta, const char *call) {
     for (int b = 0; b < aero->blades && (aero->rotor.effects & memory_effects) != 0; b++) {
         double dt;
         int64_t numbers;
@@ -512,7 +512,7 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
                           (int)(bad % 3), inflow[bad]);
     }
     SPARI_TRY(check_blades(aero, call));
-    return check_memory(aero, theta, call);
+    return check_remembered(aero, theta, call);
 }
 
 static int pull_centres(spar_aero *aero, double theta) {
