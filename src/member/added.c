@@ -175,7 +175,7 @@ void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double
     d->stands = n > 0;
     memset(d->mass, 0, (size_t)(36 * points) * sizeof *d->mass);
     for (int64_t k = 0; k < p->count && n > 0; k++) {
-        spari_beam_table_at(n, eta, mass, p->eta[k], own);
+        spari_beam_table_at(n, eta, mass, 36, p->eta[k], own);
         spari_beam_turn_section(p->R + 9 * k, own, section);
         for (int i = 0; i < 36; i++) {
             section[i] *= p->weight[k];

@@ -803,14 +803,9 @@ int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, co
 int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
     const spari_beam *b = beam->beam;
-    if (n) {
-        *n = b->spring_count;
-    }
-    spari_fill(capacity, eta, b->spring_count, b->spring_eta);
-    spari_fill(3 * capacity, stiffness, 3 * b->spring_count, b->spring);
-    return SPAR_OK;
+    return spari_give_stations(beam, __func__, 3, b->spring_count, b->spring_eta, b->spring, capacity, n, eta,
+                               stiffness);
 }
 
 int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load) {

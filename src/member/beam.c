@@ -394,7 +394,7 @@ int spari_beam_place_nodes(spar_member *member) {
 
 /* ---- sections and quadrature ---- */
 
-void spari_beam_table_at(int64_t n, const double *stations, const double *table, double eta, double out[36]) {
+void spari_beam_table_at(int64_t n, const double *stations, const double *table, int width, double eta, double *out) {
     int64_t i = 0;
     while (i < n - 2 && eta > stations[i + 1]) {
         i++;
@@ -404,13 +404,17 @@ void spari_beam_table_at(int64_t n, const double *stations, const double *table,
         s = (eta - stations[i]) / (stations[i + 1] - stations[i]);
         s = fmin(fmax(s, 0), 1);
     }
-    for (int k = 0; k < 36; k++) {
-        out[k] = (1 - s) * table[36 * i + k] + (s > 0 ? s * table[36 * (i + 1) + k] : 0);
+    for (int k = 0; k < width; k++) {
+        out[k] = (1 - s) * table[width * i + k] + (s > 0 ? s * table[width * (i + 1) + k] : 0);
     }
 }
 
+void spari_pretension_at(const spari_beam *beam, double eta, double out[6]) {
+    spari_beam_table_at(beam->pre_count, beam->pre_eta, beam->pre, 6, eta, out);
+}
+
 void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
-    spari_beam_table_at(beam->section_count, beam->section_eta, table, eta, out);
+    spari_beam_table_at(beam->section_count, beam->section_eta, table, 36, eta, out);
 }
 
 void spari_beam_turn_section(const double R[9], const double *C, double *out) {

@@ -58,8 +58,8 @@ typedef struct spari_station {
 } spari_station;
 
 int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s);
-/* A table of n sections of 36 at eta, local axes: linear between stations, constant beyond the first and last. */
-void spari_beam_table_at(int64_t n, const double *stations, const double *table, double eta, double out[36]);
+/* A table [n][width], local axes, at eta: out [width], linear between stations, constant beyond the first and last. */
+void spari_beam_table_at(int64_t n, const double *stations, const double *table, int width, double eta, double *out);
 /* T C T^T with T = diag(R, R) */
 void spari_beam_turn_section(const double R[9], const double *C, double *out);
 /* The section's table of 36 (beam->stiffness or beam->mass) at eta, local axes. */

@@ -62,6 +62,17 @@ int spari_keep_stations(const spar_member *beam, const char *call, const char *w
     return SPAR_OK;
 }
 
+int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
+                        const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value) {
+    SPARI_TRY(spari_need_capacity(beam->session, call, capacity));
+    if (count) {
+        *count = kept;
+    }
+    spari_fill(capacity, eta, kept, kept_eta);
+    spari_fill(width * capacity, value, width * kept, kept_value);
+    return SPAR_OK;
+}
+
 int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                       const double *x) {
     SPARI_REQUIRE(session, x || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, name, what);

@@ -20,6 +20,9 @@ int spari_need_beam(spar_member *member, const char *call);
    message. Where there is no memory all stays. */
 int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
                         const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value);
+/* What is kept, for a getter: *count stations (NULL: not wanted), of eta and value as many as `capacity` takes. */
+int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
+                        const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value);
 /* Entry of a collective call on one member: as spari_enter_alike. */
 int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
 /* x[n] must be there and finite; `what` names it. */

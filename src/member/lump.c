@@ -70,12 +70,6 @@ int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const 
 int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
     const spari_beam *b = beam->beam;
-    if (n) {
-        *n = b->lump_count;
-    }
-    spari_fill(capacity, eta, b->lump_count, b->lump_eta);
-    spari_fill(36 * capacity, mass, 36 * b->lump_count, b->lump);
-    return SPAR_OK;
+    return spari_give_stations(beam, __func__, 36, b->lump_count, b->lump_eta, b->lump, capacity, n, eta, mass);
 }

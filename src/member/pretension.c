@@ -5,8 +5,6 @@
 #include "beam.h"
 #include "edge.h"
 
-#include <math.h>
-
 static int check_pretension(const spar_member *m, const char *call, int64_t n, const double *eta, const double *force) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
@@ -32,24 +30,6 @@ int spar_beam_set_pretension(spar_member *beam, int64_t n, const double *eta, co
 int spar_beam_get_pretension(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *force) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
     const spari_beam *b = beam->beam;
-    if (n) {
-        *n = b->pre_count;
-    }
-    spari_fill(capacity, eta, b->pre_count, b->pre_eta);
-    spari_fill(6 * capacity, force, 6 * b->pre_count, b->pre);
-    return SPAR_OK;
-}
-
-void spari_pretension_at(const spari_beam *beam, double eta, double out[6]) {
-    int64_t n = beam->pre_count, i = 0;
-    while (i < n - 2 && eta > beam->pre_eta[i + 1]) {
-        i++;
-    }
-    double part = n > 1 ? (eta - beam->pre_eta[i]) / (beam->pre_eta[i + 1] - beam->pre_eta[i]) : 0;
-    part = fmin(fmax(part, 0), 1);
-    for (int k = 0; k < 6; k++) {
-        out[k] = (1 - part) * beam->pre[6 * i + k] + (part > 0 ? part * beam->pre[6 * (i + 1) + k] : 0);
-    }
+    return spari_give_stations(beam, __func__, 6, b->pre_count, b->pre_eta, b->pre, capacity, n, eta, force);
 }
