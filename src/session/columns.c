@@ -1,0 +1,448 @@
+/* Quasi-Newton from columns of earlier iterations, and what they tell of a fluid that contradicts itself. */
+#include "columns.h"
+
+#include "../base/status.h"
+
+#include <string.h>
+
+/* ---- memory of the fluid ---- */
+
+int spari_accelerator_contradicted(const spari_accelerator *a) {
+    return a->imaged && a->slots > 0 && a->memory.contradiction > SPARI_QUIET;
+}
+
+/* change, image := what the fluid answers by itself of the one in slot s, as if it did not remember, from v or w and
+   its image */
+static void forget_lead(const spari_accelerator *a, int s, double *change, double *image) {
+    double rho = spari_rho_of(a);
+    if (rho > 0) {
+        spari_axpy(-rho, spari_slot_b(a, s), change, a->n);
+        spari_axpy(-rho, spari_slot_ib(a, s), image, a->n);
+    }
+}
+
+double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
+                              double *r) {
+    double square = 0, rho = a->led ? spari_rho_of(a) : 0;
+    for (int64_t i = 0; i < a->n; i++) {
+        r[i] = g[i] - x[i];
+        double answer = image[i];
+        if (rho > 0) {
+            r[i] += rho * a->lead[i];
+            answer += rho * a->lead[a->n + i];
+        }
+        square += r[i] * answer;
+    }
+    return sqrt(fmax(square, 0));
+}
+
+/* ---- columns ---- */
+
+/* out = in, each entry over the size of its kind */
+static void over_sizes(const spari_accelerator *a, const double *in, double *out) {
+    for (int64_t i = 0; i < a->n; i += a->period) {
+        for (int k = 0; k < a->period && i + k < a->n; k++) {
+            out[i + k] = a->weight[k >= a->split] * in[i + k];
+        }
+    }
+}
+
+/* Of no use in the factorisation as long as the fluid remembers. */
+static int is_unled(const spari_accelerator *a, int slot) {
+    return spari_rho_of(a) > 0 && !a->column[slot].led;
+}
+
+/* Adds a column to the factorisation, by Gram-Schmidt done twice (Giraud et al. 2005: orthogonal to rounding). Returns
+   0, and adds nothing, where too little of it is new: no more than `filter`. */
+int spari_columns_append(spari_accelerator *a, int slot, double filter) {
+    int k = a->used;
+    if (k == a->set.columns || is_unled(a, slot)) {
+        return 0;
+    }
+    double *q = a->q + k * a->n, *r = a->r + (int64_t)k * a->set.columns, *images = a->imaged ? a->p : a->q;
+    double *p = images + k * a->n;
+    if (a->imaged) {
+        memcpy(q, spari_slot_v(a, slot), (size_t)a->n * sizeof *q);
+        memcpy(p, spari_slot_iv(a, slot), (size_t)a->n * sizeof *p);
+        forget_lead(a, slot, q, p);
+    } else {
+        over_sizes(a, spari_slot_v(a, slot), q);
+    }
+    double whole = spari_size_in(q, p, a->n);
+    for (int j = 0; j < k; j++) {
+        r[j] = 0;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < k; j++) {
+            double c = spari_dot(images + j * a->n, q, a->n);
+            r[j] += c;
+            spari_axpy(-c, a->q + j * a->n, q, a->n);
+            if (a->imaged) {
+                spari_axpy(-c, a->p + j * a->n, p, a->n);
+            }
+        }
+    }
+    r[k] = spari_size_in(q, p, a->n);
+    if (!(r[k] > filter * whole) || !isfinite(r[k])) {
+        return 0;
+    }
+    for (int64_t i = 0; i < a->n; i++) {
+        q[i] /= r[k];
+        p[i] = a->imaged ? p[i] / r[k] : q[i];
+    }
+    a->order[k] = slot;
+    a->used++;
+    return 1;
+}
+
+/* Of what is new in a column less than the fluid's scatter is that. */
+static double least_new(const spari_accelerator *a) {
+    return a->imaged ? fmax(a->set.filter, a->memory.scatter) : a->set.filter;
+}
+
+static int newest_before(const spari_accelerator *a, int64_t serial) {
+    int found = -1;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == SPARI_LIVE && a->column[s].serial < serial &&
+            (found < 0 || a->column[s].serial > a->column[found].serial)) {
+            found = s;
+        }
+    }
+    return found;
+}
+
+void spari_columns_drop(spari_accelerator *a, int slot) {
+    a->column[slot].state = a->column[slot].step == a->step ? SPARI_FREE : SPARI_DROPPED;
+}
+
+void spari_columns_factor(spari_accelerator *a) {
+    int64_t serial = a->serial + 1;
+    a->used = 0;
+    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        serial = a->column[s].serial;
+        int full = a->used == a->set.columns;
+        if (!spari_columns_append(a, s, least_new(a))) {
+            a->dropped += !full;
+            /* those taken out below SPARI_QUIET have nothing to say; above, they are averaged with */
+            if (a->memory.scatter <= SPARI_QUIET && !is_unled(a, s)) {
+                spari_columns_drop(a, s);
+            }
+        }
+    }
+}
+
+static int free_slot(const spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == SPARI_FREE) {
+            return s;
+        }
+    }
+    return -1; /* does not happen: at most `columns` are of this step, at most `columns` are older */
+}
+
+/* The columns of this step, at most all but one: the oldest goes. */
+static void limit_columns(spari_accelerator *a) {
+    int count = 0, oldest = -1;
+    for (int s = 0; s < a->slots; s++) {
+        const spari_column *c = a->column + s;
+        if (c->state == SPARI_LIVE && c->step == a->step) {
+            count++;
+            oldest = oldest < 0 || c->serial < a->column[oldest].serial ? s : oldest;
+        }
+    }
+    if (count == a->set.columns) {
+        spari_columns_drop(a, oldest);
+        spari_columns_factor(a);
+    }
+}
+
+static spari_secant secant_of(const spari_accelerator *a, int slot) {
+    int led = a->column[slot].led;
+    return (spari_secant){spari_slot_v(a, slot),  spari_slot_w(a, slot),  led ? spari_slot_b(a, slot) : NULL,
+                          spari_slot_iv(a, slot), spari_slot_iw(a, slot), led ? spari_slot_ib(a, slot) : NULL};
+}
+
+/* The columns in use that are older than `serial`, the newest first; of this step alone, or of all. */
+static void gather_secants(spari_accelerator *a, double filter, int64_t serial, int of_step) {
+    spari_secants_begin(a->secants, filter);
+    for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
+        const spari_secant c = secant_of(a, s);
+        serial = a->column[s].serial;
+        if ((of_step && a->column[s].step != a->step) || !spari_secants_add(a->secants, &c)) {
+            break;
+        }
+    }
+}
+
+/* What is new in a column, so that its direction counts as one. */
+static const double INDEPENDENT = 1e-2;
+
+/* How far the newest column is from what the others of the step make of it, as of a fluid that remembers rho: negative
+   where they cannot tell. */
+static double defect_of(spari_accelerator *a, int newest, double rho) {
+    const spari_secant c = secant_of(a, newest);
+    gather_secants(a, INDEPENDENT, a->column[newest].serial, 1);
+    spari_secants_remember(a->secants, rho);
+    (void)spari_secants_fit(a->secants, 0);
+    return spari_secants_defect(a->secants, &c);
+}
+
+/* A column that fits forgets a part of what was seen before. */
+static double faded(double seen, double defect) {
+    static const double MEMORY = 0.8;
+    return defect >= 0 ? fmax(fmin(defect, 1), MEMORY * seen) : seen;
+}
+
+/* (T31). Returns what rho leaves of the asymmetry, over what is symmetric. Where too few pairs tell, rho stays. */
+static double recall(spari_accelerator *a) {
+    static const double FADE = 0.95, EXPLAINED = 0.5, MOST_OF_IT = 0.95;
+    enum { PAIRS = 3 };
+    spari_asymmetry *told = &a->memory.told;
+    int fresh = told->pairs > 0 ? 1 : a->slots;
+    *told = (spari_asymmetry){told->pairs, FADE * told->ww, FADE * told->both, FADE * told->bb, FADE * told->symmetric};
+    gather_secants(a, INDEPENDENT, a->serial + 1, 0);
+    spari_secants_tell(a->secants, fresh, told);
+    if (told->pairs >= PAIRS) {
+        int explained = told->both > 0 && told->both * told->both > EXPLAINED * told->ww * told->bb;
+        a->memory.rho = explained ? fmin(told->both / told->bb, MOST_OF_IT) : 0;
+    }
+    double rho = a->memory.rho, left = told->ww - rho * (2 * told->both - rho * told->bb);
+    return sqrt(fmax(left, 0) / told->symmetric);
+}
+
+/* What the newest column shows: how far it contradicts the others of the step, whether memory explains that, and what
+   is left then. */
+static void weigh_answers(spari_accelerator *a, int newest) {
+    spari_recollection *m = &a->memory;
+    double defect = defect_of(a, newest, 0), was = m->rho, left = 1;
+    m->contradiction = faded(m->contradiction, defect);
+    if (m->contradiction > SPARI_QUIET) {
+        left = recall(a);
+    } else {
+        m->rho = 0;
+        m->told = (spari_asymmetry){0};
+    }
+    if (m->rho > 0) {
+        defect = defect_of(a, newest, m->rho);
+        m->scatter = was > 0 ? fmin(faded(m->scatter, defect), left) : faded(0, defect);
+    } else {
+        m->scatter = faded(m->scatter, defect);
+    }
+}
+
+void spari_columns_learn(spari_accelerator *a) {
+    limit_columns(a);
+    int s = free_slot(a), moved = 0;
+    size_t bytes = (size_t)a->n * sizeof *a->change;
+    memcpy(spari_slot_v(a, s), a->change, bytes);
+    memcpy(spari_slot_w(a, s), a->change + a->n, bytes);
+    if (a->imaged) {
+        memcpy(spari_slot_iv(a, s), a->answer, bytes);
+        memcpy(spari_slot_iw(a, s), a->answer + a->n, bytes);
+    }
+    for (int64_t i = 0; i < a->n; i++) {
+        moved |= a->change[i] != 0;
+    }
+    if (!moved) { /* the residual stalls: the column says nothing */
+        a->dropped++;
+        return;
+    }
+    a->column[s] = (spari_column){SPARI_LIVE, a->step, ++a->serial, a->dt, a->imaged && a->led};
+    if (a->column[s].led) {
+        memcpy(spari_slot_b(a, s), a->lead, bytes);
+        memcpy(spari_slot_ib(a, s), a->lead + a->n, bytes);
+    }
+    double rho = a->memory.rho;
+    if (a->imaged) {
+        weigh_answers(a, s);
+    }
+    if (a->memory.rho != rho || !spari_columns_append(a, s, least_new(a))) {
+        spari_columns_factor(a);
+    }
+}
+
+/* (I - J)^-1 of an added mass lengthens nothing in the norm of the images: the solution is no farther from the loads
+   that the step began with than the first residual is long. A step much longer than that, or than the residual, comes
+   of columns that are wrong. */
+static double longest(const spari_accelerator *a) {
+    static const double LONG = 10;
+    return LONG * fmin(a->residual, a->residual_first);
+}
+
+/* Cuts a step made with alpha to that. */
+static void trust(const spari_accelerator *a, const double *x, double *next) {
+    double step = 0, most = longest(a), rho = spari_rho_of(a);
+    for (int64_t i = 0; i < a->n; i++) {
+        double answer = a->image[i] + (rho > 0 && a->led ? rho * a->lead[a->n + i] : 0);
+        for (int j = 0; j < a->used; j++) {
+            int slot = a->order[j];
+            answer += a->alpha[j] * (spari_slot_iw(a, slot)[i] - (rho > 0 ? rho * spari_slot_ib(a, slot)[i] : 0));
+        }
+        step += (next[i] - x[i]) * answer;
+    }
+    if (step > most * most) {
+        double cut = most / sqrt(step);
+        for (int64_t i = 0; i < a->n; i++) {
+            next[i] = x[i] + cut * (next[i] - x[i]);
+        }
+    }
+}
+
+/* alpha := R^-1 alpha */
+static void back_substitute(spari_accelerator *a) {
+    for (int j = a->used - 1; j >= 0; j--) {
+        const double *r = a->r + (int64_t)j * a->set.columns;
+        a->alpha[j] /= r[j];
+        for (int i = 0; i < j; i++) {
+            a->alpha[i] -= r[i] * a->alpha[j];
+        }
+    }
+}
+
+/* The same in the norm of the images, as x + (W - V) alpha + what the columns leave of the residual: a residual many
+   times larger than the loads leaves no rounding. */
+static int quasi_newton_imaged(spari_accelerator *a, const double *x, const double *g, double *next) {
+    int64_t n = a->n;
+    int m = a->used;
+    (void)spari_columns_residual(a, x, g, a->image, next);
+    memset(a->alpha, 0, (size_t)m * sizeof *a->alpha);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < m; j++) {
+            double part = spari_dot(a->p + j * n, next, n);
+            a->alpha[j] -= part;
+            spari_axpy(-part, a->q + j * n, next, n);
+        }
+    }
+    back_substitute(a);
+    if (spari_first_nonfinite(a->alpha, m) >= 0) {
+        return 0;
+    }
+    for (int j = 0; j < m; j++) {
+        const double *v = spari_slot_v(a, a->order[j]), *w = spari_slot_w(a, a->order[j]);
+        for (int64_t i = 0; i < n; i++) {
+            next[i] += a->alpha[j] * (w[i] - v[i]);
+        }
+    }
+    for (int64_t i = 0; i < n; i++) {
+        next[i] += x[i];
+    }
+    trust(a, x, next);
+    return 1;
+}
+
+/* next = g + W alpha, alpha the least squares of V alpha = -(g - x): the loads whose residual is as small as the
+   columns know how. `next` may be x. Returns 0 where that gives no numbers. */
+static int quasi_newton(spari_accelerator *a, const double *x, const double *g, double *next) {
+    int m = a->used;
+    if (a->imaged) {
+        return quasi_newton_imaged(a, x, g, next);
+    }
+    for (int j = 0; j < m; j++) {
+        const double *q = a->q + j * a->n;
+        double s[2] = {0, 0};
+        for (int64_t i = 0; i < a->n; i += a->period) {
+            for (int k = 0; k < a->period && i + k < a->n; k++) {
+                s[k >= a->split] += q[i + k] * (g[i + k] - x[i + k]);
+            }
+        }
+        a->alpha[j] = -(s[0] * a->weight[0] + s[1] * a->weight[1]);
+    }
+    back_substitute(a);
+    if (spari_first_nonfinite(a->alpha, m) >= 0) {
+        return 0;
+    }
+    memcpy(next, g, (size_t)a->n * sizeof *next);
+    for (int j = 0; j < m; j++) {
+        spari_axpy(a->alpha[j], spari_slot_w(a, a->order[j]), next, a->n);
+    }
+    return 1;
+}
+
+/* next by the derivative that fits all columns. Returns 0 where that gives no numbers. */
+static int step_by_average(spari_accelerator *a, const double *x, const double *g, double *next) {
+    static const double PART = 0.5, FILTER = 0.3;
+    double *r = a->change;
+    gather_secants(a, fmin(fmax(a->set.filter, PART * a->memory.scatter), FILTER), a->serial + 1, 0);
+    spari_secants_remember(a->secants, a->memory.rho);
+    double length = spari_columns_residual(a, x, g, a->image, r);
+    return spari_secants_fit(a->secants, a->memory.scatter * a->memory.scatter) > 0 &&
+           spari_secants_step(a->secants, x, r, length, longest(a), next);
+}
+
+int spari_columns_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+    return (a->imaged && a->memory.scatter > SPARI_LOUD && step_by_average(a, x, g, next)) ||
+           (a->used > 0 && quasi_newton(a, x, g, next));
+}
+
+/* ---- from step to step ---- */
+
+/* Whether column and image in slot s belong to another flexibility S than g - x and g with theirs: v . S y is not
+   y . S v. */
+static int is_of_another(const spari_accelerator *a, int s, const double *x, const double *g, const double *image) {
+    static const double OFF = 0.01;
+    const double *v = spari_slot_v(a, s), *iv = spari_slot_iv(a, s);
+    double square = spari_dot(v, iv, a->n), r = 0, whole = 0, residual = 0, size = 0;
+    for (int64_t i = 0; i < a->n; i++) {
+        r += (g[i] - x[i]) * iv[i] - v[i] * image[i];
+        whole += g[i] * iv[i] - v[i] * image[a->n + i];
+        residual += (g[i] - x[i]) * image[i];
+        size += g[i] * image[a->n + i];
+    }
+    return !(r * r <= OFF * OFF * square * residual) || !(whole * whole <= OFF * OFF * square * size);
+}
+
+int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
+    int other = a->renewed;
+    for (int s = 0; s < a->slots && !other; s++) {
+        other = a->column[s].state == SPARI_LIVE && is_of_another(a, s, x, g, images->now);
+    }
+    if (!other) {
+        return SPAR_OK;
+    }
+    size_t bytes = (size_t)a->n * sizeof *a->v;
+    int led = 0;
+    for (int s = 0; s < a->slots; s++) {
+        spari_column *c = a->column + s;
+        c->led &= spari_accelerator_contradicted(a); /* else nobody asks for it */
+        led |= c->led;
+        if (c->state == SPARI_FREE) {
+            memset(spari_slot_v(a, s), 0, bytes);
+            memset(spari_slot_w(a, s), 0, bytes);
+        }
+        if (c->state == SPARI_FREE || !c->led) {
+            memset(spari_slot_b(a, s), 0, bytes);
+        }
+    }
+    a->renewed = 1;
+    if (led) {
+        SPARI_TRY(images->of(images->context, a->slots, a->b, a->ib));
+    }
+    SPARI_TRY(images->of(images->context, a->slots, a->v, a->iv));
+    return images->of(images->context, a->slots, a->w, a->iw);
+}
+
+static int oldest_live(const spari_accelerator *a, int *count) {
+    int oldest = -1;
+    *count = 0;
+    for (int s = 0; s < a->slots; s++) {
+        if (a->column[s].state == SPARI_LIVE) {
+            *count += 1;
+            oldest = oldest < 0 || a->column[s].serial < a->column[oldest].serial ? s : oldest;
+        }
+    }
+    return oldest;
+}
+
+void spari_columns_accept(spari_accelerator *a) {
+    for (int s = 0; s < a->slots; s++) {
+        spari_column *c = a->column + s;
+        if (c->state == SPARI_DROPPED || a->step - c->step >= a->set.reuse) {
+            c->state = SPARI_FREE;
+        }
+        c->state = c->state == SPARI_RESTING ? SPARI_LIVE : c->state;
+    }
+    int count, oldest = oldest_live(a, &count);
+    for (; count > a->set.columns; oldest = oldest_live(a, &count)) {
+        a->column[oldest].state = SPARI_FREE;
+    }
+}
