@@ -644,18 +644,12 @@ static void substeps(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contraction),
-        cmocka_unit_test(explicit_with_wrong_guesses),
-        cmocka_unit_test(explicit_limits),
-        cmocka_unit_test(oscillator),
-        cmocka_unit_test(explicit_oscillator),
-        cmocka_unit_test(energy),
-        cmocka_unit_test(turning_body),
-        cmocka_unit_test(beams),
-        cmocka_unit_test(modes_to_rounding),
-        cmocka_unit_test(beams_held_otherwise),
-        cmocka_unit_test(explicit_beam),
-        cmocka_unit_test(substeps),
+        cmocka_unit_test(contraction),         cmocka_unit_test(explicit_with_wrong_guesses),
+        cmocka_unit_test(explicit_limits),     cmocka_unit_test(oscillator),
+        cmocka_unit_test(explicit_oscillator), cmocka_unit_test(energy),
+        cmocka_unit_test(turning_body),        cmocka_unit_test(beams),
+        cmocka_unit_test(modes_to_rounding),   cmocka_unit_test(beams_held_otherwise),
+        cmocka_unit_test(explicit_beam),       cmocka_unit_test(substeps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

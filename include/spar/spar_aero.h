@@ -222,10 +222,11 @@ SPAR_API const char *spar_aero_effect_name(int row);
      rows, columns: in, the capacity of the table
      table[rows][columns]: out, by SPAR_AERO_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not wanted
    Columns are as of spar_session_report_effects; size: change of the fluid's loads in the run, as
-   SPAR_TRY_LOAD. In force on all ranks where on any: what is on and has something to do (losses and swirl with induction, hub
-   loss with a hub radius, moments with polars that have some). The effects are as before afterwards, also after a
-   failure; the results of the last solve are then those of a trial, and spar_session_try compares with the run that had
-   all effects. Where a run fails without an effect its motion and reaction are -1; spar_session_message says why. */
+   SPAR_TRY_LOAD. In force on all ranks where on any: what is on and has something to do (losses and swirl with
+   induction, hub loss with a hub radius, moments with polars that have some). The effects are as before afterwards,
+   also after a failure; the results of the last solve are then those of a trial, and spar_session_try compares with the
+   run that had all effects. Where a run fails without an effect its motion and reaction are -1; spar_session_message
+   says why. */
 SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps,
                                       spar_before_step before, spar_fluid_solver solve, void *context, int64_t rows,
                                       int64_t columns, double *table);

@@ -113,12 +113,12 @@ HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bin
 HERE void NAME(share_rows)(int count, const double *phi, const double *const *f, double (*g)[SPARI_ROW],
                            const double *q, const int consistent, double (*out)[SPARI_ROW]) {
     for (int i = 0; i < count; i += W) {
-        L p = NAME(get)(phi + i), m[3] = {NAME(get)(g[0] + i), NAME(get)(g[1] + i), NAME(get)(g[2] + i)}, t[3];
+        L p = NAME(get)(phi + i), m[3] = {NAME(get)(g[0] + i), NAME(get)(g[1] + i), NAME(get)(g[2] + i)};
         if (consistent) {
-            L w = NAME(get)(g[3] + i), u[3] = {SPLAT(q + 1), SPLAT(q + 2), SPLAT(q + 3)};
-            NAME(cross)(m, u, t);
+            L w = NAME(get)(g[3] + i), u[3] = {SPLAT(q + 1), SPLAT(q + 2), SPLAT(q + 3)}, across[3];
+            NAME(cross)(m, u, across);
             for (int j = 0; j < 3; j++) {
-                m[j] = (m[j] * SPLAT(q) - w * u[j]) - t[j];
+                m[j] = (m[j] * SPLAT(q) - w * u[j]) - across[j];
             }
         }
         for (int j = 0; j < 3; j++) {
