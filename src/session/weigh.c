@@ -10,7 +10,6 @@
 #include "spread.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -130,8 +129,6 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
     *ok = isfinite(work) && isfinite(all) && work >= -ROUNDING * works && (all > 0 || work <= 0) &&
           is_symmetric(c, s->assemblies != NULL, answer, whole, work, both);
-    if (getenv("DBG"))
-        fprintf(stderr, "   weigh ok %d work %.3e works %.2e all %.3e\n", *ok, work, works, all);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
