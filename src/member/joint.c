@@ -78,10 +78,9 @@ int spar_joint_create(spar_session *session, const char *name, spar_member *a, i
     SPARI_QUIET;
     SPARI_REQUIRE(session, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
                   "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name ? name : "", free_motions);
-    spar_joint *j = NULL;
-    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint ? &j : NULL));
+    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint));
+    spar_joint *j = *joint;
     j->tie.free = free_motions;
-    *joint = j;
     return SPAR_OK;
 }
 
@@ -99,15 +98,14 @@ int spar_line_create(spar_session *session, const char *name, spar_member *a, in
     SPARI_REQUIRE(session, spari_norm(way) > 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': its two points are one, (%g, %g, %g); a line needs a direction in the reference", __func__,
                   label, point_a[0], point_a[1], point_a[2]);
-    spar_joint *j = NULL;
-    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint ? &j : NULL));
+    SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint));
+    spar_joint *j = *joint;
     memcpy(j->point[0], point_a, sizeof j->point[0]);
     memcpy(j->point[1], point_b, sizeof j->point[1]);
     j->tie.line = 1;
     j->tie.free = SPAR_FREE_X;
     j->length = spari_norm(way);
     j->drive[0].z[0] = j->drive[1].z[0] = j->now.z[0] = j->after.z[0] = j->length;
-    *joint = j;
     return SPAR_OK;
 }
 

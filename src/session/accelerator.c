@@ -219,11 +219,11 @@ static void set_norm(spari_accelerator *a, int imaged) {
                 spari_columns_drop(a, s);
             }
         }
-        a->imaged = imaged;
         a->iteration = a->used = 0;
         a->ratios = a->ratios_before = (spari_ratios){0};
         a->most_weight = 0;
     }
+    a->imaged = imaged;
 }
 
 int spari_accelerator_imaged(const spari_accelerator *a) {
@@ -256,7 +256,7 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
         a->change[a->n + i] = g[i] - a->g[i];
         a->change[i] = a->change[a->n + i] - (x[i] - a->x[i]);
     }
-    if (a->imaged) {
+    if (images && a->imaged) {
         SPARI_TRY(images->of(images->context, 2, a->change, a->answer));
     }
     estimate_ratio(a);
@@ -273,7 +273,7 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
 
 /* What the step's first answer has changed since the last one of the step before. */
 static int lead_in(spari_accelerator *a, const double *g, const spari_images *images) {
-    a->led = a->ended && spari_accelerator_contradicted(a);
+    a->led = images && a->ended && spari_accelerator_contradicted(a);
     for (int64_t i = 0; a->led && i < a->n; i++) {
         a->lead[i] = g[i] - a->last[i];
     }
@@ -303,7 +303,7 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
     }
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memcpy(a->g, g, (size_t)a->n * sizeof *g);
-    if (a->imaged) {
+    if (image && a->imaged) {
         memcpy(a->image, image, (size_t)(2 * a->n) * sizeof *image);
     }
     compute_next(a, a->x, a->g, next);

@@ -11,7 +11,7 @@ int spar_session_push_numbers(spar_session *session, int64_t n, const double *nu
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST_NUMBERS && (numbers || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",
                   SPARI_MOST_NUMBERS);
-    int64_t bad = spari_first_nonfinite(numbers, n);
+    int64_t bad = numbers ? spari_first_nonfinite(numbers, n) : -1;
     SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite ones", __func__,
                   (long long)bad, numbers[bad]);
     double *own = session->own->number;

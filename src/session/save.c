@@ -20,7 +20,7 @@
 
 static int member_index(const spar_session *s, const spar_member *member) {
     int k = 0;
-    for (const spar_member *m = s->members; m != member; m = m->next) {
+    for (const spar_member *m = s->members; m && m != member; m = m->next) {
         k++;
     }
     return k;
@@ -119,7 +119,7 @@ static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
     p->part = spari_zalloc((int64_t)PART_WORDS * ranks, sizeof *p->part);
     int status = agree_to_save(s, first && p->part ? SPAR_OK : spari_saved_no_memory(s));
-    if (status == SPAR_OK) {
+    if (first && p->part && status == SPAR_OK) {
         double *mine = p->part + (ptrdiff_t)PART_WORDS * spari_comm_rank(s->comm);
         spari_words_to_disc(own->word, own->count);
         uint64_t sum = spari_check_bytes(0, own->word, 8 * (size_t)own->count);
@@ -265,8 +265,8 @@ static int write_file(spar_session *s, spari_image *own, const char *path) {
     save_plan *p = spari_zalloc(1, sizeof *p);
     int root = spari_comm_rank(s->comm) == 0;
     int status = agree_to_save(s, p ? SPAR_OK : spari_saved_no_memory(s));
-    status = status == SPAR_OK ? share_parts(s, p, own) : status;
-    if (status == SPAR_OK) {
+    status = p && status == SPAR_OK ? share_parts(s, p, own) : status;
+    if (p && status == SPAR_OK) {
         status = agree_to_save(s, root ? begin_file(s, p, own, path) : SPAR_OK);
         if (status == SPAR_OK && spari_comm_size(s->comm) > 1) {
             status = write_parts(s, p, own);

@@ -33,7 +33,7 @@ int spar_session_sum(spar_session *session, int status, int64_t n, double *x) {
     if (answer == SPAR_OK) {
         answer = spari_comm_sum(s->comm, room, n, SPAR_OK, s->message, sizeof s->message);
     }
-    if (answer == SPAR_OK && n > 0) {
+    if (answer == SPAR_OK && room && n > 0) {
         memcpy(x, room, (size_t)n * sizeof *x);
     }
     free(room);

@@ -26,7 +26,7 @@ int spar_step_within(spar_session *session, double *dt, spar_before_step before,
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
-    double h = dt ? *dt : 0;
+    double none = 0, *next = dt ? dt : &none, h = *next;
     const spari_alike alike[] = {spari_real("dt", h), spari_given("before", before != NULL)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_within(s, __func__, dt, h)));
     for (int k = 0; k < TRIES; k++) {
@@ -35,7 +35,7 @@ int spar_step_within(spar_session *session, double *dt, spar_before_step before,
         SPARI_TRY(spari_step_run(s, __func__, solve, context));
         if (spari_pace_judge(s) <= 1) {
             SPARI_TRY(spari_named(s, __func__, spar_step_accept(s)));
-            *dt = s->own->pace.next;
+            *next = s->own->pace.next;
             if (taken) {
                 *taken = h;
             }

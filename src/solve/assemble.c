@@ -155,12 +155,15 @@ static void end_moves(spari_assembly *a, int back) {
 
 /* ---- all of them ---- */
 
+static int check_committed(const spar_joint *j, const spar_member *m) {
+    SPARI_REQUIRE(j->session, m->committed, SPAR_ERR_STATE,
+                  "joint '%s': member '%s' is not committed; call spar_member_commit first", j->name, m->name);
+    return SPAR_OK;
+}
+
 static int check_members(const spar_joint *j) {
-    for (int side = 0; side < 2; side++) {
-        const spar_member *m = j->member[side];
-        SPARI_REQUIRE(j->session, !m || m->committed, SPAR_ERR_STATE,
-                      "joint '%s': member '%s' is not committed; call spar_member_commit first", j->name, m->name);
-    }
+    SPARI_TRY(check_committed(j, j->member[0]));
+    SPARI_TRY(j->member[1] ? check_committed(j, j->member[1]) : SPAR_OK);
     SPARI_REQUIRE(j->session, j->member[0] != j->member[1] || !j->member[0]->row->whole, SPAR_ERR_ARGUMENT,
                   "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
                   j->member[0]->name);

@@ -8,7 +8,8 @@
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
 #define SPARI_FIDELITY_NAME(number, name) [SPAR_FIDELITY_##number] = #name,
 static const char *const row_name[] = {SPARI_FIDELITIES(SPARI_FIDELITY_NAME)};
-enum { ROWS = sizeof table / sizeof *table };
+#define SPARI_COUNT_FIDELITY(number, name) +1
+enum { ROWS = 0 SPARI_FIDELITIES(SPARI_COUNT_FIDELITY) };
 
 const char *spari_fidelity_name(int fidelity) {
     return row_name[fidelity];
