@@ -292,6 +292,94 @@ static void test_power_balance(void **unused) {
     spari_body_free(b);
 }
 
+/* ---- nodes side by side ---- */
+
+enum { MOST_NODES = 19 };
+
+static void plain_gather(int P, const double *q, const double *v, const double *a, double *z) {
+    memset(z, 0, ROW * SPARI_MAX_NODES * sizeof *z);
+    double before[4] = {0};
+    for (int l = 0; l < P; l++) {
+        double ql[4], half[4] = {0}, rate[4] = {0}, d[4] = {0}, dd[4] = {0}, spin[4] = {0}, fields[ROW] = {0};
+        double sign = l > 0 && spari_quat_dot(q + 7 * l + 3, before) < 0 ? -1 : 1;
+        for (int k = 0; k < 4; k++) {
+            before[k] = ql[k] = sign * q[7 * l + 3 + k];
+        }
+        for (int k = 0; k < 3; k++) {
+            half[1 + k] = v ? 0.5 * v[6 * l + 3 + k] : 0;
+            rate[1 + k] = v && a ? 0.5 * a[6 * l + 3 + k] : 0;
+            fields[U + k] = q[7 * l + k];
+            fields[UD + k] = v ? v[6 * l + k] : 0;
+            fields[UDD + k] = v && a ? a[6 * l + k] : 0;
+        }
+        spari_quat_mul(half, ql, d);
+        spari_quat_mul(rate, ql, dd);
+        spari_quat_mul(half, d, spin);
+        for (int k = 0; k < 4; k++) {
+            fields[Q + k] = ql[k], fields[QD + k] = d[k], fields[QDD + k] = a ? dd[k] + spin[k] : 0;
+        }
+        for (int k = 0; k < ROW; k++) {
+            z[SPARI_MAX_NODES * k + l] = fields[k];
+        }
+    }
+}
+
+static void plain_add(int P, const double *g, const double *z, double *r) {
+    for (int l = 0; l < P; l++) {
+        double g4[4], q[4], back[4], p[4];
+        spari_point_turn(z, l, q);
+        spari_quat_conj(q, back);
+        for (int k = 0; k < 4; k++) {
+            g4[k] = g[SPARI_MAX_NODES * (3 + k) + l];
+        }
+        spari_quat_mul(g4, back, p);
+        for (int k = 0; k < 3; k++) {
+            r[6 * l + k] += g[SPARI_MAX_NODES * k + l];
+            r[6 * l + 3 + k] += 0.5 * p[1 + k];
+        }
+    }
+}
+
+static void assert_near(int n, const double *x, const double *exact) {
+    for (int i = 0; i < n; i++) {
+        assert_true(fabs(x[i] - exact[i]) <= 1e-15 * 8); /* of numbers of size 1 */
+    }
+}
+
+static void numbers(int n, double *x) {
+    for (int i = 0; i < n; i++) {
+        x[i] = uniform();
+    }
+}
+
+/* Rows and forces of 1 to 19 nodes at every width, nodes in either hemisphere, with and without rates. */
+static void test_nodes(void **unused) {
+    (void)unused;
+    double q[7 * MOST_NODES], v[6 * MOST_NODES], a[6 * MOST_NODES], g[BACK * SPARI_MAX_NODES], r[6 * MOST_NODES + 2];
+    double exact[ROW * SPARI_MAX_NODES], z[ROW * SPARI_MAX_NODES] = {0}, sum[6 * MOST_NODES + 2];
+    for (int k = 0; k < 9 * MOST_NODES; k++) {
+        int P = k / 9 + 1, rates = k % 3;
+        spari_body b = {.elements = 1, .per_element = P, .unique = P, .lanes = 2 << (k % 9 / 3)};
+        numbers(7 * P, q);
+        numbers(6 * P, v);
+        numbers(6 * P, a);
+        numbers(BACK * SPARI_MAX_NODES, g);
+        numbers(6 * P + 2, r);
+        for (int l = 0; l < P; l++) {
+            spari_quat_normalise(q + 7 * l + 3);
+        }
+        spari_point_gather(&b, 0, q, rates > 0 ? v : NULL, rates > 1 ? a : NULL, z);
+        plain_gather(P, q, rates > 0 ? v : NULL, rates > 1 ? a : NULL, exact);
+        for (int row = 0; row < ROW; row++) {
+            assert_near(P, z + SPARI_MAX_NODES * row, exact + SPARI_MAX_NODES * row);
+        }
+        memcpy(sum, r, sizeof r);
+        spari_lanes_add(&b, g, z, sum);
+        plain_add(P, g, exact, r);
+        assert_near(6 * P + 2, sum, r); /* no node beyond the last */
+    }
+}
+
 /* ---- points side by side ---- */
 
 /* The fields of one point, a block of which only the first lane is used, by plain sums over the nodes. */
@@ -300,10 +388,10 @@ static void plain_fields(const spari_body *b, int k, const double *z, double *f)
     memset(f, 0, sizeof(double) * SPARI_LANES * POINT_ROWS);
     for (int l = 0; l < P; l++) {
         for (int i = 0; i < ROW; i++) {
-            f[SPARI_LANES * i] += b->phi[k * P + l] * z[ROW * l + i];
+            f[SPARI_LANES * i] += b->phi[k * P + l] * z[SPARI_MAX_NODES * i + l];
         }
         for (int i = 0; i < UDD; i++) {
-            f[SPARI_LANES * (DU + i)] += b->dphi[k * P + l] * z[ROW * l + i];
+            f[SPARI_LANES * (DU + i)] += b->dphi[k * P + l] * z[SPARI_MAX_NODES * i + l];
         }
     }
 }
@@ -343,7 +431,7 @@ static double plain_residual(const spari_body *b, const state *s, const double *
                              double *r, double *power) {
     const spari_regime how = spari_point_regime(b, v, a, factor);
     int P = b->per_element;
-    double z[ROW * 24], f[SPARI_LANES * POINT_ROWS], value[7], slope[7], scale = 0;
+    double z[ROW * SPARI_MAX_NODES], q[4], f[SPARI_LANES * POINT_ROWS], value[7], slope[7], scale = 0;
     memset(r, 0, sizeof *r * 6 * (size_t)b->unique);
     *power = 0;
     for (int e = 0; e < b->elements; e++) {
@@ -361,7 +449,8 @@ static double plain_residual(const spari_body *b, const state *s, const double *
         }
         for (int l = 0; l < P; l++) {
             double c[4], p[4], *rl = r + 6 * (e * (P - 1) + l);
-            spari_quat_conj(z + ROW * l + Q, c);
+            spari_point_turn(z, l, q);
+            spari_quat_conj(q, c);
             spari_quat_mul(g[l] + 3, c, p);
             for (int i = 0; i < 3; i++) {
                 rl[i] += g[l][i];
@@ -494,6 +583,7 @@ int main(void) {
         cmocka_unit_test(test_forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(test_frame_indifference),
         cmocka_unit_test(test_power_balance),
+        cmocka_unit_test(test_nodes),
         cmocka_unit_test(test_lanes),
         cmocka_unit_test(test_tangent_lanes),
         cmocka_unit_test(test_left_over_slots),

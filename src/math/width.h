@@ -6,6 +6,8 @@
      MADD(a,b,c) a b + c, rounded once where the processor can
      SPLAT(p)    *p in every lane
      ROOT(x)     square root, where there is an instruction for it
+     MOST(a,b)   the larger, b where one is no number, likewise
+     ABOVE(a,b)  some bits where a lane of a is larger, likewise
      L           the vector; get and put take it from memory and bring it there
      HERE        how a function begins that is inlined
    and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_X86 alone. No include
@@ -18,6 +20,8 @@
 #undef MADD
 #undef SPLAT
 #undef ROOT
+#undef MOST
+#undef ABOVE
 #undef L
 #undef HERE
 
@@ -40,6 +44,8 @@
 #define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
 #define SPLAT(p) _mm256_broadcast_sd(p)
 #define ROOT(x) _mm256_sqrt_pd(x)
+#define MOST(a, b) _mm256_max_pd(a, b)
+#define ABOVE(a, b) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ))
 #elif SPARI_WIDTH == 8
 #define W 8
 #define NAME(x) x##_avx512
@@ -47,6 +53,8 @@
 #define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
 #define SPLAT(p) _mm512_set1_pd(*(p))
 #define ROOT(x) _mm512_sqrt_pd(x)
+#define MOST(a, b) _mm512_max_pd(a, b)
+#define ABOVE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)
 #endif
 
 #if SPARI_WIDTH == 1 || SPARI_WIDTH == 2
@@ -59,6 +67,8 @@
 #endif
 #if W == 2 && defined(__SSE2__)
 #define ROOT(x) _mm_sqrt_pd(x)
+#define MOST(a, b) _mm_max_pd(a, b)
+#define ABOVE(a, b) _mm_movemask_pd(_mm_cmpgt_pd(a, b))
 #endif
 #endif
 

@@ -8,17 +8,17 @@
 /* n fields from `first` on of W points: f = sum_l shape_l z_l, with the shape functions or their slopes. */
 HERE void NAME(sum_nodes)(const int n, int P, const double *shape, int first, const double *z, double *f) {
     L sum[7], a = NAME(get)(shape);
-    z += first;
+    z += SPARI_MAX_NODES * first;
     SPARI_UNROLL
     for (int i = 0; i < n; i++) {
-        sum[i] = a * SPLAT(z + i);
+        sum[i] = a * SPLAT(z + SPARI_MAX_NODES * i);
     }
     for (int l = 1; l < P; l++) {
-        shape += 2 * SPARI_LANES, z += ROW;
+        shape += 2 * SPARI_LANES, z++;
         a = NAME(get)(shape);
         SPARI_UNROLL
         for (int i = 0; i < n; i++) {
-            sum[i] = MADD(a, SPLAT(z + i), sum[i]);
+            sum[i] = MADD(a, SPLAT(z + SPARI_MAX_NODES * i), sum[i]);
         }
     }
     SPARI_UNROLL

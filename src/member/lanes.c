@@ -7,15 +7,18 @@
 #define SPARI_WIDTH 2
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "nodes_lanes.h"
 #include "tangent_lanes.h"
 #ifdef SPARI_X86
 #define SPARI_WIDTH 4
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "nodes_lanes.h"
 #include "tangent_lanes.h"
 #define SPARI_WIDTH 8
 #include "../math/width.h"
 #include "forces_lanes.h"
+#include "nodes_lanes.h"
 #include "tangent_lanes.h"
 #endif
 #define SPARI_WIDTH 0
@@ -23,9 +26,12 @@
 
 /* The kernels of one instruction set; forces by what of its mass a section shows. */
 typedef struct lane_kernels {
+    int width;
     void (*interpolate)(int wanted, int P, const double *shape, const double *z, double *f);
     void (*forces[3])(const spari_body *body, int64_t slot, int n, const spari_regime *how, const double *z, double *f,
                       double *back, spari_tally *tally);
+    int (*gather)(int first, int left, const double *q, const double *v, const double *a, double *z);
+    void (*add)(int first, int left, const double *g, const double *z, double *r);
     void (*collect)(int sloped, int P, int n, const double *phi, const double *dphi, const double *back, double *g);
     void (*matrices)(const spari_body *body, int e, const spari_regime *how, const spari_tangent_work *t);
     void (*products)(const spari_tangent_work *t, const double *phi, const double *dphi);
@@ -35,8 +41,10 @@ typedef struct lane_kernels {
 
 #define KERNELS(set)                                                                                                   \
     {                                                                                                                  \
-        interpolate_block_##set, {massless_forces_##set, weighed_forces_##set, accelerated_forces_##set},              \
-            collect_##set, element_matrices_##set, pair_products_##set, sum_pairs_##set, project_##set                 \
+        (int)(sizeof(lanes_##set) / sizeof(double)), interpolate_block_##set,                                          \
+            {massless_forces_##set, weighed_forces_##set, accelerated_forces_##set}, gather_nodes_##set,               \
+            add_nodes_##set, collect_##set, element_matrices_##set, pair_products_##set, sum_pairs_##set,              \
+            project_##set                                                                                              \
     }
 static const lane_kernels plain = KERNELS(plain);
 #ifdef SPARI_X86
@@ -58,6 +66,24 @@ static const lane_kernels *kernels_for(const spari_body *body, int count) {
 #endif
     (void)body, (void)count;
     return &plain;
+}
+
+int spari_lanes_gather(const spari_body *body, const double *q, const double *v, const double *a, double *z) {
+    int opposed = 0;
+    const lane_kernels *kernel;
+    for (int l = 0, P = body->per_element; l < P; l += kernel->width) {
+        kernel = kernels_for(body, P - l);
+        opposed |= kernel->gather(l, P - l, q, v, a, z);
+    }
+    return opposed;
+}
+
+void spari_lanes_add(const spari_body *body, const double *g, const double *z, double *r) {
+    const lane_kernels *kernel;
+    for (int l = 0, P = body->per_element; l < P; l += kernel->width) {
+        kernel = kernels_for(body, P - l);
+        kernel->add(l, P - l, g, z, r);
+    }
 }
 
 void spari_lanes_interpolate(const spari_body *body, int e, int wanted, const double *z, double *f) {

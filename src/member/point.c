@@ -1,8 +1,6 @@
 /* What quadrature points are given: the fields of an element's nodes, and what of its mass a section shows. */
 #include "point.h"
 
-#include "../math/basis.h"
-
 /* Velocity of a node as the first one sees it, which carries all along with its own; or, where there are no places, as
    it is. */
 static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
@@ -31,48 +29,43 @@ void spari_body_see(const spari_body *body, const double *q, const double *v, do
 static void add_drag(const spari_body *body, int e, const double *q, const double *v, double *z) {
     int P = body->per_element;
     for (int l = 0; l < P; l++) {
-        double *zn = z + ROW * l, seen[6], half[4] = {0}, turned[4];
+        double *zn = z + l, seen[6], half[4] = {0}, at[4], turned[4];
         see_node(body, (int64_t)e * (P - 1) + l, q, v, seen);
         for (int i = 0; i < 3; i++) {
-            zn[UDD + i] += body->drag * seen[i];
+            zn[SPARI_MAX_NODES * (UDD + i)] += body->drag * seen[i];
             half[1 + i] = 0.5 * body->drag * seen[3 + i];
         }
-        spari_quat_mul(half, zn + Q, turned);
+        spari_point_turn(z, l, at);
+        spari_quat_mul(half, at, turned);
         for (int i = 0; i < 4; i++) {
-            zn[QDD + i] += turned[i];
+            zn[SPARI_MAX_NODES * (QDD + i)] += turned[i];
         }
     }
 }
 
-/* Nodal 4-vectors and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
+/* Each node follows its predecessor: with its negative, and so its rates. */
+static void chain_nodes(int P, double *z) {
+    for (int l = 1; l < P; l++) {
+        double before[4], here[4];
+        spari_point_turn(z, l - 1, before);
+        spari_point_turn(z, l, here);
+        for (int i = 0; i < 4 && spari_quat_dot(before, here) < 0; i++) {
+            z[SPARI_MAX_NODES * (Q + i) + l] *= -1;
+            z[SPARI_MAX_NODES * (QD + i) + l] *= -1;
+            z[SPARI_MAX_NODES * (QDD + i) + l] *= -1;
+        }
+    }
+}
+
 void spari_point_gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z) {
     int P = body->per_element;
-    for (int l = 0; l < P; l++) {
-        int64_t node = (int64_t)e * (P - 1) + l;
-        const double *qn = q + 7 * node;
-        double *zn = z + ROW * l, *ql = zn + Q;
-        memset(zn, 0, ROW * sizeof *zn);
-        memcpy(zn + U, qn, 3 * sizeof *zn);
-        double sign = l > 0 && spari_quat_dot(qn + 3, ql - ROW) < 0 ? -1.0 : 1.0;
-        for (int i = 0; i < 4; i++) {
-            ql[i] = sign * qn[3 + i];
-        }
-        if (v) {
-            const double *vn = v + 6 * node;
-            double half[4] = {0, 0.5 * vn[3], 0.5 * vn[4], 0.5 * vn[5]};
-            memcpy(zn + UD, vn, 3 * sizeof *zn);
-            spari_quat_mul(half, ql, zn + QD);
-            if (a) {
-                const double *an = a + 6 * node;
-                double half_rate[4] = {0, 0.5 * an[3], 0.5 * an[4], 0.5 * an[5]}, spin[4];
-                memcpy(zn + UDD, an, 3 * sizeof *zn);
-                spari_quat_mul(half_rate, ql, zn + QDD);
-                spari_quat_mul(half, zn + QD, spin);
-                for (int i = 0; i < 4; i++) {
-                    zn[QDD + i] += spin[i];
-                }
-            }
-        }
+    int64_t first = (int64_t)e * (P - 1);
+    if (!v || !a) {
+        int from = v ? UDD : UD;
+        memset(z + SPARI_MAX_NODES * from, 0, (size_t)(SPARI_MAX_NODES * (ROW - from)) * sizeof *z);
+    }
+    if (spari_lanes_gather(body, q + 7 * first, v ? v + 6 * first : NULL, v && a ? a + 6 * first : NULL, z)) {
+        chain_nodes(P, z);
     }
     if (v && a && body->drag > 0) {
         add_drag(body, e, q, v, z);

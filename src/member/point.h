@@ -3,6 +3,7 @@
 #ifndef SPARI_POINT_H
 #define SPARI_POINT_H
 
+#include "../math/basis.h"
 #include "../math/lanes.h"
 #include "../math/rotation.h"
 #include "body.h"
@@ -57,14 +58,27 @@ typedef struct spari_regime {
 
 spari_regime spari_point_regime(const spari_body *body, const double *v, const double *a, double factor);
 
-/* Nodal 4-vectors and their rates, z [P][ROW]. Neighbours are brought into one hemisphere, so that an element may turn
-   by more than half a revolution from end to end. */
+/* Nodal 4-vectors and their rates, z [ROW][SPARI_MAX_NODES]. Neighbours are brought into one hemisphere, so that an
+   element may turn by more than half a revolution from end to end. */
 void spari_point_gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z);
 
 /* Sizes of forces and power of damping, gathered over points lane by lane. */
 typedef struct spari_tally {
     double power[SPARI_LANES], most[SPARI_LANES];
 } spari_tally;
+
+/* The 4-vector of a node. */
+static inline void spari_point_turn(const double *z, int node, double q[4]) {
+    for (int i = 0; i < 4; i++) {
+        q[i] = z[SPARI_MAX_NODES * (Q + i) + node];
+    }
+}
+
+/* The same of nodes as they are, of arrays that begin with the element's first, which is what there is of v and a, NULL
+   where there is none. Whether a node may lie in another hemisphere than its neighbour. */
+int spari_lanes_gather(const spari_body *body, const double *q, const double *v, const double *a, double *z);
+/* Adds what an element's points give back, g [BACK][SPARI_MAX_NODES], to the forces r of its nodes. */
+void spari_lanes_add(const spari_body *body, const double *g, const double *z, double *r);
 
 /* Fields of the points of element e, blocks f [blocks][POINT_ROWS][lanes], from its nodes' rows; those not wanted are
    left as they are. */

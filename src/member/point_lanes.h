@@ -3,19 +3,7 @@
    docs/theory.md, "The beam".
 
    Lanes do not see each other and nothing is fused: a point's numbers have the same bits at every width. */
-
-HERE L NAME(root)(L x) {
-#ifdef ROOT
-    return ROOT(x);
-#else
-    double t[W];
-    memcpy(t, &x, sizeof x);
-    for (int i = 0; i < W; i++) {
-        t[i] = sqrt(t[i]);
-    }
-    return NAME(get)(t);
-#endif
-}
+#include "../math/rotation_lanes.h"
 
 /* Row i of a block: fields of points, or their properties. */
 #undef ROW_OF
@@ -28,58 +16,7 @@ HERE void NAME(rows)(const int n, const double *block, L *x) {
     }
 }
 
-/* ---- small algebra ---- */
-
-HERE void NAME(cross)(const L *a, const L *b, L *c) {
-    L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-    c[0] = x, c[1] = y, c[2] = z; /* c may be a or b */
-}
-
-HERE L NAME(dot)(const L *a, const L *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-HERE L NAME(quat_dot)(const L *a, const L *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-}
-
-HERE L NAME(norm)(const L *a) {
-    return NAME(root)(NAME(dot)(a, a));
-}
-
-/* y = R(q) x for unit q; y may be x */
-HERE void NAME(rotate)(const L *q, const L *x, L *y) {
-    L t[3], s[3];
-    NAME(cross)(q + 1, x, t);
-    t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
-    NAME(cross)(q + 1, t, s);
-    for (int i = 0; i < 3; i++) {
-        y[i] = x[i] + q[0] * t[i] + s[i];
-    }
-}
-
-/* y = R(q)^T x for unit q; y may be x */
-HERE void NAME(rotate_back)(const L *q, const L *x, L *y) {
-    const L c[4] = {q[0], -q[1], -q[2], -q[3]};
-    NAME(rotate)(c, x, y);
-}
-
-/* Im(a* b) */
-HERE void NAME(imag_conj_mul)(const L *a, const L *b, L *c) {
-    SPARI_UNROLL
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        c[i] = a[0] * b[1 + i] - b[0] * a[1 + i] - (a[1 + j] * b[1 + k] - a[1 + k] * b[1 + j]);
-    }
-}
-
-/* quaternion product of q and the pure quaternion s */
-HERE void NAME(quat_vec)(const L *q, const L *s, L *c) {
-    c[0] = -q[1] * s[0] - q[2] * s[1] - q[3] * s[2];
-    c[1] = q[0] * s[0] + q[2] * s[2] - q[3] * s[1];
-    c[2] = q[0] * s[1] - q[1] * s[2] + q[3] * s[0];
-    c[3] = q[0] * s[2] + q[1] * s[1] - q[2] * s[0];
-}
+/* ---- matrices of the sections ---- */
 
 /* y = J x with the rows xx, xy, xz, yy, yz, zz of a block */
 HERE void NAME(symmetric_times)(const double *J, const L *x, L *y) {

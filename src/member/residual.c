@@ -5,35 +5,10 @@
 
 /* ---- forces ---- */
 
-/* Nodal force of the 4-vector g: delta q . g = delta theta . 1/2 Im(g q*) */
-static void add_moment(const double g[4], const double q[4], double m[3]) {
-    double c[4], p[4];
-    spari_quat_conj(q, c);
-    spari_quat_mul(g, c, p);
-    for (int i = 0; i < 3; i++) {
-        m[i] += 0.5 * p[1 + i];
-    }
-}
-
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                            double *r, double *power) {
     return body->linear[0] ? spari_linear_residual(body, q, v, a, factor, r, power)
                            : spari_body_exact_residual(body, q, v, a, factor, r, power);
-}
-
-/* Adds what the points of element e give back, g [BACK][SPARI_MAX_NODES], to the forces on its nodes. */
-static void add_element(const spari_body *body, int e, const double *g, const double *z, double *r) {
-    int P = body->per_element;
-    for (int l = 0; l < P; l++) {
-        double *rl = r + 6 * ((int64_t)e * (P - 1) + l), back[BACK];
-        for (int i = 0; i < BACK; i++) {
-            back[i] = g[SPARI_MAX_NODES * i + l];
-        }
-        for (int i = 0; i < 3; i++) {
-            rl[i] += back[i];
-        }
-        add_moment(back + 3, z + ROW * l + Q, rl + 3);
-    }
 }
 
 /* What the forces of elements are asked of. */
@@ -45,14 +20,14 @@ typedef struct force_state {
 
 static void add_forces(const spari_body *body, int tile, int from, int to, void *context) {
     const force_state *s = context;
-    double *z = body->scratch, *g = z + (int64_t)body->per_element * ROW, *f = g + BACK * SPARI_MAX_NODES,
+    double *z = body->scratch, *g = z + ROW * SPARI_MAX_NODES, *f = g + BACK * SPARI_MAX_NODES,
            *back = f + SPARI_LANES * POINT_ROWS, *sum = body->tally + 2 * (int64_t)tile;
     spari_tally tally = {{0}, {0}};
     for (int e = from; e < to; e++) {
         spari_point_gather(body, e, s->q, s->v, s->a, z);
         spari_lanes_forces(body, e, &s->how, z, f, back, &tally);
         spari_lanes_collect(body, e, back, g);
-        add_element(body, e, g, z, s->r);
+        spari_lanes_add(body, g, z, s->r + 6 * (int64_t)e * (body->per_element - 1));
     }
     sum[0] = sum[1] = 0;
     for (int i = 0; i < SPARI_LANES; i++) {
@@ -119,7 +94,7 @@ static void add_mass_energy(const spari_body *body, int64_t slot, double w, cons
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
     int damped = body->C && body->D && v;
     int wanted = SPARI_PLACES | (body->C ? SPARI_SLOPES : 0) | (damped ? SPARI_RATE_SLOPES : 0);
-    double *z = body->scratch, *f = z + (int64_t)body->per_element * ROW;
+    double *z = body->scratch, *f = z + ROW * SPARI_MAX_NODES;
     memset(energy, 0, 4 * sizeof *energy);
     if (body->linear[0]) {
         spari_linear_energy(body, q, v, energy);

@@ -32,7 +32,7 @@ static int64_t row_of_pairs(int P) {
 /* Of a residual and, after the same, of a tangent: see spari_tangent_work. */
 int64_t spari_body_scratch(int P, int points, int damped) {
     int64_t slots = ((int64_t)points + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
-    int64_t forces = (int64_t)P * ROW + BACK * SPARI_MAX_NODES + SPARI_LANES * POINT_ROWS + slots * BACK_ROWS;
+    int64_t forces = ROW * SPARI_MAX_NODES + BACK * SPARI_MAX_NODES + SPARI_LANES * POINT_ROWS + slots * BACK_ROWS;
     int64_t matrices = slots * (damped ? WHOLE_ROWS + HALF_ROWS + MASS_ROWS : HALF_ROWS + SLOPE_BY_Q + MASS_ROWS);
     int64_t pairs = (int64_t)PRODUCTS * points + (damped ? WHOLE_SUMS + HALF_SUMS : HALF_SUMS + SLOPE_BY_Q) + MASS_ROWS;
     return forces + matrices + pairs * row_of_pairs(P) + 36 * (P + (int64_t)SPARI_LANES);
@@ -64,7 +64,7 @@ static spari_tangent_work begin_tangent(const spari_body *body, int e, const spa
     double *room = body->scratch;
     t.pairs = (int64_t)P * (P + 1) / 2, t.stride = row_of_pairs(P), t.map_stride = P + SPARI_LANES;
     t.rates = rates, t.elastic = body->C != NULL, t.damped = t.elastic && body->D && rates, t.whole = how->damped;
-    t.z = take_room(&room, (int64_t)P * ROW);
+    t.z = take_room(&room, ROW * SPARI_MAX_NODES);
     t.g = take_room(&room, BACK * SPARI_MAX_NODES);
     t.f = take_room(&room, SPARI_LANES * POINT_ROWS);
     t.back = take_room(&room, t.slots * BACK_ROWS);
@@ -123,13 +123,17 @@ static void add_maps(double c, double m[4][3], const double *T, const double *w,
 
 /* dq = E dtheta, d(qd) = F dtheta, d(qdd) = H dtheta (4 x 3 each), with dw = cv Tinv dtheta, dalpha = cm Tinv dtheta
    and q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
-static void node_maps(const double *zn, const double *v, const double *a, double cm, double cv, const double *tinv,
-                      double E[4][3], double F[4][3], double H[4][3]) {
+static void node_maps(const double *z, int node, const double *v, const double *a, double cm, double cv,
+                      const double *tinv, double E[4][3], double F[4][3], double H[4][3]) {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const double *T = tinv ? tinv : identity;
-    double by_rate[4][3];
-    half_turns(zn + Q, E);
-    half_turns(zn + QD, by_rate);
+    double by_rate[4][3], turn[4], rate[4];
+    spari_point_turn(z, node, turn);
+    for (int i = 0; i < 4; i++) {
+        rate[i] = z[SPARI_MAX_NODES * (QD + i) + node];
+    }
+    half_turns(turn, E);
+    half_turns(rate, by_rate);
     add_maps(cv, E, T, v ? v + 3 : NULL, E, F);
     add_maps(cm, E, T, a ? a + 3 : NULL, E, H);
     add_maps(cv, by_rate, T, v ? v + 3 : NULL, F, H);
@@ -144,7 +148,7 @@ static void put_maps(const spari_body *body, int e, const double *v, const doubl
     for (int l = 0; l < t->P; l++) {
         int64_t node = (int64_t)e * (body->per_element - 1) + l;
         double map[3][4][3] = {{{0}}}, flat[36];
-        node_maps(t->z + ROW * l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, t->cm, t->cv,
+        node_maps(t->z, l, v ? v + 6 * node : NULL, a ? a + 6 * node : NULL, t->cm, t->cv,
                   tinv ? tinv + 9 * node : NULL, map[0], map[1], map[2]);
         memcpy(flat, map, sizeof flat);
         for (int i = 0; i < 36; i++) {
@@ -171,11 +175,12 @@ static void add_turned_forces(const spari_body *body, int e, const spari_tangent
     int64_t stride = 6 * (int64_t)t->P;
     spari_lanes_collect(body, e, t->back, t->g);
     for (int l = 0; l < t->P; l++) {
-        double g[4];
+        double g[4], q[4];
+        spari_point_turn(t->z, l, q);
         for (int i = 0; i < 4; i++) {
             g[i] = t->g[SPARI_MAX_NODES * (3 + i) + l];
         }
-        add_turned_force(g, t->z + ROW * l + Q, S + (stride + 1) * (6 * l + 3), stride);
+        add_turned_force(g, q, S + (stride + 1) * (6 * l + 3), stride);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"
+#include "alpha_nodes.h"
 #include "leap.h"
 #include "newton.h"
 #include "root.h"
@@ -16,30 +17,6 @@
 
 /* ---- one substep ---- */
 
-/* State of `to` from the increments: place, and without inertia the rates. The rotation vector is the increment plus
-   h^2/12 omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly: the scheme stays of
-   second order and reversible, and a fast spin about an axis that turns no longer drifts off its axis. */
-static void place_node(const spari_scheme *c, const spari_state *from, const spari_state *to, const double *x, int i) {
-    double p[4], psi[3] = {x[6 * i + 3], x[6 * i + 4], x[6 * i + 5]};
-    if (!c->still) {
-        double turn[3];
-        spari_cross(to->v + 6 * i + 3, from->v + 6 * i + 3, turn);
-        for (int k = 0; k < 3; k++) {
-            psi[k] += c->h * c->h / 12 * turn[k];
-        }
-    }
-    for (int k = 0; k < 3; k++) {
-        to->q[7 * i + k] = from->q[7 * i + k] + x[6 * i + k];
-    }
-    spari_quat_exp(psi, p);
-    spari_quat_mul(p, from->q + 7 * i + 3, to->q + 7 * i + 3);
-    spari_quat_normalise(to->q + 7 * i + 3);
-    for (int k = 0; k < 6 && c->still; k++) {
-        to->v[6 * i + k] = x[6 * i + k] / c->h;
-        to->a[6 * i + k] = to->b[6 * i + k] = 0;
-    }
-}
-
 /* Rates from node i on. */
 static spari_rates rates_of(const spari_state *s, int64_t i) {
     return (spari_rates){s->v + 6 * i, s->a + 6 * i, s->b + 6 * i};
@@ -48,15 +25,26 @@ static spari_rates rates_of(const spari_state *s, int64_t i) {
 /* What is done node by node, in spans of them. */
 typedef struct alpha_nodes {
     const spari_solver *s;
-    const spari_scheme *c;
-    const spari_ends *e;
-    double *x, *dx;
-    const double *q, *r;
+    spari_node_work work;
     spari_guess stays;
-    double cut;
     int shifted;
-    const double *R; /* how a driven root is turned; NULL: there is none */
 } alpha_nodes;
+
+static spari_node_work alpha_work(const spari_solver *s) {
+    return (spari_node_work){.lanes = s->body->lanes, .dx = s->dx, .kept = s->kept_q, .cut = 1};
+}
+
+/* The same of a substep's increments. */
+static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double *x) {
+    spari_node_work work = alpha_work(s);
+    work.c = c, work.from = &e->from, work.to = &e->to, work.x = x;
+    return work;
+}
+
+/* What a span says of its largest. */
+static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
+    t->s->most[from / SPARI_SPAN] = fmax(sqrt(size.way) / t->s->body->length, sqrt(size.turn));
+}
 
 /* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
    jumps, the nodes that keep their places are left behind (root.c). `to` is not in use there. */
@@ -78,15 +66,13 @@ static void keep_shape(const spari_solver *s, const spar_member *member, spari_e
 
 static void predict_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    const spari_ends *e = t->e;
-    int64_t n = 6 * (to - from), at = 6 * from;
-    spari_scheme_predict(t->c, t->stays, (int)n, rates_of(&e->from, from), t->x + at, rates_of(&e->to, from));
+    const spari_node_work *w = &t->work;
+    int n = (int)(6 * (to - from));
+    spari_scheme_predict(w->c, t->stays, n, rates_of(w->from, from), w->x + 6 * from, rates_of(w->to, from));
     if (t->shifted) {
-        spari_scheme_correct(t->c, 1, (int)n, t->dx + at, t->x + at, rates_of(&e->to, from));
+        spari_nodes_correct(w, from, to);
     }
-    for (int64_t i = from; i < to; i++) {
-        place_node(t->c, &e->from, &e->to, t->x, (int)i);
-    }
+    (void)spari_nodes_place(w, from, to);
 }
 
 /* Starting values of Newton. */
@@ -99,7 +85,7 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
     if (shape) {
         keep_shape(s, member, e, s->dx);
     }
-    alpha_nodes t = {.s = s, .c = c, .e = e, .x = x, .dx = s->dx, .shifted = shape};
+    alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x), .shifted = shape};
     t.stays = shape ? SPARI_KEEP_PLACE : stays;
     spari_solver_spread(s, predict_span, &t);
     spari_root_show(s, member, e);
@@ -109,7 +95,8 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
 /* Starting values without inertia: the member goes along with its root as it stands. */
 void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                        const double turn[4], const spari_ends *e, double *x) {
-    const spari_state *from = &e->from, *to = &e->to;
+    const spari_state *from = &e->from;
+    const spari_node_work work = alpha_work_on(s, c, e, x);
     int driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
     spari_quat_log(turn, psi);
@@ -124,8 +111,8 @@ void spari_alpha_carry(const spari_solver *s, const spar_member *member, const s
             x[6 * i + k] = driven ? root->q[k] - from->q[k] + turned[k] - arm[k] : 0;
             x[6 * i + 3 + k] = driven ? psi[k] : 0;
         }
-        place_node(c, from, to, x, i);
     }
+    (void)spari_nodes_place(&work, 0, s->n);
 }
 
 /* A driven root goes where it is told. */
@@ -160,8 +147,9 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
 static void less_loads(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
     const double *load = t->s->steps.load;
+    double *r = t->work.x;
     for (int64_t i = 6 * from; i < 6 * to; i++) {
-        t->x[i] -= load[i];
+        r[i] -= load[i];
     }
 }
 
@@ -172,7 +160,7 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     const spari_body *body = s->body;
     double scale =
         spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
-    spari_solver_spread(s, less_loads, &(alpha_nodes){.s = s, .x = r});
+    spari_solver_spread(s, less_loads, &(alpha_nodes){.s = s, .work = {.x = r}});
     if (spari_solver_has_applied(s, member)) {
         scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
     }
@@ -186,58 +174,51 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     return scale;
 }
 
-static void see_turn(const spari_solver *s, const double *q, int64_t i) {
-    double back[4];
-    spari_quat_conj(s->kept_q + 4 * i, back);
-    spari_quat_mul(q + 7 * i + 3, back, s->turn + 4 * i);
-}
-
-/* How the nodes have turned since the kept tangent was formed. */
-void spari_alpha_see_turn(const spari_solver *s, const double *q) {
-    for (int i = 0; i < s->n && !s->body->linear[0]; i++) {
-        see_turn(s, q, i);
-    }
-}
-
-static void turn_nodes_back(void *context, int64_t from, int64_t to) {
+static void turn_span_back(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    for (int64_t i = from; i < to; i++) {
-        const double *turn = t->s->turn + 4 * i;
-        see_turn(t->s, t->q, i);
-        spari_rotate_back(turn, t->r + 6 * i, t->dx + 6 * i);
-        spari_rotate_back(turn, t->r + 6 * i + 3, t->dx + 6 * i + 3);
-    }
+    t->s->most[from / SPARI_SPAN] = spari_nodes_turn_back(&t->work, from, to);
 }
 
-static void turn_nodes_forth(void *context, int64_t from, int64_t to) {
+static void turn_span_forth(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    for (int64_t i = from; i < to; i++) {
-        const double *turn = t->s->turn + 4 * i;
-        spari_rotate(turn, t->dx + 6 * i, t->dx + 6 * i);
-        spari_rotate(turn, t->dx + 6 * i + 3, t->dx + 6 * i + 3);
+    spari_nodes_turn_forth(&t->work, from, to);
+}
+
+/* The largest of forces; infinite where one is no number. */
+static void size_forces(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    double big = 0;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        double size = fabs(t->work.r[i]);
+        big = size <= big ? big : size < INFINITY ? size : INFINITY;
     }
+    t->s->most[from / SPARI_SPAN] = big;
 }
 
 /* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
    in fixed axes. */
-void spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
+double spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
+    alpha_nodes t = {.s = s, .work = alpha_work(s)};
+    t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.turn = s->turn;
     if (s->body->linear[0]) {
         memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
-        return;
     }
-    spari_solver_spread(s, turn_nodes_back, &(alpha_nodes){.s = s, .q = q, .r = r, .dx = dx});
+    spari_solver_spread(s, s->body->linear[0] ? size_forces : turn_span_back, &t);
+    return spari_solver_most(s);
 }
 
 void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
+    alpha_nodes t = {.s = s, .work = alpha_work(s)};
+    t.work.dx = dx, t.work.turn = s->turn;
     if (!s->body->linear[0]) {
-        spari_solver_spread(s, turn_nodes_forth, &(alpha_nodes){.s = s, .dx = dx});
+        spari_solver_spread(s, turn_span_forth, &t);
     }
 }
 
 static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
-    spari_alpha_turn_back(s, q, r, dx);
+    (void)spari_alpha_turn_back(s, q, r, dx);
     int singular = spari_linear_solve(s->linear, dx);
     spari_alpha_turn_forth(s, dx);
     return singular;
@@ -297,51 +278,44 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
     }
 }
 
-/* The same of one node's turn dtheta, in the axes of the scheme: three vectors less than the matrix takes. */
-static void turn_increment(const spari_scheme *c, const spari_ends *e, const double *x, int i, double turn[3]) {
-    double psi[3], k = rotation_of(c, e, x, i, psi);
-    spari_tangent_inverse_times(psi, turn, turn);
-    less_spin(k, e->from.v + 6 * i + 3, turn, turn);
-}
-
 static void take_increments(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    double largest = 0, length = t->s->body->length;
-    for (int64_t i = from; i < to; i++) {
-        double *d = t->dx + 6 * i;
-        for (int k = 0; k < 6 && t->R; k += 3) {
-            spari_matrix_times_back(t->R, d + k, d + k);
-        }
-        turn_increment(t->c, t->e, t->x, (int)i, d + 3);
-        largest = fmax(largest, fmax(spari_norm(d) / length, spari_norm(d + 3)));
-    }
-    t->s->most[from / SPARI_SPAN] = largest;
+    put_size(t, from, spari_nodes_take(&t->work, from, to));
 }
 
 static void correct_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    int64_t at = 6 * from;
-    spari_scheme_correct(t->c, t->cut, (int)(6 * (to - from)), t->dx + at, t->x + at, rates_of(&t->e->to, from));
-    for (int64_t i = from; i < to; i++) {
-        place_node(t->c, &t->e->from, &t->e->to, t->x, (int)i);
-    }
+    spari_nodes_correct(&t->work, from, to);
+    put_size(t, from, spari_nodes_place(&t->work, from, to));
 }
 
-/* x -= correction, rotations through the inverse tangent operator, shortened to `longest`; returns the correction,
-   relative to the member's length for translations, in radians for rotations. */
-double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                           double longest, double *x, double *dx) {
-    double R[9];
-    alpha_nodes t = {.s = s, .c = c, .e = e, .x = x, .dx = dx, .R = e->root ? R : NULL};
+/* Sizes of a correction and of what it led to: relative to the member's length for translations, in radians for
+   rotations. */
+typedef struct corrected {
+    double by, way;
+} corrected;
+
+/* x -= correction, rotations through the inverse tangent operator, shortened to `longest`. turn: what turns it forth
+   first; NULL: nothing. */
+static corrected correct_turned(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                                double *turn, double longest, double *x, double *dx) {
+    double R[9], largest;
+    alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x)};
+    t.work.dx = dx, t.work.turn = turn, t.work.R = e->root ? R : NULL;
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
     }
     spari_solver_spread(s, take_increments, &t);
-    double largest = spari_solver_most(s);
-    t.cut = largest > longest ? longest / largest : 1;
+    largest = spari_solver_most(s);
+    t.work.cut = largest > longest ? longest / largest : 1;
     spari_solver_spread(s, correct_span, &t);
     spari_root_show(s, member, e);
-    return largest;
+    return (corrected){largest, spari_solver_most(s)};
+}
+
+double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                           double longest, double *x, double *dx) {
+    return correct_turned(s, member, c, e, NULL, longest, x, dx).by;
 }
 
 /* A place goes by its node's increment and, in the term of Magnus' series, by its velocity: what that loses the
@@ -364,32 +338,11 @@ void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const
 
 static void size_nodes(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    double largest = 0, length = t->s->body->length;
-    for (int64_t i = from; i < to; i++) {
-        const double *x = t->r + 6 * i;
-        largest = fmax(largest, fmax(spari_norm(x) / length, spari_norm(x + 3)));
-    }
-    t->s->most[from / SPARI_SPAN] = largest;
+    put_size(t, from, spari_nodes_size(&t->work, from, to));
 }
 
-double spari_alpha_size(const spari_solver *s, const double *x) {
-    spari_solver_spread(s, size_nodes, &(alpha_nodes){.s = s, .r = x});
-    return spari_solver_most(s);
-}
-
-/* The largest of forces; infinite where one is no number. */
-static void size_forces(void *context, int64_t from, int64_t to) {
-    const alpha_nodes *t = context;
-    double big = 0;
-    for (int64_t i = 6 * from; i < 6 * to; i++) {
-        double size = fabs(t->r[i]);
-        big = size <= big ? big : size < INFINITY ? size : INFINITY;
-    }
-    t->s->most[from / SPARI_SPAN] = big;
-}
-
-static double size_of_forces(const spari_solver *s, const double *r) {
-    spari_solver_spread(s, size_forces, &(alpha_nodes){.s = s, .r = r});
+double spari_alpha_size(const spari_solver *s, double *x) {
+    spari_solver_spread(s, size_nodes, &(alpha_nodes){.s = s, .work = {.lanes = s->body->lanes, .x = x}});
     return spari_solver_most(s);
 }
 
@@ -457,7 +410,9 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     spari_solver *s = t->s;
     const spar_session *session = t->member->session;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r), noise = size_of_forces(s, s->r);
+    const double *q = t->e->seen.q;
+    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
+    double noise = spari_alpha_turn_back(s, q, s->r, s->dx);
     if (!isfinite(scale) || !isfinite(noise)) {
         return "met numbers that are not finite";
     }
@@ -466,13 +421,16 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
         if (spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
             return "found a singular tangent";
         }
+        (void)spari_alpha_turn_back(s, q, s->r, s->dx); /* its axes are these */
     }
-    if (solve_turned(s, t->e->seen.q, s->r, s->dx)) {
+    if (spari_linear_solve(s->linear, s->dx)) {
         return "found a singular tangent";
     }
-    it->correction = spari_alpha_correct(s, t->member, t->c, t->e, longest, t->x, s->dx);
+    corrected size =
+        correct_turned(s, t->member, t->c, t->e, s->body->linear[0] ? NULL : s->turn, longest, t->x, s->dx);
     s->newton++;
-    it->tolerance = session->newton_atol + session->newton_rtol * (spari_alpha_size(s, t->x) + t->e->carried);
+    it->correction = size.by;
+    it->tolerance = session->newton_atol + session->newton_rtol * (size.way + t->e->carried);
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
     return NULL;

@@ -23,10 +23,9 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
 void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r);
 /* Forms and factors the tangent. 0 or 1. */
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to);
-/* How the nodes have turned since the kept tangent was formed. */
-void spari_alpha_see_turn(const spari_solver *s, const double *q);
-/* Forces in the axes of the kept tangent, that seen, and corrections out of them. */
-void spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx);
+/* Forces in the axes of the kept tangent, and corrections out of them: sees how the nodes, at q, have turned since it
+   was formed. The largest of the forces, infinite where one is no number. */
+double spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx);
 void spari_alpha_turn_forth(const spari_solver *s, double *dx);
 /* x -= correction dx, in global axes and shortened to `longest`; its size. */
 double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
@@ -35,7 +34,7 @@ double spari_alpha_correct(const spari_solver *s, const spar_member *member, con
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
                              double b);
 /* The size of increments: by the member's length, in radians. */
-double spari_alpha_size(const spari_solver *s, const double *x);
+double spari_alpha_size(const spari_solver *s, double *x);
 /* Whether a kept tangent's coefficient is near enough. */
 int spari_alpha_close(double x, double kept);
 

@@ -165,7 +165,7 @@ static int nodes_serve(const spari_limb *p) {
 
 static int reduce_nodes(spari_limb *p, double *x) {
     spari_solver *s = p->solver;
-    spari_alpha_turn_back(s, p->state->q, s->r, s->dx);
+    (void)spari_alpha_turn_back(s, p->state->q, s->r, s->dx);
     if (spari_condensed_reduce(p->condensed, s->linear, s->dx)) {
         return 1;
     }
@@ -212,7 +212,7 @@ static double way_of_nodes(const spari_limb *p) {
 
 static void clear_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
-    spari_alpha_see_turn(s, p->state->q);
+    (void)spari_alpha_turn_back(s, p->state->q, s->r, s->dx); /* for the turns */
     memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
 }
 

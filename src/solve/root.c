@@ -2,18 +2,18 @@
 #include "root.h"
 
 #include "../math/rotation.h"
+#include "alpha_nodes.h"
 #include "drive.h"
 
 #include <string.h>
 
-/* A root, its rates in its own axes, and nodes on either side of it. */
+/* Motion from outside, and as a root sees it, with its rates in its own axes. */
 typedef struct root_view {
     const spar_member *m;
     const spari_pose *root;
     const spari_state *s;
-    const spari_ends *e;
     spari_state *own;
-    double W[3], A[3], back[4], R[9];
+    double W[3], A[3], back[4];
 } root_view;
 
 static void look_at_nodes(void *context, int64_t from, int64_t to) {
@@ -64,55 +64,18 @@ void spari_root_look_from(const spari_solver *solver, const spar_member *m, cons
 }
 
 static void show_nodes(void *context, int64_t from, int64_t to) {
-    const root_view *t = context;
-    const spari_pose *root = t->root;
-    const spari_ends *e = t->e;
-    const double *W = t->W, *A = t->A, *R = t->R;
-    for (int64_t i = from; i < to; i++) {
-        const double *v = e->to.v + 6 * i, *a = e->to.a + 6 * i;
-        double arm[3], d[3], c1[3], c2[3], c3[3], *q = e->seen.q + 7 * i, *V = e->seen.v + 6 * i,
-                                                  *B = e->seen.a + 6 * i;
-        spari_member_arm(t->m, (int)i, arm);
-        for (int k = 0; k < 3; k++) {
-            d[k] = arm[k] + e->to.q[7 * i + k];
-        }
-        spari_cross(W, d, c1);
-        for (int k = 0; k < 3; k++) {
-            V[k] = v[k] + c1[k];
-            V[3 + k] = v[3 + k] + W[k];
-            c1[k] += 2 * v[k];
-        }
-        spari_cross(W, c1, c2);
-        spari_cross(A, d, c3);
-        spari_cross(W, v + 3, c1);
-        for (int k = 0; k < 3; k++) {
-            B[k] = a[k] + c2[k] + c3[k];
-            B[3 + k] = a[3 + k] + A[k] + c1[k];
-        }
-        spari_matrix_times(R, d, d);
-        for (int k = 0; k < 6; k += 3) {
-            spari_matrix_times(R, V + k, V + k);
-            spari_matrix_times(R, B + k, B + k);
-        }
-        for (int k = 0; k < 3; k++) {
-            q[k] = root->q[k] + d[k] - arm[k];
-            V[k] += root->v[k];
-            B[k] += root->a[k];
-        }
-        spari_quat_mul(root->q + 3, e->to.q + 7 * i + 3, q + 3);
-        spari_quat_normalise(q + 3);
-    }
-    memcpy(e->seen.b + 6 * from, e->to.b + 6 * from, (size_t)(6 * (to - from)) * sizeof(double));
+    spari_nodes_show(context, from, to);
 }
 
 void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
-    root_view t = {.m = m, .root = e->root, .e = e};
+    double R[9], omega[3], alpha[3];
     if (!e->root) {
         return;
     }
-    spari_quat_matrix(e->root->q + 3, t.R);
-    spari_matrix_times_back(t.R, e->root->v + 3, t.W);
-    spari_matrix_times_back(t.R, e->root->a + 3, t.A);
+    spari_root_view t = {solver->body->lanes, m, e->root, R, omega, alpha, &e->to, &e->seen};
+    spari_quat_matrix(e->root->q + 3, R);
+    spari_matrix_times_back(R, e->root->v + 3, omega);
+    spari_matrix_times_back(R, e->root->a + 3, alpha);
     spari_solver_spread(solver, show_nodes, &t);
 }
 

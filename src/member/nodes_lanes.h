@@ -1,0 +1,113 @@
+/* An element's nodes, W of them at once: what its points are given, and what they give back. Included by lanes.c once
+   per width with the macros of math/width.h. No include guard: this is a body, not an interface.
+
+   Arrays of nodes go in and out with the numbers of a node side by side; the rows z [ROW][SPARI_MAX_NODES] and
+   g [BACK][SPARI_MAX_NODES] between have nodes side by side. Nothing is fused: the same bits at every width. */
+
+HERE void NAME(put_row)(const int n, int row, const L *x, double *z) {
+    SPARI_UNROLL
+    for (int i = 0; i < n; i++) {
+        NAME(put)(z + SPARI_MAX_NODES * (row + i), x[i]);
+    }
+}
+
+HERE void NAME(get_row)(const int n, int row, const double *z, L *x) {
+    SPARI_UNROLL
+    for (int i = 0; i < n; i++) {
+        x[i] = NAME(get)(z + SPARI_MAX_NODES * (row + i));
+    }
+}
+
+/* Places and quaternions, and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
+HERE void NAME(put_fields)(const int whole, const int64_t *at, const double *q, const double *v, const double *a,
+                           double *z) {
+    L place[7], rate[6], half[3], turn[4], spin[4];
+    NAME(pick_rows)(whole, at, 7, 7, q, place);
+    NAME(put_row)(7, U, place, z);
+    if (!v) {
+        return;
+    }
+    NAME(pick_rows)(whole, at, 6, 6, v, rate);
+    for (int i = 0; i < 3; i++) {
+        half[i] = 0.5 * rate[3 + i];
+    }
+    NAME(vec_quat)(half, place + Q, turn);
+    NAME(put_row)(3, UD, rate, z);
+    NAME(put_row)(4, QD, turn, z);
+    if (!a) {
+        return;
+    }
+    NAME(vec_quat)(half, turn, spin);
+    NAME(pick_rows)(whole, at, 6, 6, a, rate);
+    for (int i = 0; i < 3; i++) {
+        half[i] = 0.5 * rate[3 + i];
+    }
+    NAME(vec_quat)(half, place + Q, turn);
+    for (int i = 0; i < 4; i++) {
+        turn[i] = turn[i] + spin[i];
+    }
+    NAME(put_row)(3, UDD, rate, z);
+    NAME(put_row)(4, QDD, turn, z);
+}
+
+/* Whether one of W quaternions from the one `first` on lies in the other hemisphere than the one before it; what lies
+   beyond them has to be a number. */
+HERE int NAME(are_opposed)(int first, const double *z) {
+    L q[4], before[4], none = {0};
+    int from = first > 0 ? first : 1;
+    NAME(get_row)(4, Q, z + from, q);
+    NAME(get_row)(4, Q, z + from - 1, before);
+    return NAME(any_above)(none, NAME(quat_dot)(q, before));
+}
+
+/* The first W of `left` nodes from the one `first` on, of arrays that begin with the element's first. Whether one is in
+   another hemisphere than its neighbour. */
+TARGET static int NAME(gather_nodes)(int first, int left, const double *q, const double *v, const double *a,
+                                     double *z) {
+    int64_t at[W];
+    q += 7 * first, v = v ? v + 6 * first : NULL, a = a ? a + 6 * first : NULL;
+    if (first == 0) { /* the last of them is compared with what comes after it */
+        for (int i = 0; i < 4; i++) {
+            z[SPARI_MAX_NODES * (Q + i) + W] = 0;
+        }
+    }
+    if (NAME(next_nodes)(left, at)) {
+        NAME(put_fields)(1, at, q, v, a, z + first);
+    } else {
+        NAME(put_fields)(0, at, q, v, a, z + first);
+    }
+    return NAME(are_opposed)(first, z);
+}
+
+/* n rows of nodes: lanes beyond the last have what it has, not what lies beyond it. */
+HERE void NAME(get_own)(const int whole, const int64_t *at, const int n, const double *z, L *x) {
+    SPARI_UNROLL
+    for (int i = 0; i < n; i++) {
+        x[i] = whole ? NAME(get)(z + SPARI_MAX_NODES * i) : NAME(pick)(0, at, 1, z + SPARI_MAX_NODES * i);
+    }
+}
+
+/* Forces of nodes, of the seven that they are given: delta q . g = delta theta . 1/2 Im(g q*) */
+HERE void NAME(add_block)(const int whole, const int64_t *at, const double *g, const double *z, double *r) {
+    L q[4], back[BACK], turn[4], sum[6];
+    NAME(get_own)(whole, at, BACK, g, back);
+    NAME(get_own)(whole, at, 4, z + SPARI_MAX_NODES * Q, q);
+    const L conj[4] = {q[0], -q[1], -q[2], -q[3]};
+    NAME(quat_mul)(back + 3, conj, turn);
+    NAME(pick_rows)(whole, at, 6, 6, r, sum);
+    for (int i = 0; i < 3; i++) {
+        sum[i] = sum[i] + back[i];
+        sum[3 + i] = sum[3 + i] + 0.5 * turn[1 + i];
+    }
+    NAME(drop_rows)(whole, at, 6, 6, r, sum);
+}
+
+/* Adds them to r, which begins with the element's first node. */
+TARGET static void NAME(add_nodes)(int first, int left, const double *g, const double *z, double *r) {
+    int64_t at[W];
+    if (NAME(next_nodes)(left, at)) {
+        NAME(add_block)(1, at, g + first, z + first, r + 6 * first);
+    } else {
+        NAME(add_block)(0, at, g + first, z + first, r + 6 * first);
+    }
+}

@@ -1,0 +1,407 @@
+/* Nodes side by side: turns into the axes of the kept tangent, corrections, places, and what is seen from a driven
+   root, at every width that the processor has.
+
+   Oracles: the formulas node by node with the operations of math/rotation.h, whose exponential map and tangent operator
+   are other code; 1e-14 of the largest number that goes in, for 1e2 operations of 1e-16. Widths among each other: the
+   same bits. Turns of 0, 1e-9, 1e-3, 0.999 and 1.001 (series end at 1), pi, 5 pi / 2 (beyond a full turn) and of nodes
+   that turn differently side by side; 1 to 19 nodes, so whole vectors and what remains of them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "math/rotation.h"
+#include "solve/alpha_nodes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 19, WIDTHS = 4 };
+static const int widths[WIDTHS] = {2, 4, 8, 0};
+static const double angles[] = {0, 1e-9, 1e-3, 0.999, 1.001, 3.14159265358979312, 7.85398163397448310, -1};
+enum { ANGLES = sizeof angles / sizeof *angles };
+
+static double uniform(void) {
+    return 2.0 * rand() / RAND_MAX - 1.0;
+}
+
+static void random_numbers(int n, double size, double *x) {
+    for (int i = 0; i < n; i++) {
+        x[i] = size * uniform();
+    }
+}
+
+/* A rotation vector of this angle; less than 0: of any up to 3 pi. */
+static void random_turn(double angle, double psi[3]) {
+    random_numbers(3, 1, psi);
+    double size = spari_norm(psi), wanted = angle < 0 ? 9.4 * fabs(uniform()) : angle;
+    for (int k = 0; k < 3; k++) {
+        psi[k] *= wanted / size;
+    }
+}
+
+static void random_quaternions(int n, int stride, double *q) {
+    for (int i = 0; i < n; i++) {
+        random_numbers(4, 1, q + (ptrdiff_t)stride * i);
+        spari_quat_normalise(q + (ptrdiff_t)stride * i);
+    }
+}
+
+static void random_state(int n, spari_state *s, double *room) {
+    s->q = room, s->v = s->q + 7 * MOST, s->a = s->v + 6 * MOST, s->b = s->a + 6 * MOST;
+    random_numbers(25 * MOST, 1, room);
+    random_quaternions(n, 7, s->q + 3);
+}
+
+static void assert_near(int n, const double *x, const double *exact, double tolerance, const char *what) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+        most = fmax(most, fabs(exact[i]));
+    }
+    for (int i = 0; i < n; i++) {
+        if (!(fabs(x[i] - exact[i]) <= tolerance * most)) {
+            print_error("%s: number %d of %d is %.17g, expected %.17g\n", what, i, n, x[i], exact[i]);
+        }
+        assert_true(fabs(x[i] - exact[i]) <= tolerance * most);
+    }
+}
+
+/* What a width gave and the first one before it. */
+static void assert_alike(int n, const double *x, double *first, int width, const char *what) {
+    if (width == widths[0]) {
+        memcpy(first, x, (size_t)n * sizeof *x);
+    } else if (memcmp(first, x, (size_t)n * sizeof *x) != 0) {
+        print_error("%s: width %d has other bits\n", what, width);
+        fail();
+    }
+}
+
+/* ---- to the kept tangent and back ---- */
+
+static void test_turns(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        double q[7 * MOST], kept[4 * MOST], r[6 * MOST], turn[4 * MOST + 1], dx[6 * MOST + 1], most = 0;
+        double exact_turn[4 * MOST], exact[6 * MOST], first[2][6 * MOST];
+        random_numbers(7 * n, 1, q);
+        random_quaternions(n, 7, q + 3);
+        random_quaternions(n, 4, kept);
+        random_numbers(6 * n, 3, r);
+        for (int i = 0; i < n; i++) {
+            double back[4];
+            spari_quat_conj(kept + 4 * i, back);
+            spari_quat_mul(q + 7 * i + 3, back, exact_turn + 4 * i);
+            spari_rotate_back(exact_turn + 4 * i, r + 6 * i, exact + 6 * i);
+            spari_rotate_back(exact_turn + 4 * i, r + 6 * i + 3, exact + 6 * i + 3);
+        }
+        for (int i = 0; i < 6 * n; i++) {
+            most = fmax(most, fabs(r[i]));
+        }
+        for (int k = 0; k < WIDTHS; k++) {
+            spari_node_work t = {.lanes = widths[k], .q = q, .kept = kept, .r = r, .turn = turn, .dx = dx};
+            turn[4 * n] = dx[6 * n] = 77;
+            assert_true(spari_nodes_turn_back(&t, 0, n) == most);
+            assert_near(4 * n, turn, exact_turn, 1e-15, "a turn");
+            assert_near(6 * n, dx, exact, 1e-15, "a force turned back");
+            assert_alike(6 * n, dx, first[0], widths[k], "turned back");
+            spari_nodes_turn_forth(&t, 0, n);
+            assert_near(6 * n, dx, r, 1e-15 * 8, "a force turned forth");
+            assert_alike(6 * n, dx, first[1], widths[k], "turned forth");
+            assert_true(turn[4 * n] == 77 && dx[6 * n] == 77);
+            for (int i = 0; i < 2 * n; i += 2) { /* one that is no number, wherever it stands */
+                double was = r[3 * i];
+                r[3 * i] = i % 4 ? NAN : -INFINITY;
+                assert_true(spari_nodes_turn_back(&t, 0, n) == INFINITY);
+                r[3 * i] = was;
+            }
+        }
+    }
+}
+
+/* ---- a substep ---- */
+
+typedef struct substep {
+    spari_scheme c;
+    spari_state from, to;
+    double room[2][25 * MOST], x[6 * MOST], dx[6 * MOST], turn[4 * MOST], R[9];
+} substep;
+
+/* Increments whose rotation vectors, with the term of the rates, have this angle. */
+static void random_substep(int n, double angle, int still, substep *s) {
+    s->c = (spari_scheme){.h = 0.1, .cv = 30, .rate = 30, .cm = 400, .cb = 500, .still = still};
+    random_state(n, &s->from, s->room[0]);
+    random_state(n, &s->to, s->room[1]);
+    random_numbers(6 * n, 1, s->x);
+    random_numbers(6 * n, 1e-3, s->dx);
+    random_quaternions(n, 4, s->turn);
+    double q[4];
+    random_quaternions(1, 4, q);
+    spari_quat_matrix(q, s->R);
+    for (int i = 0; i < n; i++) {
+        double cross[3];
+        random_turn(angle, s->x + 6 * i + 3);
+        spari_cross(s->to.v + 6 * i + 3, s->from.v + 6 * i + 3, cross);
+        for (int k = 0; k < 3 && !still; k++) {
+            s->x[6 * i + 3 + k] -= s->c.h * s->c.h / 12 * cross[k];
+        }
+    }
+}
+
+static void plain_psi(const substep *s, int i, double psi[3]) {
+    spari_cross(s->to.v + 6 * i + 3, s->from.v + 6 * i + 3, psi);
+    for (int k = 0; k < 3; k++) {
+        psi[k] = s->x[6 * i + 3 + k] + (s->c.still ? 0 : s->c.h * s->c.h / 12 * psi[k]);
+    }
+}
+
+/* (I - k w~) (T psi) y = x, solved by inverting the matrix of T in spari_tangent_inverse and, for the spin, by a series
+   of (k w~)^n, which |k w| << 1 ends. */
+static void plain_increment(const substep *s, int i, double d[3]) {
+    double psi[3], T[9], y[3], term[3], k = s->c.still ? 0 : s->c.h * s->c.h * s->c.cv / 12;
+    plain_psi(s, i, psi);
+    spari_tangent_inverse(psi, T);
+    spari_matrix_times(T, d, y);
+    memcpy(term, y, sizeof y);
+    for (int n = 0; n < 40; n++) {
+        spari_cross(s->from.v + 6 * i + 3, term, term);
+        for (int j = 0; j < 3; j++) {
+            term[j] *= k;
+            y[j] += term[j];
+        }
+    }
+    memcpy(d, y, sizeof y);
+}
+
+static double square_of_largest(int n, int from, const double *x) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+        most = fmax(most, spari_dot(x + 6 * i + from, x + 6 * i + from));
+    }
+    return most;
+}
+
+static void check_corrections(int n, double angle, int still, int turned, int rooted) {
+    substep s;
+    double exact[6 * MOST], first[6 * MOST], dx[6 * MOST + 1];
+    random_substep(n, angle, still, &s);
+    memcpy(exact, s.dx, sizeof exact);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < 6; k += 3) {
+            if (turned) {
+                spari_rotate(s.turn + 4 * i, exact + 6 * i + k, exact + 6 * i + k);
+            }
+            if (rooted) {
+                spari_matrix_times_back(s.R, exact + 6 * i + k, exact + 6 * i + k);
+            }
+        }
+        plain_increment(&s, i, exact + 6 * i + 3);
+    }
+    for (int k = 0; k < WIDTHS; k++) {
+        memcpy(dx, s.dx, sizeof s.dx);
+        dx[6 * n] = 77;
+        spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &s.from, .to = &s.to, .x = s.x, .dx = dx};
+        t.turn = turned ? s.turn : NULL, t.R = rooted ? s.R : NULL;
+        spari_node_size size = spari_nodes_take(&t, 0, n);
+        /* near 2 pi the operator has no inverse; 5 pi / 2 and less than 3 pi stay 0.1 away mostly */
+        assert_near(6 * n, dx, exact, angle < 0 ? 1e-10 : 1e-14, "a correction");
+        assert_alike(6 * n, dx, first, widths[k], "corrections");
+        assert_true(dx[6 * n] == 77);
+        assert_true(fabs(size.way - square_of_largest(n, 0, dx)) <= 1e-15 * size.way);
+        assert_true(fabs(size.turn - square_of_largest(n, 3, dx)) <= 1e-15 * size.turn);
+    }
+}
+
+static void test_corrections(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        for (int k = 0; k < 8 * ANGLES; k++) {
+            check_corrections(n, angles[k / 8], k & 1, k & 2, k & 4);
+        }
+    }
+}
+
+static void check_places(int n, double angle, int still) {
+    substep s;
+    double exact[7 * MOST], first[7 * MOST];
+    random_substep(n, angle, still, &s);
+    s.to.v = s.room[1] + 7 * MOST;
+    for (int i = 0; i < n; i++) {
+        double psi[3], p[4], *to = exact + 7 * i;
+        const double *from = s.from.q + 7 * i;
+        plain_psi(&s, i, psi);
+        spari_quat_exp(psi, p);
+        spari_quat_mul(p, from + 3, to + 3);
+        spari_quat_normalise(to + 3);
+        for (int k = 0; k < 3; k++) {
+            to[k] = from[k] + s.x[6 * i + k];
+        }
+    }
+    for (int k = 0; k < WIDTHS; k++) {
+        substep own = s;
+        spari_state to = {own.room[1], own.room[1] + 7 * MOST, own.room[1] + 13 * MOST, own.room[1] + 19 * MOST};
+        spari_state from = {own.room[0], own.room[0] + 7 * MOST, own.room[0] + 13 * MOST, own.room[0] + 19 * MOST};
+        spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &from, .to = &to, .x = own.x};
+        spari_node_size size = spari_nodes_place(&t, 0, n), alone = spari_nodes_size(&t, 0, n);
+        assert_near(7 * n, to.q, exact, 2e-15, "a place");
+        assert_alike(7 * n, to.q, first, widths[k], "places");
+        assert_memory_equal(to.q + 7 * n, s.room[1] + 7 * n, sizeof(double) * (size_t)(7 * (MOST - n)));
+        assert_true(fabs(size.way - square_of_largest(n, 0, s.x)) <= 1e-15 * size.way && size.way == alone.way);
+        assert_true(fabs(size.turn - square_of_largest(n, 3, s.x)) <= 1e-15 * size.turn && size.turn == alone.turn);
+        for (int i = 0; i < 6 * n; i++) {
+            assert_true(still ? to.v[i] == s.x[i] / s.c.h && to.a[i] == 0 && to.b[i] == 0
+                              : to.v[i] == s.room[1][7 * MOST + i]);
+        }
+    }
+}
+
+static void test_places(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        for (int k = 0; k < 2 * ANGLES; k++) {
+            check_places(n, angles[k / 2], k % 2);
+        }
+    }
+}
+
+/* A place that is no number stays one, beside others that are right. */
+static void test_no_number(void **unused) {
+    (void)unused;
+    for (int k = 0; k < WIDTHS; k++) {
+        substep s;
+        random_substep(9, 0.3, 0, &s);
+        spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &s.from, .to = &s.to, .x = s.x};
+        s.x[6 * 4 + 3] = NAN;
+        s.x[6 * 7 + 4] = INFINITY;
+        spari_nodes_place(&t, 0, 9);
+        for (int i = 0; i < 9; i++) {
+            assert_true((i == 4 || i == 7) ==
+                        !(fabs(spari_quat_dot(s.to.q + 7 * i + 3, s.to.q + 7 * i + 3) - 1) < 1e-15));
+        }
+    }
+}
+
+static void test_steps(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        substep s, own;
+        random_substep(n, 0.3, 0, &s);
+        for (int k = 0; k < WIDTHS; k++) {
+            own = s;
+            spari_state to = {own.room[1], own.room[1] + 7 * MOST, own.room[1] + 13 * MOST, own.room[1] + 19 * MOST};
+            spari_node_work t = {.lanes = widths[k], .c = &s.c, .to = &to, .x = own.x, .dx = own.dx, .cut = 0.7};
+            spari_nodes_correct(&t, 0, n);
+            for (int i = 0; i < 6 * MOST; i++) {
+                double step = i < 6 * n ? -0.7 * s.dx[i] : 0;
+                assert_true(own.x[i] == s.x[i] + step || i >= 6 * n);
+                assert_true(to.v[i] == s.room[1][7 * MOST + i] + s.c.rate * step);
+                assert_true(to.a[i] == s.room[1][13 * MOST + i] + s.c.cm * step);
+                assert_true(to.b[i] == s.room[1][19 * MOST + i] + s.c.cb * step);
+            }
+        }
+    }
+}
+
+/* ---- seen from outside ---- */
+
+/* x = X + R (r + u), its velocity and acceleration by the rules for a frame that moves, in global axes. */
+static void plain_show(const double *reference, const spari_pose *root, const spari_state *own, int i, double q[7],
+                       double v[6], double a[6]) {
+    double arm[3], d[3], u[3], w[3], au[3], aw[3], t[3], s[3], turned[4];
+    for (int k = 0; k < 3; k++) {
+        arm[k] = reference[3 * i + k] - reference[k];
+        d[k] = arm[k] + own->q[7 * i + k];
+    }
+    spari_rotate(root->q + 3, d, d);
+    spari_rotate(root->q + 3, own->v + 6 * i, u);
+    spari_rotate(root->q + 3, own->v + 6 * i + 3, w);
+    spari_rotate(root->q + 3, own->a + 6 * i, au);
+    spari_rotate(root->q + 3, own->a + 6 * i + 3, aw);
+    for (int k = 0; k < 3; k++) {
+        q[k] = root->q[k] + d[k] - arm[k];
+    }
+    spari_quat_mul(root->q + 3, own->q + 7 * i + 3, turned);
+    spari_quat_normalise(turned);
+    memcpy(q + 3, turned, sizeof turned);
+    spari_cross(root->v + 3, d, t); /* v = V + w x d + u */
+    for (int k = 0; k < 3; k++) {
+        v[k] = root->v[k] + t[k] + u[k];
+        v[3 + k] = root->v[3 + k] + w[k];
+        a[k] = root->a[k] + au[k];
+        a[3 + k] = root->a[3 + k] + aw[k];
+    }
+    spari_cross(root->a + 3, d, s); /* a = A + alpha x d + w x (w x d) + 2 w x u + u' */
+    for (int k = 0; k < 3; k++) {
+        a[k] += s[k];
+    }
+    spari_cross(root->v + 3, t, s);
+    for (int k = 0; k < 3; k++) {
+        a[k] += s[k];
+    }
+    spari_cross(root->v + 3, u, s);
+    for (int k = 0; k < 3; k++) {
+        a[k] += 2 * s[k];
+    }
+    spari_cross(root->v + 3, w, s);
+    for (int k = 0; k < 3; k++) {
+        a[3 + k] += s[k];
+    }
+}
+
+/* One element of n nodes, and elements of 3, whose joints the reference has twice. */
+static void check_show(int n, int elements) {
+    spar_member m = {.elements = elements, .per_element = (n - 1) / elements + 1};
+    double place[3 * 2 * MOST], room[2][25 * MOST], exact[19 * MOST], first[19 * MOST], R[9], omega[3], alpha[3];
+    spari_pose root;
+    spari_state own, seen;
+    m.xr = place;
+    random_numbers(3 * 2 * MOST, 5, place);
+    for (int i = 2; i < n && elements > 1; i += 2) { /* a joint of elements of 3: nodes 2, 5, 8 stand twice */
+        memcpy(place + 3 * (3 * i / 2), place + 3 * (3 * i / 2 - 1), 3 * sizeof *place);
+    }
+    random_state(n, &own, room[0]);
+    random_numbers(7, 2, root.q);
+    random_quaternions(1, 4, root.q + 3);
+    random_numbers(6, 2, root.v);
+    random_numbers(6, 2, root.a);
+    spari_quat_matrix(root.q + 3, R);
+    spari_matrix_times_back(R, root.v + 3, omega);
+    spari_matrix_times_back(R, root.a + 3, alpha);
+    double nodes[3 * MOST];
+    for (int i = 0; i < n; i++) {
+        memcpy(nodes + 3 * i, spari_member_place(&m, i), 3 * sizeof *nodes);
+    }
+    for (int i = 0; i < n; i++) {
+        plain_show(nodes, &root, &own, i, exact + 7 * i, exact + 7 * n + 6 * i, exact + 13 * n + 6 * i);
+    }
+    for (int k = 0; k < WIDTHS; k++) {
+        double out[19 * MOST];
+        random_state(n, &seen, room[1]);
+        spari_root_view t = {widths[k], &m, &root, R, omega, alpha, &own, &seen};
+        spari_nodes_show(&t, 0, n);
+        memcpy(out, seen.q, sizeof(double) * (size_t)(7 * n));
+        memcpy(out + 7 * n, seen.v, sizeof(double) * (size_t)(6 * n));
+        memcpy(out + 13 * n, seen.a, sizeof(double) * (size_t)(6 * n));
+        assert_near(19 * n, out, exact, 1e-14, "what is seen");
+        assert_alike(19 * n, out, first, widths[k], "what is seen");
+        assert_memory_equal(seen.b, own.b, sizeof(double) * (size_t)(6 * n));
+    }
+}
+
+static void test_show(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        check_show(n, 1);
+    }
+    check_show(9, 4);
+    check_show(19, 9);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_turns),     cmocka_unit_test(test_corrections), cmocka_unit_test(test_places),
+        cmocka_unit_test(test_no_number), cmocka_unit_test(test_steps),       cmocka_unit_test(test_show),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
