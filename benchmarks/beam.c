@@ -1,30 +1,11 @@
-/* What a step of a beam costs beside published codes.
+/* What a step of a beam costs, and what Newton leaves; benchmarks/peers has the published codes beside it.
 
    beam [runs]    microseconds, Newton iterations and factorisations a step: a table
 
-   Peers end Newton at 1e-5 + 1e-3 |x|, with a tangent for each iteration: what that leaves is four orders less than
-   what a kept tangent leaves at those numbers. Errors are compared, so Newton goes to 1e-9 here: it leaves no more.
-
-   Figures are medians over runs of the mean over the steps of a run. Peers are compared by the yardstick: a 60 x 60 LU
-   factorisation by GSL over its own CBLAS, which took 39 us where the peers were measured. */
+   Figures are medians over runs of the mean over the steps of a run. */
 #include "beam_scene.h"
 
 enum { MOST_REPEATS = 64 };
-
-static const double yardstick_of_peers = 39; /* us */
-
-static double yardstick(void) {
-    double took = NAN;
-    FILE *f = popen(SPAR_YARDSTICK, "r");
-    if (!f || fscanf(f, "%lf", &took) != 1) {
-        fprintf(stderr, "beam: no yardstick at %s\n", SPAR_YARDSTICK);
-        exit(1);
-    }
-    pclose(f);
-    return took;
-}
-
-/* ---- peers ---- */
 
 typedef struct figures {
     double us, newton, factors; /* a step */
@@ -77,50 +58,29 @@ static double left_by_tolerance(const deck *d, nrel5mw *turbine, const figures *
     return sqrt(sum);
 }
 
-static void peers(nrel5mw *turbine, int repeats) {
+static void table(nrel5mw *turbine, int repeats) {
     static const struct {
-        const char *title, *peer;
+        const char *title;
         deck deck;
-        double peer_us, goal;
     } row[] = {
-        {"box beam, 6 nodes", "Kynema-FMB", {0, 6, 6, 101, 0.01, 1e-9, 1e-9}, 76, 15},
-        {"box beam, 8 nodes", "Kynema-FMB", {0, 8, 8, 101, 0.01, 1e-9, 1e-9}, 129, 18},
-        {"box beam, 11 nodes", "Kynema-FMB", {0, 11, 11, 101, 0.01, 1e-9, 1e-9}, 284, 25},
-        {"NREL 5-MW, 6 nodes", "BeamDyn", {1, 6, 0, 501, 0.002, 1e-9, 1e-9}, 930, 60},
-        {"NREL 5-MW, 8 nodes", "BeamDyn", {1, 8, 0, 501, 0.002, 1e-9, 1e-9}, 1440, 80},
-        {"NREL 5-MW, 10 nodes", "BeamDyn", {1, 10, 0, 501, 0.002, 1e-9, 1e-9}, 2100, 110},
-        {"NREL 5-MW, 12 nodes", "BeamDyn", {1, 12, 0, 501, 0.002, 1e-9, 1e-9}, 2900, 150},
-        {"blade, 11 nodes, 50 pts", "Kynema-FMB", {1, 11, 50, 101, 0.01, 1e-9, 1e-9}, 920, 20},
-        {"loose: box, 8 nodes", "-", {0, 8, 8, 101, 0.01, 1e-5, 1e-3}, 0, 0},
-        {"loose: NREL, 8 nodes", "-", {1, 8, 0, 501, 0.002, 1e-5, 1e-3}, 0, 0},
+        {"box beam, 6 nodes", {0, 6, 6, 101, 0.01, 1e-9, 1e-9}},
+        {"box beam, 8 nodes", {0, 8, 8, 101, 0.01, 1e-9, 1e-9}},
+        {"box beam, 11 nodes", {0, 11, 11, 101, 0.01, 1e-9, 1e-9}},
+        {"NREL 5-MW, 6 nodes", {1, 6, 0, 501, 0.002, 1e-9, 1e-9}},
+        {"NREL 5-MW, 8 nodes", {1, 8, 0, 501, 0.002, 1e-9, 1e-9}},
+        {"NREL 5-MW, 10 nodes", {1, 10, 0, 501, 0.002, 1e-9, 1e-9}},
+        {"NREL 5-MW, 12 nodes", {1, 12, 0, 501, 0.002, 1e-9, 1e-9}},
+        {"blade, 11 nodes, 50 pts", {1, 11, 50, 101, 0.01, 1e-9, 1e-9}},
+        {"loose: box, 8 nodes", {0, 8, 8, 101, 0.01, 1e-5, 1e-3}},
+        {"loose: NREL, 8 nodes", {1, 8, 0, 501, 0.002, 1e-5, 1e-3}},
     };
-    enum { ROWS = sizeof row / sizeof *row };
-    double yard[ROWS + 1];
-    figures f[ROWS];
-    yard[0] = yardstick();
-    for (int i = 0; i < ROWS; i++) {
-        measure(&row[i].deck, turbine, repeats, &f[i]);
-        yard[i + 1] = yardstick();
-    }
-    double machine = median(yard, ROWS + 1), scale = machine / yardstick_of_peers;
-    printf("yardstick: 60 x 60 LU by GSL over gslcblas %.1f us (median of %d; %.1f to %.1f); where peers were measured "
-           "%.0f "
-           "us\n",
-           machine, ROWS + 1, yard[0], yard[ROWS], yardstick_of_peers);
-    printf("rho_inf 0; Newton tolerance 1e-9, which leaves what 1e-5 + 1e-3 |x| leaves to the peers (loose: those "
-           "numbers); medians of %d runs\n\n",
-           repeats);
-    printf("%-24s %6s %6s %9s %7s %7s %10s %9s %9s %7s %9s\n", "case", "points", "dt", "us/step", "Newton", "factor",
-           "tol. error", "peer us", "here us", "ratio", "goal");
-    for (int i = 0; i < ROWS; i++) {
-        printf("%-24s %6d %6g %9.1f %7.2f %7.3f %10.1e", row[i].title, f[i].points, row[i].deck.dt, f[i].us,
-               f[i].newton, f[i].factors, left_by_tolerance(&row[i].deck, turbine, &f[i]));
-        if (row[i].peer_us > 0) {
-            double here = row[i].peer_us * scale, ratio = here / f[i].us;
-            printf(" %9.0f %9.0f %7.2f %3.0f %s  %s", row[i].peer_us, here, ratio, row[i].goal,
-                   ratio >= row[i].goal ? "met" : "short", row[i].peer);
-        }
-        printf("\n");
+    printf("rho_inf 0; Newton tolerance 1e-9 + 1e-9 |x| (loose: 1e-5 + 1e-3 |x|); medians of %d runs\n\n", repeats);
+    printf("%-24s %6s %6s %9s %7s %7s %10s\n", "case", "points", "dt", "us/step", "Newton", "factor", "left");
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        figures f;
+        measure(&row[i].deck, turbine, repeats, &f);
+        printf("%-24s %6d %6g %9.1f %7.2f %7.3f %10.1e\n", row[i].title, f.points, row[i].deck.dt, f.us, f.newton,
+               f.factors, left_by_tolerance(&row[i].deck, turbine, &f));
     }
 }
 
@@ -135,7 +95,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "beam: %s\n", turbine.message);
         return 1;
     }
-    peers(&turbine, repeats);
+    table(&turbine, repeats);
     nrel5mw_free(&turbine);
     return 0;
 }
