@@ -128,6 +128,39 @@ static void test_flags(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A run of the library alone, whose host only says numbers: gravity, a load, a spring, a joint. */
+static void run_alone(int rounding, double q[7 * 5]) {
+    const double g[3] = {0, 0, -9.81}, load[6] = {0, 3, 0, 0, 0.1, 0};
+    double K[36], M[36];
+    spar_joint *weld;
+    assert_int_equal(fesetround(rounding), 0);
+    spar_session *s = scene_session();
+    scene_box(K, M);
+    spar_member *b = scene_beam(s, "b", 1, 5, 10, K, M), *other = scene_beam(s, "other", 1, 5, 10, K, M);
+    OK(s, spar_session_set_gravity(s, g));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_commit(other));
+    OK(s, spar_joint_create(s, "hinge", b, 4, other, 4, SPAR_FREE_RX, &weld));
+    OK(s, spar_member_set_load(b, 2, SPAR_LOAD_FOLLOWER, load));
+    scene_run(s, 0.01, 40);
+    assert_int_equal(fegetround(), rounding);
+    OK(s, spar_member_get_motion(b, q, NULL, NULL));
+    spar_session_destroy(&s);
+    assert_int_equal(fesetround(FE_TONEAREST), 0);
+}
+
+/* However the host rounds: the same bits. */
+static void test_rounding(void **state) {
+    (void)state;
+    static const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    double nearest[7 * 5], q[7 * 5];
+    run_alone(FE_TONEAREST, nearest);
+    for (int k = 0; k < 3; k++) {
+        run_alone(modes[k], q);
+        assert_memory_equal(q, nearest, sizeof q);
+    }
+}
+
 /* Under a comma (where the system has such a locale; tests/torture/traps makes one): numbers keep their point. */
 static void test_comma(void **state) {
     (void)state;
@@ -159,6 +192,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_traps, traps_on, traps_off),
         cmocka_unit_test_setup_teardown(test_static, traps_on, traps_off),
         cmocka_unit_test(test_flags),
+        cmocka_unit_test(test_rounding),
         cmocka_unit_test(test_comma),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

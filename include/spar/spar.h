@@ -72,12 +72,12 @@
    use of it implies.
 
    Surroundings. A host may trap floating-point exceptions, round as it likes and set any locale. While the library
-   computes, traps are held, so that what is not finite leads to a status and not to a signal, and numbers in files,
-   options and messages have a point; GSL's error handler, which may abort, is off. The host's own is in force again
-   when a call returns and inside its callbacks. GSL's handler is one for the process: it is off as long as any thread
-   is in a call, and a host changes it when none is. Flags raised meanwhile are not seen outside. Rounding and the
-   treatment of denormal numbers stay the host's. A stack of 128 kB is enough. (Built by another compiler than GCC or
-   Clang, the library leaves all of this as it is.)
+   computes, traps are held, so that what is not finite leads to a status and not to a signal; results are rounded to
+   the nearest, so that they are the same whatever the host does; numbers in files, options and messages have a point;
+   GSL's error handler, which may abort, is off. The host's own is in force again when a call returns and inside its
+   callbacks. GSL's handler is one for the process: it is off as long as any thread is in a call, and a host changes it
+   when none is. Flags raised meanwhile are not seen outside. The treatment of denormal numbers stays the host's. A
+   stack of 128 kB is enough. (Built by another compiler than GCC or Clang, the library leaves all of this as it is.)
 
    Adding to the library (docs/adding.md):
    - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, tests/contract.c, the tables of

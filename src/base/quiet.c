@@ -1,4 +1,4 @@
-/* The host's floating-point traps, locale and GSL error handler, held while the library computes. */
+/* The host's floating-point traps, rounding, locale and GSL error handler, held while the library computes. */
 #include "quiet.h"
 
 #include <gsl/gsl_errno.h>
@@ -37,6 +37,9 @@ static void give_handler_back(void) {
 static void hold(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     (void)feholdexcept(&host.environment);
+    if (fegetround() != FE_TONEAREST) {
+        (void)fesetround(FE_TONEAREST);
+    }
     pthread_once(&once, make_locale);
     host.locale = uselocale(c_locale); /* without one: it stays */
     hold_handler();

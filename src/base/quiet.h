@@ -1,8 +1,9 @@
 /* The surroundings that the library computes in, whatever those of the host are. Floating-point traps are held: a host
    that traps invalid operations, divisions by zero and overflows (usual in Fortran) gets a status where a signal would
-   end it. Numbers are read and written with a point. GSL's errors go to nobody: its handler may abort, is the host's
-   outside, and being one for the process is off as long as any thread is inside. Rounding and the treatment of denormal
-   numbers stay the host's; flags raised inside are not seen outside. */
+   end it. Results are rounded to the nearest: rounded one way, what errors leave does not cancel, an iteration stalls far
+   above its tolerance, and a run's bits would be those of its host. Numbers are read and written with a point. GSL's
+   errors go to nobody: its handler may abort, is the host's outside, and being one for the process is off as long as any
+   thread is inside. The treatment of denormal numbers stays the host's; flags raised inside are not seen outside. */
 #ifndef SPARI_QUIET_H
 #define SPARI_QUIET_H
 

@@ -61,9 +61,9 @@ int spar_case_read(const char *path, const char *host, spar_session *session, sp
     if (!session) {
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_read: the session is NULL");
     }
-    case_locale locale;
+    case_quiet quiet;
     spar_case *c = calloc(1, sizeof *c);
-    int status = case_locale_begin(&locale), numbers = status == SPAR_OK;
+    int status = case_quiet_begin(&quiet), numbers = status == SPAR_OK;
     spar_case none = {.session = session};
     if (!c) {
         status = case_no_memory(&none);
@@ -83,7 +83,7 @@ int spar_case_read(const char *path, const char *host, spar_session *session, sp
         status = case_agree(c, status);
     }
     if (numbers) {
-        case_locale_end(&locale);
+        case_quiet_end(&quiet);
     }
     if (status != SPAR_OK) {
         spar_case_free(&c);
@@ -252,12 +252,12 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
     if (line->n != n) {
         return case_fail(&scene->text, line->number, SPAR_ERR_ARGUMENT, "%s has %d values; give %d", key, line->n, n);
     }
-    case_locale locale;
+    case_quiet quiet;
     double *all = calloc((size_t)n, sizeof *all); /* x stays as it is where a number is none */
-    int status = all ? case_locale_begin(&locale) : case_no_memory(scene);
+    int status = all ? case_quiet_begin(&quiet) : case_no_memory(scene);
     if (status == SPAR_OK) {
         status = case_numbers(&scene->text, line, 1, n, all);
-        case_locale_end(&locale);
+        case_quiet_end(&quiet);
     }
     if (status == SPAR_OK) {
         memcpy(x, all, (size_t)n * sizeof *x);

@@ -249,8 +249,8 @@ static int make_air(const spar_case *c, const case_block *block, case_air *air) 
 /* ---- all of them ---- */
 
 static int make_all(spar_case *c) {
-    case_locale locale;
-    int status = case_locale_begin(&locale), numbers = status == SPAR_OK;
+    case_quiet quiet;
+    int status = case_quiet_begin(&quiet), numbers = status == SPAR_OK;
     c->air = calloc((size_t)c->text.n + 1, sizeof *c->air);
     status = status == SPAR_OK && !c->air ? case_no_memory(c) : status;
     for (int64_t b = 0; status == SPAR_OK && b < c->text.n; b++) {
@@ -260,7 +260,7 @@ static int make_all(spar_case *c) {
         }
     }
     if (numbers) {
-        case_locale_end(&locale);
+        case_quiet_end(&quiet);
     }
     return status;
 }

@@ -213,9 +213,9 @@ int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *
     double t;
     int64_t step;
     int iteration;
-    case_locale locale;
+    case_quiet quiet;
     DO(scene, spar_session_get_time(scene->session, &t, &step, &iteration));
-    CASE_TRY(case_locale_begin(&locale));
+    CASE_TRY(case_quiet_begin(&quiet));
     int status = SPAR_OK;
     if (scene->output.history_path && rank == 0) {
         status = write_history(scene, t, step, iteration);
@@ -223,7 +223,7 @@ int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *
     if (status == SPAR_OK && scene->output.every > 0 && step % scene->output.every == 0) {
         status = write_pictures(scene, rank, fluids, fluid, t, step);
     }
-    case_locale_end(&locale);
+    case_quiet_end(&quiet);
     if (scene->output.save_path && step % scene->output.save_every == 0) {
         return save_session(scene, status, step);
     }

@@ -5,6 +5,7 @@
 
 #include "case.h"
 
+#include <fenv.h>
 #include <spar/spar_aero.h>
 #include <stdio.h>
 
@@ -66,12 +67,14 @@ void case_unfold(int form, const double *from, double matrix[36]);
 
 /* The one of n names that is most like the word; "" of none. */
 const char *case_nearest(const char *word, int64_t n, const char *const *names);
-/* Numbers have a point from here to the end, whatever the host's locale. */
-typedef struct case_locale {
+/* From here to the end numbers have a point, whatever the host's locale, are rounded to the nearest, and one that is
+   too large raises no signal. */
+typedef struct case_quiet {
     void *point, *host;
-} case_locale;
-int case_locale_begin(case_locale *locale);
-void case_locale_end(case_locale *locale);
+    fenv_t environment;
+} case_quiet;
+int case_quiet_begin(case_quiet *quiet);
+void case_quiet_end(case_quiet *quiet);
 /* path beside the case file; malloc'd, NULL: no memory. */
 char *case_beside(const case_text *text, const char *path);
 

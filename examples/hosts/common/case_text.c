@@ -36,19 +36,22 @@ int(case_fail)(const case_text *text, int line, int status, const char *format, 
     return status;
 }
 
-int case_locale_begin(case_locale *locale) {
+int case_quiet_begin(case_quiet *quiet) {
     locale_t point = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!point) {
         return case_fail(NULL, 0, SPAR_ERR_MEMORY, "no memory for a locale");
     }
-    locale->point = point;
-    locale->host = uselocale(point);
+    quiet->point = point;
+    quiet->host = uselocale(point);
+    (void)feholdexcept(&quiet->environment);
+    (void)fesetround(FE_TONEAREST);
     return SPAR_OK;
 }
 
-void case_locale_end(case_locale *locale) {
-    (void)uselocale((locale_t)locale->host);
-    freelocale((locale_t)locale->point);
+void case_quiet_end(case_quiet *quiet) {
+    (void)fesetenv(&quiet->environment);
+    (void)uselocale((locale_t)quiet->host);
+    freelocale((locale_t)quiet->point);
 }
 
 /* ---- the file ---- */

@@ -1,6 +1,6 @@
 /* Preloaded: puts a host's surroundings in force before a program begins. SPAR_TORTURE_MODE:
      traps     invalid operations, divisions by zero and overflows raise a signal
-     upward    results are rounded up
+     upward    results of the host's own are rounded up
      ftz       denormal numbers are zero, as operands and as results
      comma     a locale whose numbers have a comma */
 #include <fenv.h>
