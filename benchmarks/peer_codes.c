@@ -134,7 +134,7 @@ static double now(void) {
 
 static int run_once(const peer_scene *scene, int steps, peer_tolerance t, peer_run *r) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES];
+    spar_member *b[MOST_BLADES] = {NULL};
     int bad = make_blades(scene, &s, b) || spar_session_set_newton(s, t.atol, t.rtol, 30);
     double since = now();
     bad = bad || move(s, b, scene, steps);
@@ -190,7 +190,7 @@ static void write_sections(FILE *f, const spari_beam *beam) {
 
 static int write_kynema(const peer_scene *scene) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES];
+    spar_member *b[MOST_BLADES] = {NULL};
     double xi[MOST_NODES], x[3 * MOST_NODES], q[4 * MOST_NODES], mu[6];
     FILE *f = NULL;
     spari_gll(scene->nodes, xi, NULL, NULL);
@@ -373,7 +373,7 @@ static int drive_beamdyn(const peer_scene *scene, int steps, double dt, double *
    that stay as they are. */
 static int run_beamdyn(const peer_scene *scene, int steps, peer_tolerance t, peer_run *r) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES];
+    spar_member *b[MOST_BLADES] = {NULL};
     double few, all;
     int tenth = steps / 10;
     int bad = scene->blades > 1 || scene->smoothly || make_blades(scene, &s, b) || write_blade(b[0]->beam) ||

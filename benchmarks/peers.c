@@ -281,9 +281,8 @@ static void write_points(FILE *csv, const deck *d, point (*points)[LEVELS][PEER_
         for (int i = 0; i < d->dts * LEVELS; i++) {
             const point *p = &points[i / LEVELS][i % LEVELS][k];
             if (i % LEVELS % 2 == 0 && !p->failed) {
-                fprintf(csv, "%s,%s,%g,%g,%.4g,%.3g,%.3g,%.3g,%.4g,%d\n", d->name, peer_codes[k].name,
-                        d->scene.end / p->steps, pow(10, -p->level), p->us, p->left, p->of_dt, p->error, ms_of(p),
-                        cheapest(points, d, k, p->error) == p);
+                fprintf(csv, "%s,%s,%g,%g,%.4g,%.3g,%.3g,%.3g,%.4g\n", d->name, peer_codes[k].name,
+                        d->scene.end / p->steps, pow(10, -p->level), p->us, p->left, p->of_dt, p->error, ms_of(p));
             }
         }
     }
@@ -392,7 +391,7 @@ int main(int argc, char **argv) {
         printf(k == 0 ? "" : here[k] ? "%s: here\n" : "%s: not here, %s\n", peer_codes[k].name, peer_codes[k].missing);
     }
     if (csv) {
-        fprintf(csv, "scene,code,dt,tolerance,us,left,of_dt,error,ms,best\n");
+        fprintf(csv, "scene,code,dt,tolerance,us,left,of_dt,error,ms\n");
     }
     int status = argc > at ? play_all(argc - at, argv + at, file, curves, csv, &tables)
                            : play_all(3, usual, file, curves, csv, &tables);
