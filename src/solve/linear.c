@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Columns of a dense matrix are solved for so many at a time. */
+enum { SPARI_CORNER = 8 };
+
 #define SPARI_WIDTH 2
 #include "../math/width.h"
 #include "linear_lanes.h"
@@ -45,8 +48,11 @@ struct spari_linear {
     int elements, block, overlap; /* of a chain; else 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
     size_t size, inner;           /* those that stand in A, and those that are taken out in it: all n, unless cut */
-    gsl_matrix *A; /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
-    int *swap;     /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    gsl_matrix *A;   /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
+    int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int *order;      /* dense: where row i came from by all of these */
+    double *corners; /* dense: [n / 8, rounded up][2][8][8] inverses of the corners of the triangles, by columns */
+    double *y;       /* dense: [n, rounded up to eights] room */
     gsl_vector_uint *band_swap; /* banded */
     gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
     spari_linear *far, *joint;  /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
@@ -64,13 +70,17 @@ struct spari_linear {
 /* Room for the matrix, whose size is known. */
 static spari_linear *with_room(spari_linear *s, int dense) {
     if (dense) {
+        int64_t n = (int64_t)s->n, eights = (n + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
         s->A = gsl_matrix_calloc(s->n, s->n);
-        s->swap = spari_zalloc((int64_t)s->n, sizeof *s->swap);
+        s->swap = spari_zalloc(2 * n, sizeof *s->swap);
+        s->order = s->swap ? s->swap + n : NULL;
+        s->corners = spari_zalloc((2 * SPARI_CORNER + 1) * eights, sizeof *s->corners);
+        s->y = s->corners ? s->corners + 2 * SPARI_CORNER * eights : NULL;
     } else {
         s->A = gsl_matrix_calloc(s->size, 3 * s->band + 1);
         s->band_swap = gsl_vector_uint_alloc(s->size);
     }
-    if (!s->A || (dense ? !s->swap : !s->band_swap)) {
+    if (!s->A || (dense ? !s->swap || !s->corners : !s->band_swap)) {
         spari_linear_free(s);
         return NULL;
     }
@@ -164,6 +174,7 @@ void spari_linear_free(spari_linear *s) {
         free(s->bad);
         gsl_matrix_free(s->A);
         free(s->swap);
+        free(s->corners);
         gsl_vector_uint_free(s->band_swap);
         spari_linear_unwatch(s);
         free(s);
@@ -334,7 +345,8 @@ typedef struct linear_kernels {
     int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap);
     int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
                        unsigned *swap);
-    void (*dense)(int64_t n, const double *A, double *x);
+    void (*corner)(int64_t n, int64_t j, const double *A, double *corner);
+    void (*dense)(int64_t n, const double *A, const double *corners, double *y);
     void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
@@ -345,23 +357,43 @@ typedef struct linear_kernels {
 } linear_kernels;
 
 #define LINEAR_KERNELS(width)                                                                                          \
-    (linear_kernels) {                                                                                                 \
-        factor_dense_##width, factor_band_##width, solve_dense_##width, forth_dense_##width, back_dense_##width,       \
-            forth_band_##width, back_band_##width, take_columns_##width, add_rows_##width                              \
+    {                                                                                                                  \
+        factor_dense_##width, factor_band_##width, invert_corner_##width, solve_dense_##width, forth_dense_##width,    \
+            back_dense_##width, forth_band_##width, back_band_##width, take_columns_##width, add_rows_##width          \
     }
+static const linear_kernels plain_linear = LINEAR_KERNELS(plain);
+#ifdef SPARI_X86
+static const linear_kernels avx2_linear = LINEAR_KERNELS(avx2), avx512_linear = LINEAR_KERNELS(avx512);
+#endif
 
-static linear_kernels kernels_here(void) {
+static const linear_kernels *kernels_here(void) {
 #ifdef SPARI_X86
     switch (spari_lanes_here(8)) {
     case 8:
-        return LINEAR_KERNELS(avx512);
+        return &avx512_linear;
     case 4:
-        return LINEAR_KERNELS(avx2);
+        return &avx2_linear;
     default:
         break;
     }
 #endif
-    return LINEAR_KERNELS(plain);
+    return &plain_linear;
+}
+
+/* What a dense solution takes beyond the factors. */
+static void ready_dense(spari_linear *s) {
+    double *corner = s->corners;
+    for (size_t i = 0; i < s->n; i++) {
+        s->order[i] = (int)i;
+    }
+    for (size_t i = 0; i < s->n; i++) {
+        int there = s->order[s->swap[i] - 1];
+        s->order[s->swap[i] - 1] = s->order[i];
+        s->order[i] = there;
+    }
+    for (size_t j = 0; j < s->n; j += SPARI_CORNER, corner += 2 * SPARI_CORNER * SPARI_CORNER) {
+        kernels_here()->corner((int64_t)s->n, (int64_t)j, s->A->data, corner);
+    }
 }
 
 static int factor_part(spari_linear *s) {
@@ -372,10 +404,10 @@ static int factor_part(spari_linear *s) {
     int bad = 0;
     double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
     if (s->swap) {
-        bad = kernels_here().factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, s->swap);
+        bad = kernels_here()->factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, s->swap);
     } else {
-        bad = kernels_here().factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
-                                         (int64_t)s->A->tda, s->band_swap->data);
+        bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
+                                          (int64_t)s->A->tda, s->band_swap->data);
     }
     if (bad) {
         return 1;
@@ -385,6 +417,9 @@ static int factor_part(spari_linear *s) {
         if (!(pivot > 0) || !isfinite(pivot)) {
             return 1;
         }
+    }
+    if (s->swap) {
+        ready_dense(s);
     }
     return 0;
 }
@@ -414,7 +449,7 @@ static int factor_element(const spari_linear *s, size_t e) {
     size_t m = (size_t)s->block;
     double *A = s->parts + m * m * e;
     if (spari_first_nonfinite(A, (int64_t)(m * m)) >= 0 ||
-        kernels_here().factor_dense((int64_t)m, (int64_t)s->own, 1, A, s->part_swap + s->own * e)) {
+        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, 1, A, s->part_swap + s->own * e)) {
         return 1;
     }
     for (size_t i = 0; i < s->own; i++) {
@@ -569,12 +604,12 @@ int spari_linear_definite(spari_linear *s) {
 }
 
 static void forth_part(const spari_linear *s, double *x) {
-    kernels_here().forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda,
-                         s->band_swap->data, x);
+    kernels_here()->forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda,
+                          s->band_swap->data, x);
 }
 
 static void back_part(const spari_linear *s, double *x) {
-    kernels_here().back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, x);
+    kernels_here()->back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, x);
 }
 
 static void forth_half(void *context, int64_t item, int worker) {
@@ -626,7 +661,7 @@ static int solve_halves(spari_linear *s, double *x) {
 typedef struct linear_elements {
     spari_linear *s;
     double *x;
-    linear_kernels kernels;
+    const linear_kernels *kernels;
 } linear_elements;
 
 /* Takes out what each has to itself; z is left with what that leaves of its ends, from 0. */
@@ -644,7 +679,7 @@ static void forth_elements(void *context, int64_t from, int64_t to) {
             z[i] = there;
         }
         memset(z + own, 0, (m - own) * sizeof *z);
-        t->kernels.forth_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
+        t->kernels->forth_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
     }
 }
 
@@ -655,7 +690,7 @@ static void back_elements(void *context, int64_t from, int64_t to) {
     for (size_t e = (size_t)from; e < (size_t)to; e++) {
         double *z = s->z + m * e, *x = t->x + (m - o) * e;
         memcpy(z + own, s->ends_x + o * e, 2 * o * sizeof(double));
-        t->kernels.back_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
+        t->kernels->back_dense((int64_t)m, (int64_t)own, s->parts + m * m * e, z);
         memcpy(x, z + own, o * sizeof(double));
         memcpy(x + o, z, own * sizeof(double));
     }
@@ -689,11 +724,10 @@ int spari_linear_solve(spari_linear *s, double *x) {
     }
     if (s->swap) {
         for (int64_t i = 0; i < n; i++) {
-            double there = x[s->swap[i] - 1];
-            x[s->swap[i] - 1] = x[i];
-            x[i] = there;
+            s->y[i] = x[s->order[i]];
         }
-        kernels_here().dense(n, s->A->data, x);
+        kernels_here()->dense(n, s->A->data, s->corners, s->y);
+        memcpy(x, s->y, s->n * sizeof *x);
     } else {
         forth_part(s, x);
         back_part(s, x);
@@ -702,11 +736,11 @@ int spari_linear_solve(spari_linear *s, double *x) {
 }
 
 void spari_linear_less_columns(int n, int count, const double *columns, const double *by, double *x) {
-    kernels_here().columns(n, count, columns, by, x);
+    kernels_here()->columns(n, count, columns, by, x);
 }
 
 void spari_linear_add_rows(int n, int count, const double *rows, double by, const double *x, double *y) {
-    kernels_here().rows(n, count, rows, by, x, y);
+    kernels_here()->rows(n, count, rows, by, x, y);
 }
 
 /* Of elements: their matrices, then what was exchanged in them. */
@@ -804,6 +838,9 @@ void spari_linear_load(spari_linear *s, const double *state) {
         } else {
             gsl_vector_uint_set(s->band_swap, i, (unsigned)state[i]);
         }
+    }
+    if (s->swap) {
+        ready_dense(s);
     }
     if (s->far) {
         spari_linear_load(s->far, state + s->inner);

@@ -1,6 +1,7 @@
 /* Factors and back-substitution for one width of vectors. Included by linear.c once per width with the macros of
    math/width.h. No include guard: this is a body, not an interface. Columns lie one after the other, contiguous. BLAS
    takes three to four times as many instructions for so few unknowns (docs/performance.md). */
+#include "../math/rotation_lanes.h"
 
 /* x[n] -= `count` columns of n, each `step` after the one before, times by[count]. */
 HERE void NAME(less_columns)(const int count, int64_t n, const double *columns, int64_t step, const double *by,
@@ -51,24 +52,121 @@ HERE void NAME(upper_corner)(const int m, int64_t n, const double *at, double *x
     }
 }
 
-/* x := A^-1 x with the triangles of A [n][n] below a diagonal of ones and above; columns go by four, the last few are
-   what is left over. */
-TARGET static void NAME(solve_dense)(int64_t n, const double *A, double *x) {
-    int rest = (int)(n % 4);
-    int64_t whole = n - rest, j = 0;
-    for (; j < whole; j += 4) {
-        const double *at = A + (n + 1) * j;
-        NAME(lower_corner)(4, n, at, x + j);
-        NAME(less_columns)(4, n - j - 4, at + 4, n, x + j, x + j + 4);
+/* y[8] := M y, M [8][8] column by column: two sums side by side, for it is their latency that solutions wait for. */
+HERE void NAME(times_corner)(const double *M, double *y) {
+    enum { VECTORS = (SPARI_CORNER + W - 1) / W, HALF = SPARI_CORNER / 2 };
+    L sum[VECTORS], more[VECTORS];
+    SPARI_UNROLL
+    for (int v = 0; v < VECTORS; v++) {
+        sum[v] = SPLAT(y) * NAME(get)(M + W * v);
+        more[v] = SPLAT(y + HALF) * NAME(get)(M + SPARI_CORNER * HALF + W * v);
+        SPARI_UNROLL
+        for (int k = 1; k < HALF; k++) {
+            sum[v] = MADD(SPLAT(y + k), NAME(get)(M + SPARI_CORNER * k + W * v), sum[v]);
+            more[v] = MADD(SPLAT(y + HALF + k), NAME(get)(M + SPARI_CORNER * (HALF + k) + W * v), more[v]);
+        }
     }
-    NAME(lower_corner)(rest, n, A + (n + 1) * j, x + j);
-    NAME(upper_corner)(rest, n, A + (n + 1) * j, x + j);
-    for (int k = 0; k < rest; k++) {
-        NAME(less_columns)(1, whole, A + n * (whole + k), n, x + whole + k, x);
+    SPARI_UNROLL
+    for (int v = 0; v < VECTORS; v++) {
+        NAME(put)(y + W * v, sum[v] + more[v]);
     }
-    for (j = whole - 4; j >= 0; j -= 4) {
-        NAME(upper_corner)(4, n, A + (n + 1) * j, x + j);
-        NAME(less_columns)(4, j, A + n * j, n, x + j, x);
+}
+
+/* x[n], rounded up to whole vectors, -= eight columns, each `step` after the one before, times by[8]. */
+HERE void NAME(less_eight)(int64_t n, const double *columns, int64_t step, const double *by, double *x) {
+    enum { HALF = SPARI_CORNER / 2 };
+    double less[SPARI_CORNER];
+    L spread[SPARI_CORNER];
+    SPARI_UNROLL
+    for (int k = 0; k < SPARI_CORNER; k++) {
+        less[k] = -by[k];
+        spread[k] = SPLAT(less + k);
+    }
+    for (int64_t i = 0; i < n; i += W) {
+        L sum = NAME(get)(x + i), more = spread[HALF] * NAME(get)(columns + step * HALF + i);
+        SPARI_UNROLL
+        for (int k = 0; k < HALF; k++) {
+            sum = MADD(spread[k], NAME(get)(columns + step * k + i), sum);
+        }
+        SPARI_UNROLL
+        for (int k = HALF + 1; k < SPARI_CORNER; k++) {
+            more = MADD(spread[k], NAME(get)(columns + step * k + i), more);
+        }
+        NAME(put)(x + i, sum + more);
+    }
+}
+
+/* The inverses of the triangles that begin at column j of A [n][n], eight columns or what is left: Z L = 1 and Z U = 1,
+   column by column, one of which is a vector. */
+HERE void NAME(invert_lower)(int64_t n, const int m, const double *at, double *Z) {
+    enum { VECTORS = (SPARI_CORNER + W - 1) / W };
+    memset(Z, 0, SPARI_CORNER * SPARI_CORNER * sizeof *Z);
+    for (int c = m - 1; c >= 0; c--) {
+        double *z = Z + SPARI_CORNER * c;
+        z[c] = 1;
+        for (int v = 0; v < VECTORS; v++) {
+            L sum = NAME(get)(z + W * v);
+            for (int k = m - 1; k > c; k--) {
+                sum = sum - SPLAT(at + n * c + k) * NAME(get)(Z + SPARI_CORNER * k + W * v);
+            }
+            NAME(put)(z + W * v, sum);
+        }
+    }
+}
+
+HERE void NAME(invert_upper)(int64_t n, const int m, const double *at, double *Z) {
+    enum { VECTORS = (SPARI_CORNER + W - 1) / W };
+    memset(Z, 0, SPARI_CORNER * SPARI_CORNER * sizeof *Z);
+    for (int c = 0; c < m; c++) {
+        double *z = Z + SPARI_CORNER * c, over = 1 / at[(n + 1) * c];
+        z[c] = 1;
+        for (int v = 0; v < VECTORS; v++) {
+            L sum = NAME(get)(z + W * v);
+            for (int k = 0; k < c; k++) {
+                sum = sum - SPLAT(at + n * c + k) * NAME(get)(Z + SPARI_CORNER * k + W * v);
+            }
+            NAME(put)(z + W * v, over * sum);
+        }
+    }
+}
+
+TARGET static void NAME(invert_corner)(int64_t n, int64_t j, const double *A, double *corner) {
+    const double *at = A + (n + 1) * j;
+    if (n - j >= SPARI_CORNER) {
+        NAME(invert_lower)(n, SPARI_CORNER, at, corner);
+        NAME(invert_upper)(n, SPARI_CORNER, at, corner + SPARI_CORNER * SPARI_CORNER);
+    } else {
+        NAME(invert_lower)(n, (int)(n - j), at, corner);
+        NAME(invert_upper)(n, (int)(n - j), at, corner + SPARI_CORNER * SPARI_CORNER);
+    }
+}
+
+/* y := A^-1 y with the triangles of A [n][n] below a diagonal of ones and above, eight columns at a time by the
+   inverses of their corners [2][8][8], the lower one's and the upper one's, with zeros beyond the last column. y has
+   room for whole eights. */
+TARGET static void NAME(solve_dense)(int64_t n, const double *A, const double *corners, double *y) {
+    enum { SIZE = SPARI_CORNER * SPARI_CORNER };
+    int64_t rest = n % SPARI_CORNER, whole = n - rest, j = 0;
+    for (; j < whole; j += SPARI_CORNER, corners += 2 * SIZE) {
+        NAME(times_corner)(corners, y + j);
+        NAME(less_eight)(n - j - SPARI_CORNER, A + (n + 1) * j + SPARI_CORNER, n, y + j, y + j + SPARI_CORNER);
+    }
+    if (rest > 0) {
+        int64_t k = 0;
+        memset(y + n, 0, (size_t)(SPARI_CORNER - rest) * sizeof *y);
+        NAME(times_corner)(corners, y + whole);
+        NAME(times_corner)(corners + SIZE, y + whole);
+        for (; k + 4 <= rest; k += 4) {
+            NAME(less_columns)(4, whole, A + n * (whole + k), n, y + whole + k, y);
+        }
+        for (; k < rest; k++) {
+            NAME(less_columns)(1, whole, A + n * (whole + k), n, y + whole + k, y);
+        }
+    }
+    while (j > 0) {
+        j -= SPARI_CORNER, corners -= 2 * SIZE;
+        NAME(times_corner)(corners + SIZE, y + j);
+        NAME(less_eight)(j, A + n * j, n, y + j, y);
     }
 }
 
@@ -145,14 +243,24 @@ HERE int NAME(are_zero)(const double *x) {
 
 /* Where the largest of x[n] is; the first, unless it has less than `least` of that. */
 HERE int64_t NAME(pivot_of)(int64_t n, double least, const double *x) {
-    int64_t at = 0;
-    double most = fabs(x[0]);
-    for (int64_t i = 1; i < n; i++) {
-        if (fabs(x[i]) > most) {
-            most = fabs(x[i]), at = i;
-        }
+    L lanes = {0};
+    int64_t i = 0;
+    double most = 0;
+    for (; i + W <= n; i += W) {
+        L here = NAME(get)(x + i);
+        lanes = NAME(larger)(NAME(larger)(here, -here), lanes);
     }
-    return fabs(x[0]) >= least * most ? 0 : at;
+    for (; i < n; i++) {
+        most = fabs(x[i]) > most ? fabs(x[i]) : most;
+    }
+    most = NAME(largest)(most, lanes);
+    if (fabs(x[0]) >= least * most) {
+        return 0;
+    }
+    for (i = 1; i < n - 1 && !(fabs(x[i]) >= most);) {
+        i++;
+    }
+    return i;
 }
 
 HERE void NAME(scale)(int64_t n, double by, double *x) {
@@ -166,31 +274,118 @@ HERE void NAME(scale)(int64_t n, double by, double *x) {
     }
 }
 
-/* A := its triangles, a column at a time against those before it, with exchanges of whole rows among the first `inner`,
-   which are taken out; the corner of the others is left with what it has beyond them. Row j with row swap[j] - 1,
-   unless the diagonal has as much as `least` of the largest entry. Columns that it does not meet, four by four, cost
-   nothing: with unknowns in the order in which a tree of parts is taken apart these are most, and the fewer rows are
-   exchanged, the more. 0, or 1 where a pivot is 0 or none at all. */
-TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap) {
-    for (int64_t j = 0; j < n; j++) {
-        double *x = A + n * j;
-        int64_t k = 0, end = j < inner ? j : inner;
-        for (; k + 4 <= end; k += 4) {
-            const double *at = A + (n + 1) * k;
-            if (!NAME(are_zero)(x + k)) {
-                NAME(lower_corner)(4, n, at, x + k);
-                NAME(less_columns)(4, n - k - 4, at + 4, n, x + k, x + k + 4);
+/* Four columns x, n rows of each, -= eight that lie n apart from `columns` on, times by[4][8]; V vectors of rows. */
+HERE void NAME(less_tile)(const int V, const double *columns, int64_t step, const double (*by)[SPARI_CORNER],
+                          double *const *x, int64_t i) {
+    L sum[4][2];
+    SPARI_UNROLL
+    for (int c = 0; c < 4; c++) {
+        SPARI_UNROLL
+        for (int v = 0; v < V; v++) {
+            sum[c][v] = NAME(get)(x[c] + i + W * v);
+        }
+    }
+    columns += i;
+    for (int k = 0; k < SPARI_CORNER; k++, columns += step) {
+        SPARI_UNROLL
+        for (int c = 0; c < 4; c++) {
+            L less = SPLAT(by[c] + k);
+            SPARI_UNROLL
+            for (int v = 0; v < V; v++) {
+                sum[c][v] = MADD(less, NAME(get)(columns + W * v), sum[c][v]);
             }
         }
-        for (; k < end; k++) {
-            if (x[k] != 0) {
-                NAME(less_columns)(1, n - k - 1, A + (n + 1) * k + 1, n, x + k, x + k + 1);
-            }
+    }
+    SPARI_UNROLL
+    for (int c = 0; c < 4; c++) {
+        SPARI_UNROLL
+        for (int v = 0; v < V; v++) {
+            NAME(put)(x[c] + i + W * v, sum[c][v]);
         }
-        if (j >= inner) {
+    }
+}
+
+/* The rows below eight columns that have been taken out, n of them, of four columns whose eight rows are by. */
+HERE void NAME(less_block)(int64_t n, const double *columns, int64_t step, double (*by)[SPARI_CORNER],
+                           double *const *x) {
+    int64_t i = 0;
+    for (int c = 0; c < 4; c++) {
+        for (int k = 0; k < SPARI_CORNER; k++) {
+            by[c][k] = -by[c][k];
+        }
+    }
+    for (; i + 2 * W <= n; i += 2 * W) {
+        NAME(less_tile)(2, columns, step, (const double(*)[SPARI_CORNER])by, x, i);
+    }
+    for (; i + W <= n; i += W) {
+        NAME(less_tile)(1, columns, step, (const double(*)[SPARI_CORNER])by, x, i);
+    }
+    for (; i < n; i++) {
+        for (int c = 0; c < 4; c++) {
+            double sum = x[c][i];
+            SPARI_UNROLL
+            for (int k = 0; k < SPARI_CORNER; k++) {
+                sum += by[c][k] * columns[step * k + i];
+            }
+            x[c][i] = sum;
+        }
+    }
+}
+
+/* Takes eight columns from j on, whose triangles are there, out of those after them, four by four. Those
+   that they do not meet cost nothing. */
+TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A) {
+    double inverse[SPARI_CORNER * SPARI_CORNER], by[4][SPARI_CORNER], *x[4];
+    int64_t below = n - j - SPARI_CORNER;
+    const double *corner = A + (n + 1) * j, *columns = corner + SPARI_CORNER;
+    int held = 0;
+    NAME(invert_lower)(n, SPARI_CORNER, corner, inverse);
+    for (int64_t c = j + SPARI_CORNER; c < n; c++) {
+        double *top = A + n * c + j;
+        if (NAME(are_zero)(top) && NAME(are_zero)(top + 4)) {
             continue;
         }
-        int64_t p = j + NAME(pivot_of)(inner - j, least, x + j);
+        NAME(times_corner)(inverse, top);
+        memcpy(by[held], top, sizeof by[held]);
+        x[held++] = top + SPARI_CORNER;
+        if (held == 4) {
+            NAME(less_block)(below, columns, n, by, x);
+            held = 0;
+        }
+    }
+    for (int c = 0; c < held; c++) {
+        NAME(less_columns)(4, below, columns, n, by[c], x[c]);
+        NAME(less_columns)(4, below, columns + 4 * n, n, by[c] + 4, x[c]);
+    }
+}
+
+/* One column against those from `first` to `end` before it, whose triangles are there. Those that it does not meet,
+   four by four, cost nothing. */
+HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A, double *x) {
+    int64_t k = first;
+    for (; k + 4 <= end; k += 4) {
+        const double *at = A + (n + 1) * k;
+        if (!NAME(are_zero)(x + k)) {
+            NAME(lower_corner)(4, n, at, x + k);
+            NAME(less_columns)(4, n - k - 4, at + 4, n, x + k, x + k + 4);
+        }
+    }
+    for (; k < end; k++) {
+        if (x[k] != 0) {
+            NAME(less_columns)(1, n - k - 1, A + (n + 1) * k + 1, n, x + k, x + k + 1);
+        }
+    }
+}
+
+/* A := its triangles, eight columns at a time: one against those before it, then all that follow against the eight.
+   Whole rows are exchanged among the first `inner`, which are taken out; the corner of the others is left with what it
+   has beyond them. Row j with row swap[j] - 1, unless the diagonal has as much as `least` of the largest entry. Columns
+   that others do not meet cost nothing: with unknowns in the order in which a tree of parts is taken apart these are
+   most, and the fewer rows are exchanged, the more. 0, or 1 where a pivot is 0 or none at all. */
+TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap) {
+    for (int64_t j = 0; j < inner; j++) {
+        double *x = A + n * j;
+        int64_t p = j + NAME(pivot_of)(inner - j, least, x + j), first = j - j % SPARI_CORNER, c = j + 1;
         swap[j] = (int)p + 1;
         for (double *row = A; p != j && row < A + n * n; row += n) {
             double there = row[p];
@@ -201,6 +396,17 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
             return 1;
         }
         NAME(scale)(n - j - 1, 1 / x[j], x + j + 1);
+        for (; c < first + SPARI_CORNER && c < inner; c++) {
+            if (A[n * c + j] != 0) {
+                NAME(less_columns)(1, n - j - 1, x + j + 1, n, A + n * c + j, A + n * c + j + 1);
+            }
+        }
+        if (c == first + SPARI_CORNER && c == j + 1) {
+            NAME(take_out)(n, first, A);
+        }
+    }
+    for (int64_t j = inner; j < n; j++) {
+        NAME(take_from)(n, inner - inner % SPARI_CORNER, inner, A, A + n * j);
     }
     return 0;
 }
