@@ -314,9 +314,11 @@ static int check(int k, double tolerance, const double *truth) {
     }
     status = spar_session_apply_advice(w.s, &dt);
     status = status ? status : march(&w, k, dt, truth, &error);
-    printf("%-9s %-7.3g %9.2e %9.2e %8.4g %5.0f %7.3f %7.1f %7.1f %s\n", scenes[k].name, tolerance,
-           advice[SPAR_ADVICE_ERROR], error, dt, advice[SPAR_ADVICE_TRIALS], advice[SPAR_ADVICE_COST],
-           advice[SPAR_ADVICE_WORK], TIMES * (1 - advice[SPAR_ADVICE_COST]),
+    double asking = advice[SPAR_ADVICE_WORK], showing = advice[SPAR_ADVICE_SHOWING], cost = advice[SPAR_ADVICE_COST];
+    int keeps = advice[SPAR_ADVICE_PRESENT_ERROR] <= 0.9 * tolerance;
+    printf("%-9s %-7.3g %9.2e %9.2e %8.4g %5.0f %5.0f %7.3f %7.1f %7.1f %7.1f %7.1f %7.1f %s\n", scenes[k].name,
+           tolerance, advice[SPAR_ADVICE_ERROR], error, dt, advice[SPAR_ADVICE_TRIALS], advice[SPAR_ADVICE_SKIPPED],
+           cost, asking, keeps ? TIMES * (1 - cost) : NAN, showing, asking - showing, advice[SPAR_ADVICE_SAVES],
            status               ? spar_session_message(w.s)
            : error <= tolerance ? ""
                                 : "NOT KEPT");
@@ -332,7 +334,9 @@ int main(int argc, char **argv) {
         verbose |= strcmp(argv[i], "--verbose") == 0;
         only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
     }
-    printf("scene     tolerance   said      real       dt  runs    cost   asking   saves  (in trials as it was)\n");
+    printf("scene     tolerance   said      real       dt  runs  left    cost   asking   saves  showing  finding   "
+           "brings  "
+           "(in trials as it was)\n");
     for (int k = 0; k < SCENES; k++) {
         if (only && strcmp(only, scenes[k].name) != 0) {
             continue;

@@ -174,7 +174,7 @@ static void follow(scene_run *r, double dt, int steps, course *c) {
         OK(r->session, scene_step(r, &seconds, &c->solutions));
         c->cost += spari_cost_step(r->session, (int)(c->solutions - before));
     }
-    c->cost += spari_cost_members(r->session);
+    c->cost += spari_cost_members(r->session, NULL);
     OK(r->session, spar_member_get_count(r->member, &n));
     double *q = malloc((size_t)(7 * n) * sizeof *q);
     assert_non_null(q);

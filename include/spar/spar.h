@@ -1474,7 +1474,14 @@ enum {
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
     SPAR_ADVICE_WORK = 10, /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
-    SPAR_ADVICE_COUNT = 11
+    SPAR_ADVICE_SHOWING = 11, /* of that, what it took to know what keeps the tolerance: the session as it is, the
+                                 reference, and the longer look */
+    SPAR_ADVICE_SAVES = 12,   /* what the rest brings, in the same unit: what a run as long as was asked for, and no less
+                                 than ten times the trials, saves against the cheapest settings that were known then to
+                                 keep the tolerance: the session as it is, or with dt fine enough */
+    SPAR_ADVICE_SKIPPED = 13, /* trials not made because they could not save as much as they would have cost: what they
+                                 would have varied stays */
+    SPAR_ADVICE_COUNT = 14
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
@@ -1489,7 +1496,9 @@ enum {
      advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
    Beams of one make (all that is described but name, placement and initial velocity) get one advice. Costs are counted
    (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the same scene gets
-   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. What is kept as it
+   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. No trial is made
+   that could not save, in a run of SPAR_ADVICE_SAVES' length, what it costs; but for those that show what keeps the
+   tolerance. Where the session as it is keeps it and nothing cheaper pays, it is what is advised. What is kept as it
    is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is
    NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached;
    SPAR_ERR_LIMIT: the option advise.limit. After a failure all is as it was. */

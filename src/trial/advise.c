@@ -4,10 +4,12 @@
    those of whole runs, costs what is counted in them (cost.h). */
 #include "../base/quiet.h"
 #include "apply.h"
+#include "cost.h"
 #include "plan.h"
 
 #include "../math/basis.h"
 #include "../member/beam.h"
+#include "../member/joint.h"
 #include "../solve/fidelity.h"
 
 #include <math.h>
@@ -16,35 +18,56 @@
 
 /* ---- the structure ---- */
 
-/* The fewest nodes whose error stays in its share; the error falls with the nodes. */
-static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
-    int few = spari_rule.least_nodes - 1, enough = p->group[g].nodes;
-    while (enough - few > 1) {
-        int middle = (few + enough) / 2;
-        double part, cost;
-        spari_plan q = *p;
-        q.group[g].nodes = middle;
-        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
-        if (part <= spari_rule.nodes) {
-            enough = middle;
-        } else {
-            few = middle;
-        }
-    }
-    p->group[g].nodes = enough;
-    return SPAR_OK;
+/* The run that shapes are measured against. */
+typedef struct shaping {
+    spari_record base;
+    double scale;               /* times its cost: about what a trial's time in the run will cost */
+    double work[SPARI_GROUPS];  /* of its cost, solving for the members of each group, */
+    double nodes[SPARI_GROUPS]; /* what else their nodes cost, */
+    double count[SPARI_GROUPS]; /* and how many they are */
+} shaping;
+
+static double base_cost(const spari_advisor *d, const shaping *w) {
+    return spari_plan_cost(d, &w->base);
 }
 
-/* Takes the plan if it is within the share, and cheaper than the best so far. taken: it is within. */
-static int consider(spari_advisor *d, const spari_plan *p, const spari_record *base, double share, spari_plan *best,
-                    double *cost, int *taken) {
-    double part, took;
-    SPARI_TRY(spari_plan_distance(d, p, base, &part, &took));
-    *taken = part <= share;
-    if (*taken && took < spari_rule.worth * *cost) {
-        *best = *p;
-        *cost = took;
+/* Whether a trial can pay that brings the cost of the base down to so much at best; what keeps the tolerance already
+   is what to beat. before: of what is best so far, which the trial costs about. */
+static int shape_pays(spari_advisor *d, const shaping *w, double before, double after) {
+    double have = fmin(w->scale * before, d->known_good);
+    return after <= spari_rule.worth * before && spari_plan_pays(d, before, have - w->scale * after);
+}
+
+/* The least of a run that costs `cost`, with other nodes of a group: what it is solved and mapped for falls with them.
+ */
+static double with_nodes(const spari_advisor *d, const shaping *w, int g, double cost, int from, int to) {
+    double part = (w->work[g] + w->nodes[g]) / base_cost(d, w);
+    return cost * (1 - part + part * to / from);
+}
+
+/* The fewest nodes whose error stays in its share; the error falls with the nodes. Where one less than the reference
+   has is too few, which a coarse dt had shown to be enough, that was misled. cost: of a run with the nodes there are.
+ */
+static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double part_before, double *cost) {
+    int most = p->group[g].nodes, few = spari_rule.least_nodes - 1, enough = most;
+    few = d->groups == 1 && d->few > few ? d->few : few;
+    double loss = 0;
+    while (enough - few > 1 && shape_pays(d, w, *cost, with_nodes(d, w, g, *cost, enough, few + 1))) {
+        int middle = (few + enough) / 2;
+        double part, took;
+        spari_plan q = *p;
+        q.group[g].nodes = middle;
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, INFINITY, &part, &took));
+        if (part <= spari_rule.nodes) {
+            enough = middle;
+            *cost = took;
+        } else {
+            few = middle;
+            loss = part - part_before;
+        }
     }
+    d->misled = d->misled || (d->cap == most && few == most - 1 && loss > spari_rule.nodes);
+    p->group[g].nodes = enough;
     return SPAR_OK;
 }
 
@@ -58,38 +81,84 @@ static const struct {
                   {SPAR_FIDELITY_PRESCRIBED, 5, 0}};
 enum { FIDELITIES = sizeof fidelities / sizeof *fidelities };
 
-/* Whether the member can be of that fidelity: what needs a root that is given is not for one that is free. */
-static int is_possible(const spari_advisor *d, int g, int fidelity) {
-    return spari_member_root_is_given(spari_plan_member(d, g)) || !spari_fidelity_row(fidelity)->given_root;
+/* What the motion beyond the root of the members of a group is of all there is, where their roots are given: what they
+   lose if they do not bend. */
+static double bend_of_group(const spari_advisor *d, int g, const spari_record *base) {
+    double most = 0;
+    int k = 0;
+    for (const spar_member *m = d->session->members; m; m = m->next, k++) {
+        if (d->group[k] == g && spari_member_root_is_given(m)) {
+            most = fmax(most, spari_record_bend(base, d->session, m));
+        }
+    }
+    return most;
 }
 
-static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
-    double cost = spari_plan_cost(d, base);
+/* Whether the member can be of that fidelity: what needs a root that is given is not for one that is free, of whose
+   modes six move it as a rigid body; and what bends is not rigid. */
+static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t modes, const spari_record *base) {
+    enum { RIGID_MODES = 6 };
+    int given = spari_member_root_is_given(spari_plan_member(d, g));
+    if (!given && (spari_fidelity_row(fidelity)->given_root || (modes > 0 && modes < RIGID_MODES))) {
+        return 0;
+    }
+    return fidelity >= SPAR_FIDELITY_LINEAR || !(d->goals & SPAR_GOAL_MOTION) ||
+           bend_of_group(d, g, base) <= spari_rule.fidelity * d->tolerance;
+}
+
+/* The least that a run can cost with the group of that fidelity; cost: as it is now. */
+static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int k, const shaping *w, double cost) {
+    double solved = 0;
+    const spar_member *m = spari_plan_member(d, g);
+    int solves = spari_member_is_tied(m) ? 2 : 1; /* what is tied is iterated, whatever it is */
+    if (fidelities[k].fidelity >= SPAR_FIDELITY_LINEAR) {
+        solved = w->count[g] * solves * (double)w->base.solutions *
+                 spari_cost_frame(m, p->group[g].nodes, (int)fidelities[k].modes);
+    }
+    return fmax(0, cost - fmax(0, w->work[g] - solved));
+}
+
+static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost, double *part_of) {
+    const double looser = 1.5; /* linear leads on to modal */
     spari_plan best = *p, q = *p;
+    double as_it_was = *cost;
     int taken[FIDELITIES] = {0};
     for (int k = 0; k < FIDELITIES; k++) {
         int after = fidelities[k].after;
-        if ((after < 0 || taken[after]) && is_possible(d, g, fidelities[k].fidelity)) {
-            q.group[g].fidelity = fidelities[k].fidelity;
-            q.group[g].modes = fidelities[k].modes;
-            SPARI_TRY(consider(d, &q, base, spari_rule.fidelity, &best, &cost, &taken[k]));
+        double part, took, least = least_cost(d, p, g, k, w, as_it_was);
+        int leads = k == 0 ? 1 : k; /* to modal */
+        if ((after >= 0 && !taken[after]) ||
+            !is_possible(d, g, fidelities[k].fidelity, fidelities[k].modes, &w->base) ||
+            !shape_pays(d, w, *cost, fmin(least, least_cost(d, p, g, leads, w, as_it_was)))) {
+            continue;
+        }
+        q.group[g].fidelity = fidelities[k].fidelity;
+        q.group[g].modes = fidelities[k].modes;
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, (k == 0 ? looser : spari_rule.at_most) * *cost, &part, &took));
+        taken[k] = part <= spari_rule.fidelity;
+        if (taken[k] && took < spari_rule.worth * *cost) {
+            best = q;
+            *cost = took;
+            *part_of = part;
         }
     }
     *p = best;
     return SPAR_OK;
 }
 
-static int choose_points(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
+static int choose_points(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
     const spari_beam *beam = spari_plan_member(d, g)->beam;
-    double part, cost;
-    if (spari_beam_rule(beam) != SPAR_QUADRATURE_SECTIONS || beam->points == 1) {
+    double part, took;
+    if (spari_beam_rule(beam) != SPAR_QUADRATURE_SECTIONS || beam->points == 1 ||
+        !shape_pays(d, w, *cost, fmax(0, *cost - w->work[g]))) {
         return SPAR_OK;
     }
     spari_plan q = *p;
     q.group[g].points = 1;
-    SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
+    SPARI_TRY(spari_plan_distance(d, &q, &w->base, INFINITY, &part, &took));
     if (part <= spari_rule.points) {
         *p = q;
+        *cost = took;
     }
     return SPAR_OK;
 }
@@ -99,28 +168,35 @@ static int is_elastic(const spari_plan *p, int g) {
 }
 
 /* Of what does not bend: the fewest, where the loads find the same line. */
-static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const spari_record *base) {
-    double part = INFINITY, cost;
-    p->group[g].nodes = spari_plan_member(d, g)->per_element;
+static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
+    double part = INFINITY, took;
+    int now = p->group[g].nodes, own = spari_plan_member(d, g)->per_element;
     spari_plan q = *p;
     q.group[g].nodes = spari_rule.least_nodes;
-    if (!d->session->keep_nodes && q.group[g].nodes < p->group[g].nodes) {
-        SPARI_TRY(spari_plan_distance(d, &q, base, &part, &cost));
+    if (!d->session->keep_nodes && q.group[g].nodes < own &&
+        shape_pays(d, w, *cost, with_nodes(d, w, g, *cost, now, spari_rule.least_nodes))) {
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, spari_rule.at_most * *cost, &part, &took));
     }
-    *p = part <= spari_rule.fidelity ? q : *p;
+    p->group[g].nodes = own < now ? own : now;
+    if (part <= spari_rule.fidelity) {
+        *p = q;
+        *cost = took;
+    }
     return SPAR_OK;
 }
 
-static int choose_shapes(spari_advisor *d, spari_plan *p, const spari_record *base) {
-    for (int g = 0; g < d->groups; g++) {
+static int choose_shapes(spari_advisor *d, spari_plan *p, const shaping *w) {
+    double cost = base_cost(d, w);
+    for (int g = 0; g < d->groups && !d->misled; g++) {
+        double part = 0;
         if (!d->session->keep_fidelity) {
-            SPARI_TRY(choose_fidelity(d, p, g, base));
+            SPARI_TRY(choose_fidelity(d, p, g, w, &cost, &part));
         }
         if (is_elastic(p, g)) {
-            SPARI_TRY(choose_points(d, p, g, base));
-            SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, base));
+            SPARI_TRY(choose_points(d, p, g, w, &cost));
+            SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
         } else {
-            SPARI_TRY(choose_stiff_nodes(d, p, g, base));
+            SPARI_TRY(choose_stiff_nodes(d, p, g, w, &cost));
         }
     }
     return SPAR_OK;
@@ -134,49 +210,94 @@ static int is_too_heavy(const spari_advisor *d, int scheme) {
 
 /* A run that shapes are measured against: the reference's, with a coarser dt, Newton and coupling: explicit, if that
    does not lead far away. */
-static int run_base(spari_advisor *d, spari_plan *p, spari_record *base) {
+static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, spari_record *base) {
     const spari_level *rough = spari_plan_rough(d);
     double away = INFINITY;
     *p = rough->plan;
+    memcpy(p->group, finest->group, sizeof p->group);
     p->newton = fmax(p->newton, spari_rule.rough_newton * d->tolerance);
     if (!d->session->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
         spari_plan q = *p;
         q.scheme = SPAR_COUPLING_EXPLICIT;
-        SPARI_TRY(spari_plan_compare(d, &q, &rough->record, base, &away));
+        SPARI_TRY(spari_plan_compare(d, &q, &rough->record, INFINITY, base, &away));
         if (away <= spari_rule.rough) {
             *p = q;
             return SPAR_OK;
         }
+        if (base->value) {
+            spari_outcome o = {.plan = q};
+            SPARI_TRY(spari_plan_judge(d, base, &o));
+        }
         spari_record_free(base);
     }
     p->rtol = d->session->keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
-    return spari_plan_run(d, p, 1, base);
+    return spari_plan_run(d, p, 1, INFINITY, base);
+}
+
+/* What of the base's cost is whose, and what the run will cost with the steps that it needs. */
+static void weigh_base(const spari_advisor *d, const spari_plan *p, shaping *w) {
+    double rest = w->base.work, nodes = 0;
+    int k = 0;
+    const double power = 0.7; /* finer steps cost less each */
+    w->scale = pow((double)spari_plan_least_steps(d) / (double)p->steps, power);
+    for (const spar_member *m = d->session->members; m; m = m->next, k++) {
+        int g = d->group[k];
+        double own = g < 0 ? (double)m->nodes : m->elements * p->group[g].nodes;
+        rest -= w->base.member_work[k];
+        nodes += own;
+        if (g >= 0) {
+            w->work[g] += w->base.member_work[k];
+            w->nodes[g] += own;
+            w->count[g]++;
+        }
+    }
+    for (int g = 0; g < d->groups; g++) {
+        w->nodes[g] *= rest / nodes;
+    }
 }
 
 /* Each choice is measured against it. */
-static SPARI_APART int choose_structure(spari_advisor *d, spari_plan *chosen) {
+static SPARI_APART int choose_structure(spari_advisor *d, const spari_plan *finest, spari_plan *chosen) {
     spari_plan p;
-    spari_record base = {0};
-    int status = run_base(d, &p, &base);
-    status = status == SPAR_OK ? choose_shapes(d, &p, &base) : status;
-    spari_record_free(&base);
+    shaping w = {.scale = 1};
+    int status = run_base(d, finest, &p, &w.base);
+    if (status == SPAR_OK) {
+        spari_outcome o = {.plan = p};
+        weigh_base(d, &p, &w);
+        status = spari_plan_judge(d, &w.base, &o);
+        status = status == SPAR_OK ? choose_shapes(d, &p, &w) : status;
+    }
+    spari_record_free(&w.base);
     *chosen = p;
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
 /* ---- dt and coupling ---- */
 
+/* Places of the grid to go on by, with an error of that order in dt. */
+static int leap_of(double ratio, double order) {
+    return (int)lround(2 / order * log2(fmax(ratio, 1e-2)));
+}
+
+/* The order of the error in dt that two measures show. */
+static double order_of(const spari_outcome *a, const spari_outcome *b) {
+    double steps = log((double)b->plan.steps / (double)a->plan.steps), fall = log(a->error / b->error);
+    return isfinite(fall) && fabs(steps) > 0.1 ? fmin(fmax(fall / steps, 0.7), 4) : 2;
+}
+
 /* The coarsest steps that keep the tolerance, from grid place j on; *best improves if that is cheaper. */
 static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *best) {
     const int finest = 2 * SPARI_FINEST, coarsest = (int)floor(2 * log2((double)SPARI_MULTIPLE / (double)d->run.steps));
     int good = finest + 1, bad = coarsest - 1, at = j, failed = 0; /* twice: finer steps will not help */
+    spari_outcome o, last = {.error = INFINITY};
     while (good - bad > 1 && d->known_count < spari_rule.tried && failed < 2) {
-        spari_outcome o;
         p.steps = spari_plan_steps(d, at);
-        SPARI_TRY(spari_plan_measure(d, &p, &o));
-        double ratio = isfinite(o.error) ? o.error / d->tolerance : 4;
+        SPARI_TRY(spari_plan_measure(d, &p, spari_rule.at_most * best->cost, &o));
+        double ratio = isfinite(o.error) ? o.error / d->tolerance : 4,
+               order = isfinite(o.error) && isfinite(last.error) ? order_of(&last, &o) : 2;
         int is_good = spari_plan_is_good(d, &o);
         failed += !isfinite(o.error);
+        last = o;
         if (is_good) {
             good = at;
             *best = o.cost < spari_rule.worth * best->cost ? o : *best;
@@ -189,8 +310,8 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *
                 return SPAR_OK; /* finer steps cost more still */
             }
         }
-        /* with an error of order 2 in dt the next place is near; then halve the gap */
-        int leap = (int)lround(log2(fmax(ratio, 1e-2)));
+        /* by the order the next place is near; then halve the gap */
+        int leap = leap_of(ratio / spari_rule.good, order);
         leap = is_good ? (leap < -1 ? leap : -1) : (leap > 1 ? leap : 1);
         at += leap;
         if (at >= good || at <= bad) {
@@ -209,38 +330,121 @@ static int may_iterate(const spari_advisor *d, const spari_outcome *best) {
            (double)best->plan.steps > saved * (double)spari_plan_least_steps(d);
 }
 
-static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
+static spari_plan coupled_by(const spari_plan *structure, int scheme, int predictor, double rtol) {
+    spari_plan p = *structure;
+    p.scheme = scheme, p.predictor = predictor, p.rtol = rtol;
+    return p;
+}
+
+/* By steps from those that a tight coupling needs, from others, or with the host's own. */
+static int search_steps(spari_advisor *d, const spari_plan *p, int64_t from, spari_outcome *best) {
+    spari_outcome o;
+    spari_plan q = *p;
+    if (!d->session->keep_dt) {
+        return coarsest_steps(d, q, spari_plan_grid(d, from > 0 ? from : spari_plan_least_steps(d)), best);
+    }
+    q.steps = d->run.steps;
+    SPARI_TRY(spari_plan_measure(d, &q, INFINITY, &o));
+    *best = spari_plan_is_good(d, &o) && o.cost < best->cost ? o : *best;
+    return SPAR_OK;
+}
+
+/* The place of the grid to begin with: what a tight coupling needs, or more where a run of the structure, explicit too,
+   has shown it. seen: that run; of infinite error where there is none. */
+static int begin_explicit(const spari_advisor *d, const spari_plan *structure, spari_outcome *seen) {
+    int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = least;
+    seen->error = INFINITY;
+    for (int k = 0; k < d->known_count; k++) {
+        const spari_outcome *o = &d->known[k];
+        double ratio = o->error / (spari_rule.good * d->tolerance);
+        if (isfinite(o->error) && o->plan.scheme == SPAR_COUPLING_EXPLICIT && o->plan.substeps == structure->substeps &&
+            memcmp(o->plan.group, structure->group, sizeof structure->group) == 0) {
+            int at = spari_plan_grid(d, o->plan.steps), leap = leap_of(ratio, 2);
+            begin = ratio > 1 ? at + (leap > 1 ? leap : 1) : at;
+            *seen = *o;
+        }
+    }
+    return begin > least ? begin : least;
+}
+
+/* Explicit coupling at a place of the grid, from one predictor on: the better of them; the second where the first does
+   not keep the tolerance. */
+static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, int predictor, spari_outcome *better) {
+    better->error = better->cost = INFINITY;
+    for (; predictor <= 2 && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT) && !spari_plan_is_good(d, better); predictor++) {
+        spari_outcome o;
+        spari_plan p = coupled_by(structure, SPAR_COUPLING_EXPLICIT, predictor, d->session->coupling_rtol);
+        p.steps = d->session->keep_dt ? d->run.steps : spari_plan_steps(d, at);
+        SPARI_TRY(spari_plan_measure(d, &p, INFINITY, &o));
+        *better = o.error < better->error ? o : *better;
+    }
+    return SPAR_OK;
+}
+
+/* Whether another accelerator or predictor can pay: one that would take the solutions of the best in a step down to
+   one. */
+static int other_pays(spari_advisor *d, const spari_outcome *best) {
+    double least = best->cost / fmax(best->solutions, 1);
+    return !isfinite(best->cost) ||
+           (least < spari_rule.worth * best->cost && spari_plan_pays(d, best->cost, best->cost - least));
+}
+
+static int try_iterated(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     static const struct {
         int scheme, predictor;
         double rtol;
-    } coupling[] = {{SPAR_COUPLING_EXPLICIT, 1, 0},       {SPAR_COUPLING_EXPLICIT, 2, 0},
-                    {SPAR_COUPLING_FIXED_POINT, 1, 1e-2}, {SPAR_COUPLING_IQN_ILS, 1, 1e-2},
-                    {SPAR_COUPLING_IQN_ILS, 2, 1e-2},     {SPAR_COUPLING_IQN_ILS, 1, 1e-3}};
-    enum { SCHEMES = sizeof coupling / sizeof *coupling, LOOSE = SCHEMES - 1 };
+    } coupling[] = {{SPAR_COUPLING_FIXED_POINT, 1, 1e-2},
+                    {SPAR_COUPLING_IQN_ILS, 1, 1e-2},
+                    {SPAR_COUPLING_IQN_ILS, 2, 1e-2},
+                    {SPAR_COUPLING_IQN_ILS, 1, 1e-3}};
+    enum { SCHEMES = sizeof coupling / sizeof *coupling, TIGHT = SCHEMES - 1 };
+    for (int k = 0; k < SCHEMES; k++) {
+        if (is_too_heavy(d, coupling[k].scheme) || (k == TIGHT && isfinite(best->cost)) || !may_iterate(d, best) ||
+            !other_pays(d, best)) {
+            continue;
+        }
+        const spari_plan p = coupled_by(structure, coupling[k].scheme, coupling[k].predictor, coupling[k].rtol);
+        SPARI_TRY(search_steps(d, &p, 0, best));
+    }
+    return SPAR_OK;
+}
+
+/* What explicit coupling costs at best that keeps the tolerance, its error being of that order: a run of finer steps,
+   which cost less each. */
+static double explicit_cost(const spari_outcome *o, double order, double goal) {
+    const double power = 0.7;
+    return pow(fmax(1, o->error / goal), power / order) * o->cost;
+}
+
+static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     const spar_session *s = d->session;
-    int kept = s->keep_coupling;
-    for (size_t k = 0; k < (kept ? 2 : SCHEMES); k++) {
-        spari_plan p = *structure;
-        p.scheme = kept ? s->scheme : coupling[k].scheme;
-        p.rtol = kept || coupling[k].rtol <= 0 ? s->coupling_rtol : coupling[k].rtol;
-        p.predictor = coupling[k].predictor;
-        if (!kept && is_too_heavy(d, p.scheme)) {
-            continue;
-        }
-        if (p.scheme != SPAR_COUPLING_EXPLICIT && !kept &&
-            (!may_iterate(d, best) || (k == LOOSE && isfinite(best->cost)))) {
-            continue;
-        }
-        if (s->keep_dt) {
-            spari_outcome o;
-            p.steps = d->run.steps;
-            SPARI_TRY(spari_plan_measure(d, &p, &o));
-            *best = spari_plan_is_good(d, &o) && o.cost < best->cost ? o : *best;
-        } else {
-            int64_t from = isfinite(best->cost) && p.scheme == SPAR_COUPLING_EXPLICIT ? best->plan.steps
-                                                                                      : spari_plan_least_steps(d);
-            SPARI_TRY(coarsest_steps(d, p, spari_plan_grid(d, from), best));
-        }
+    const double near = 1.5; /* times the error to keep: the next place of the grid may do */
+    double goal = spari_rule.good * d->tolerance;
+    spari_outcome direct, seen;
+    for (int predictor = 1; predictor <= 2 && s->keep_coupling; predictor++) {
+        const spari_plan p = coupled_by(structure, s->scheme, predictor, s->coupling_rtol);
+        SPARI_TRY(search_steps(d, &p, 0, best));
+    }
+    if (s->keep_coupling) {
+        return SPAR_OK;
+    }
+    int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = begin_explicit(d, structure, &seen),
+        lags = begin > least + 1;
+    SPARI_TRY(try_explicit(d, structure, lags ? least : begin, lags ? 2 : 1, &direct));
+    int far = isfinite(direct.error) && direct.error > near * goal;
+    if (isfinite(direct.error) && !far) {
+        SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
+    }
+    SPARI_TRY(try_iterated(d, structure, best));
+    double order = isfinite(seen.error) ? order_of(&seen, &direct) : 2;
+    if (far && seen.error < direct.error) {
+        direct = seen;
+        direct.plan.newton = structure->newton;
+        direct.plan.steps = spari_plan_steps(d, begin);
+    }
+    double cost = explicit_cost(&direct, order, goal);
+    if (far && (!isfinite(best->cost) || (cost < best->cost && spari_plan_pays(d, cost, best->cost - cost)))) {
+        SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
     }
     return SPAR_OK;
 }
@@ -323,9 +527,10 @@ static const struct {
 
 /* Whether asking on can pay: what it has cost is less than a part of what it has saved. */
 static int pays(const spari_advisor *d, const spari_outcome *best) {
-    double runs = fmax(d->longer, spari_rule.least_runs), now = d->now > 0 ? d->now : best->cost;
+    double now = d->now > 0 ? d->now : best->cost, spent = d->spent - (d->good_as_is ? 0 : d->shown),
+           saved = d->runs * (d->known_good - best->cost);
     return d->known_count < spari_rule.tried && d->spent + best->cost < d->limit * now &&
-           d->spent + best->cost <= spari_rule.worth_asking * runs * (now - best->cost);
+           spent + best->cost <= spari_rule.worth_asking * saved;
 }
 
 /* Moves as long as one pays and keeps the tolerance. */
@@ -339,7 +544,7 @@ static int improve(spari_advisor *d, spari_outcome *best) {
             if (!moves[k].first(d, &p, g) || (moves[k].second && !moves[k].second(d, &p, g))) {
                 continue;
             }
-            SPARI_TRY(spari_plan_measure(d, &p, &o));
+            SPARI_TRY(spari_plan_measure(d, &p, spari_rule.at_most * best->cost, &o));
             if (spari_plan_is_good(d, &o) && o.cost < spari_rule.worth * best->cost) {
                 *best = o;
                 idle = 0;
@@ -357,24 +562,64 @@ static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
            a->steps <= b->steps && (a->scheme == SPAR_COUPLING_EXPLICIT || a->rtol >= b->rtol);
 }
 
-/* The cheapest of all settings that keep the tolerance and stay stable. */
-static int find_stable(spari_advisor *d, spari_outcome *best) {
+/* Of one kind in time, whatever the steps. */
+static int is_same_kind(const spari_plan *a, const spari_plan *b) {
+    return a->scheme == b->scheme && a->predictor == b->predictor && a->substeps == b->substeps;
+}
+
+/* The cheapest of what is known that keeps the tolerance, of another kind than what drifts away; or, at last, of the
+   same one with finer steps. */
+static spari_outcome next_best(spari_advisor *d, const spari_plan *drifts, int same) {
+    spari_outcome next = {.error = INFINITY, .cost = INFINITY};
+    for (int i = 0; i < d->known_count; i++) {
+        spari_outcome *o = &d->known[i];
+        if (is_no_stabler(&o->plan, drifts)) {
+            o->error = INFINITY;
+        } else if (spari_plan_is_good(d, o) && o->cost < next.cost && (same || !is_same_kind(&o->plan, drifts))) {
+            next = *o;
+        }
+    }
+    return next;
+}
+
+/* In place of what drifts away: the other predictor, what iterates; finer steps; whatever is known and dearer. */
+static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_plan *drifts, spari_outcome *best) {
+    spari_plan p = *drifts;
+    spari_outcome o = {.error = INFINITY, .cost = INFINITY};
+    double most = d->good_as_is ? now->cost : INFINITY;
+    if (other_predictor(d, &p, 0)) {
+        SPARI_TRY(spari_plan_measure(d, &p, most, &o));
+    }
+    *best = next_best(d, drifts, 0);
+    if (!(best->cost < most) && !d->session->keep_coupling) {
+        o = (spari_outcome){.error = INFINITY, .cost = INFINITY};
+        SPARI_TRY(try_iterated(d, drifts, &o));
+        *best = next_best(d, drifts, 0);
+    }
+    *best = isfinite(best->cost) ? *best : next_best(d, drifts, 1);
+    return SPAR_OK;
+}
+
+/* The cheapest of all settings that keep the tolerance and stay stable. The session as it is stays where a longer look
+   at others would cost more than they save; it is not looked at, the host has it. */
+static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome *best) {
     int stays = 0;
     for (int k = 0; k < spari_rule.doubted && isfinite(best->cost); k++) {
+        double look = spari_plan_look(d, &best->plan) * best->cost;
+        int others = memcmp(&best->plan, &now->plan, sizeof now->plan) != 0;
+        if (d->good_as_is && (!others || !spari_plan_pays(d, look, now->cost - best->cost))) {
+            d->skipped += !others;
+            *best = *now;
+            return SPAR_OK;
+        }
+        double before = d->spent;
         SPARI_TRY(spari_plan_stays(d, &best->plan, &stays));
+        d->shown += d->spent - before;
         if (stays) {
             return SPAR_OK;
         }
-        spari_outcome next = {.error = INFINITY, .cost = INFINITY};
-        for (int i = 0; i < d->known_count; i++) {
-            spari_outcome *o = &d->known[i];
-            if (is_no_stabler(&o->plan, &best->plan)) {
-                o->error = INFINITY;
-            } else if (spari_plan_is_good(d, o) && o->cost < next.cost) {
-                next = *o;
-            }
-        }
-        *best = next;
+        const spari_plan drifts = best->plan;
+        SPARI_TRY(try_stabler(d, now, &drifts, best));
     }
     return spari_fail(d->session, SPAR_ERR_NUMERIC,
                       "%s: settings that keep the tolerance over the trials drift away after them; ask with more steps "
@@ -384,7 +629,7 @@ static int find_stable(spari_advisor *d, spari_outcome *best) {
 
 /* The session as it is, measured when there is something to measure it against. */
 static int judge_present(spari_advisor *d, const spari_plan *present, const spari_record *run, spari_outcome *now) {
-    *now = (spari_outcome){*present, INFINITY, INFINITY};
+    *now = (spari_outcome){.plan = *present, .error = INFINITY, .cost = INFINITY};
     return run->value ? spari_plan_judge(d, run, now) : SPAR_OK;
 }
 
@@ -396,7 +641,46 @@ static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan 
         structure.newton = newton[k];
         SPARI_TRY(choose_time(d, &structure, best));
     }
-    return isfinite(best->cost) ? SPAR_OK : choose_time(d, finest, best);
+    if (!isfinite(best->cost)) {
+        SPARI_TRY(choose_time(d, finest, best));
+    }
+    for (int k = 0; k < d->known_count; k++) { /* among them runs that were made for the structure */
+        const spari_outcome *o = &d->known[k];
+        *best = spari_plan_is_good(d, o) && o->cost < best->cost ? *o : *best;
+    }
+    return SPAR_OK;
+}
+
+/* What is known by now to keep the tolerance: the session as it is, or the cheapest level with steps, of order 2, that
+   are fine enough; and what that took. The rest of asking is to bring as much as it costs. */
+static void take_stock(spari_advisor *d, const spari_outcome *now) {
+    double goal = spari_rule.good * d->tolerance;
+    d->shown = d->spent;
+    d->good_as_is = spari_plan_is_good(d, now);
+    d->known_good = d->good_as_is ? now->cost : INFINITY;
+    for (int k = 0; k < d->known_count; k++) {
+        const spari_outcome *o = &d->known[k];
+        double cost = o->cost * sqrt(fmax(1, o->error / goal));
+        d->known_good = memcmp(&o->plan, &now->plan, sizeof o->plan) != 0 ? fmin(d->known_good, cost) : d->known_good;
+    }
+}
+
+static int search_structure(spari_advisor *d, const spari_plan *present, const spari_record *run, spari_outcome *now,
+                            spari_plan *finest, spari_plan *structure) {
+    for (int twice = 0; twice < 2; twice++) {
+        SPARI_TRY(spari_plan_reference(d, present, finest));
+        SPARI_TRY(judge_present(d, present, run, now));
+        SPARI_TRY(spari_plan_judge_levels(d));
+        take_stock(d, now);
+        spari_plan_begin(d, SPARI_STAGE_SHAPES);
+        SPARI_TRY(choose_structure(d, finest, structure));
+        if (!d->misled || twice) {
+            break;
+        }
+        spari_plan_forget(d);
+        d->known_count = d->cap = 0;
+    }
+    return SPAR_OK;
 }
 
 static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present, spari_outcome *now,
@@ -404,12 +688,9 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
     spari_plan finest, structure;
     spari_record run = {0};
     int status = spari_plan_try_present(d, present, &run);
-    status = status == SPAR_OK ? spari_plan_reference(d, present, &finest) : status;
-    status = status == SPAR_OK ? judge_present(d, present, &run, now) : status;
+    status = status == SPAR_OK ? search_structure(d, present, &run, now, &finest, &structure) : status;
     spari_record_free(&run);
     SPARI_TRY(status);
-    spari_plan_begin(d, SPARI_STAGE_SHAPES);
-    SPARI_TRY(choose_structure(d, &structure));
     spari_plan_begin(d, SPARI_STAGE_TIME);
     SPARI_TRY(choose_rest(d, structure, &finest, best));
     if (spari_plan_is_good(d, now) && now->cost < best->cost) {
@@ -419,7 +700,7 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
         spari_plan_begin(d, SPARI_STAGE_MOVES);
         SPARI_TRY(improve(d, best));
         spari_plan_begin(d, SPARI_STAGE_LOOKS);
-        return find_stable(d, best);
+        return find_stable(d, now, best);
     }
     double least = INFINITY;
     for (int k = 0; k < d->known_count; k++) {
@@ -475,6 +756,9 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1,
         [SPAR_ADVICE_TRIALS] = d->trials,
         [SPAR_ADVICE_WORK] = d->now > 0 ? d->spent / d->now : -1,
+        [SPAR_ADVICE_SHOWING] = d->now > 0 ? d->shown / d->now : -1,
+        [SPAR_ADVICE_SAVES] = d->now > 0 ? d->runs * (d->known_good - best->cost) / d->now : 0,
+        [SPAR_ADVICE_SKIPPED] = d->skipped,
     };
     memcpy(advice, made, sizeof made);
     spari_advised *advised = d->session->own->advised;
@@ -518,6 +802,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     d.goals = d.run.goals = s->goals;
     d.limit = s->advise_limit > 0 ? s->advise_limit : INFINITY;
     d.longer = fmax(1, length / (dt * (double)steps));
+    d.runs = fmax(d.longer, spari_rule.least_runs);
     int status = spari_plan_groups(&d);
     status = status == SPAR_OK ? make_remakes(&d, &room) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);

@@ -22,7 +22,7 @@ static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         own[BALANCE_EXPECTED] += spari_assembly_owner(a) == rank ? spari_assembly_expected(a) : 0;
     }
-    own[BALANCE_COUNTED] = spari_cost_members(s);
+    own[BALANCE_COUNTED] = spari_cost_members(s, NULL);
 }
 
 int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,

@@ -32,16 +32,30 @@ static double tangent_cost(const spari_effort *e) {
     return (e->points > 0 ? form : 0) + N * (p->factor + e->band * (p->factor_row + p->factor_fill * e->band));
 }
 
-double spari_cost_members(const spar_session *s) {
+double spari_cost_members(const spar_session *s, double *each) {
     double sum = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
         spari_effort e = {0};
         if (m->committed && m->row->effort && spari_fidelity_is_here(m)) {
             m->row->effort(m, &e);
         }
-        sum += (double)e.iterations * whole(iteration_cost(&e)) + (double)e.tangents * whole(tangent_cost(&e));
+        double own = (double)e.iterations * whole(iteration_cost(&e)) + (double)e.tangents * whole(tangent_cost(&e));
+        sum += own;
+        if (each) {
+            each[k] = own;
+        }
     }
     return sum;
+}
+
+double spari_cost_frame(const spar_member *m, int nodes, int modes) {
+    int unknowns = modes > 0 ? modes : 6 * (m->elements * (nodes - 1) + !spari_member_root_is_given(m));
+    const spari_effort e = {.nodes = m->elements * (nodes - 1) + 1,
+                            .per_element = nodes,
+                            .unknowns = unknowns,
+                            .band = modes > 0 ? modes : spari_effort_band(unknowns, 6 * nodes)};
+    return iteration_cost(&e);
 }
 
 static double count_nodes(const spar_fluid *f) {

@@ -113,10 +113,18 @@ static int tell_progress(spari_advisor *d) {
     return spari_progress_tell(d->session, &d->progress, done, expected);
 }
 
-int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, spari_record *record) {
+int spari_plan_pays(spari_advisor *d, double trial, double saving) {
+    int pays = d->runs * saving >= trial;
+    d->skipped += !pays;
+    return pays;
+}
+
+int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double most, spari_record *record) {
     spar_session *s = d->session;
     spari_wish wish;
     spari_run run = d->run;
+    run.most = isfinite(most) ? most : 0;
+    run.fluid = d->fluid;
     *record = (spari_record){0};
     SPARI_REQUIRE(
         s, d->now <= 0 || d->spent < d->limit * d->now, SPAR_ERR_LIMIT,
@@ -204,22 +212,37 @@ static int resolves(const spari_advisor *d, const spari_plan *p) {
 }
 
 static void remember(spari_advisor *d, const spari_outcome *o) {
-    tell_plan(d, &o->plan, o->error, o->cost);
     if (d->known_count < SPARI_KNOWN) {
         d->known[d->known_count++] = *o;
     }
 }
 
-int spari_plan_judge(spari_advisor *d, const spari_record *r, spari_outcome *out) {
+/* Silently. */
+static int judge_silently(spari_advisor *d, const spari_record *r, spari_outcome *out) {
     double error;
     SPARI_TRY(compare_runs(d, r, &d->reference, d->longer, &error));
-    out->error = error + d->reference_error;
+    out->error = resolves(d, &out->plan) ? error + d->reference_error : INFINITY;
     out->cost = spari_plan_cost(d, r);
+    out->solutions = (double)r->solutions / (double)out->plan.steps;
     remember(d, out);
     return SPAR_OK;
 }
 
-int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out) {
+int spari_plan_judge(spari_advisor *d, const spari_record *r, spari_outcome *out) {
+    SPARI_TRY(judge_silently(d, r, out));
+    tell_plan(d, &out->plan, out->error, out->cost);
+    return SPAR_OK;
+}
+
+int spari_plan_judge_levels(spari_advisor *d) {
+    for (int k = 0; k < d->levels; k++) {
+        spari_outcome o = {.plan = d->level[k].plan};
+        SPARI_TRY(judge_silently(d, &d->level[k].record, &o));
+    }
+    return SPAR_OK;
+}
+
+int spari_plan_measure(spari_advisor *d, const spari_plan *p, double most, spari_outcome *out) {
     for (int k = 0; k < d->known_count; k++) {
         if (memcmp(&d->known[k].plan, p, sizeof *p) == 0) {
             *out = d->known[k];
@@ -227,15 +250,17 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, spari_outcome *out
         }
     }
     spari_record r = {0};
-    *out = (spari_outcome){*p, INFINITY, INFINITY};
+    *out = (spari_outcome){.plan = *p, .error = INFINITY, .cost = INFINITY};
     if (!resolves(d, p)) {
         return SPAR_OK; /* never advised, whatever a trial would say */
     }
-    int status = spari_plan_run(d, p, 1, &r);
+    int status = spari_plan_run(d, p, 1, most, &r);
     if (status == SPAR_OK) {
         status = spari_plan_judge(d, &r, out);
     } else if (spari_plan_fails(status)) {
+        out->cost = r.dear ? fmax(most, spari_plan_cost(d, &r)) : INFINITY;
         remember(d, out);
+        tell_plan(d, p, INFINITY, 0);
         status = SPAR_OK;
     }
     spari_record_free(&r);
@@ -246,8 +271,9 @@ int spari_plan_is_good(const spari_advisor *d, const spari_outcome *o) {
     return o->error <= spari_rule.good * d->tolerance;
 }
 
-int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record *base, spari_record *r, double *part) {
-    int status = spari_plan_run(d, p, 1, r);
+int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record *base, double most, spari_record *r,
+                       double *part) {
+    int status = spari_plan_run(d, p, 1, most, r);
     *part = INFINITY;
     if (status == SPAR_OK) {
         status = compare_runs(d, r, base, d->longer, part);
@@ -257,9 +283,14 @@ int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
-int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double *part, double *cost) {
+int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double most, double *part,
+                        double *cost) {
     spari_record r;
-    int status = spari_plan_compare(d, p, base, &r, part);
+    int status = spari_plan_compare(d, p, base, most, &r, part);
+    if (status == SPAR_OK && isfinite(*part) && d->reference.value) {
+        spari_outcome o = {.plan = *p};
+        status = judge_silently(d, &r, &o);
+    }
     *cost = spari_plan_cost(d, &r);
     spari_record_free(&r);
     return status;
@@ -290,7 +321,7 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
 
 int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_record *record) {
     d->run.timed = d->session->fluid_cost <= 0;
-    int status = spari_plan_run(d, present, 1, record);
+    int status = spari_plan_run(d, present, 1, INFINITY, record);
     if (status == SPAR_OK) {
         weigh_fluid(d, record);
         d->now = spari_plan_cost(d, record);
@@ -322,20 +353,27 @@ static spari_plan reference_plan(const spari_advisor *d, const spari_plan *prese
         }
         if (!s->keep_nodes) {
             b->nodes = b->nodes + more < SPARI_MAX_NODES ? b->nodes + more : SPARI_MAX_NODES;
+            b->nodes = d->cap > 0 && b->nodes > d->cap ? d->cap : b->nodes;
         }
     }
     return p;
+}
+
+/* A dt coarser than the host's is there to be cheap. */
+static double most_of_level(const spari_advisor *d, const spari_plan *p) {
+    return d->now > 0 && p->steps < d->run.steps ? spari_rule.coarse_most * d->now : INFINITY;
 }
 
 /* Runs it as the next level, which stays empty where it fails. */
 static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
     spari_level *l = &d->level[d->levels];
     l->plan = *p;
-    int status = spari_plan_run(d, p, 1, &l->record);
+    int status = spari_plan_run(d, p, 1, most_of_level(d, p), &l->record);
     *made = status == SPAR_OK;
     if (*made) {
         d->levels++;
     } else {
+        d->dear_steps = p->steps;
         spari_record_free(&l->record);
     }
     return spari_plan_fails(status) ? SPAR_OK : status;
@@ -358,35 +396,83 @@ static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, 
     return p;
 }
 
-/* How many more nodes the reference has: until two more change little; *left: so much. The coarsest dt, coupling and
-   Newton will do for that. */
-static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
-    spari_record few = {0}, many = {0};
-    int status = SPAR_OK, last = d->session->keep_dt ? 0 : SPARI_FINEST;
-    double part = INFINITY;
-    *left = 0;
-    spari_plan p = rough_plan(d, present, *level, *more);
-    for (; (status = spari_plan_run(d, &p, 1, &few)) != SPAR_OK; p = rough_plan(d, present, ++*level, *more)) {
-        spari_record_free(&few);
+/* The coarsest level that comes to its end. */
+static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level, int more, spari_record *run) {
+    int last = d->session->keep_dt ? 0 : SPARI_FINEST, status;
+    spari_plan p = rough_plan(d, present, *level, more);
+    for (; (status = spari_plan_run(d, &p, 1, most_of_level(d, &p), run)) != SPAR_OK;
+         p = rough_plan(d, present, ++*level, more)) {
+        d->dear_steps = p.steps;
+        spari_record_free(run);
         tell_plan(d, &p, INFINITY, 0);
         SPARI_TRY(spari_plan_fails(status) ? SPAR_OK : status);
         SPARI_REQUIRE(d->session, *level < last, status, "%s: no reference run comes to its end: %.400s", SPARI_ADVISE,
                       d->session->message);
     }
-    weigh_fluid(d, &few);
+    weigh_fluid(d, run);
+    return SPAR_OK;
+}
+
+/* The fewest nodes that change little against `many`, and one more: finer dt need no more of the line than that. */
+static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, int level, int more,
+                                 const spari_record *many, double *left) {
+    int few = spari_rule.least_nodes - 1, enough = few;
+    for (int g = 0; g < d->groups; g++) {
+        int nodes = rough_plan(d, present, level, more).group[g].nodes;
+        enough = nodes > enough ? nodes : enough;
+    }
+    int most = enough;
+    while (enough - few > 1) {
+        double part, cost;
+        d->cap = (few + enough) / 2;
+        const spari_plan p = rough_plan(d, present, level, more);
+        SPARI_TRY(spari_plan_distance(d, &p, many, most_of_level(d, &p), &part, &cost));
+        if (part <= spari_rule.reference_fewer) {
+            enough = d->cap;
+            *left = fmax(*left, part * d->tolerance);
+        } else {
+            few = d->cap;
+            d->few = part > 1 ? few : d->few;
+        }
+    }
+    d->cap = enough + 1 < most ? enough + 1 : 0;
+    return SPAR_OK;
+}
+
+/* How many nodes the reference has: more until two more change little; *left: so much; fewer where they are not
+   needed. The coarsest dt, coupling and Newton will do for that. */
+static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
+    spari_record few = {0}, many = {0};
+    double part = INFINITY, before = INFINITY;
+    const spar_session *s = d->session;
+    const int begun = *more;
+    *left = 0;
+    int status = run_coarsest(d, present, level, *more, &few);
+    spari_plan p = rough_plan(d, present, *level, *more);
     while (status == SPAR_OK && *more < MOST_MORE && part > spari_rule.reference_nodes) {
         const spari_plan q = rough_plan(d, present, *level, *more + 2);
         if (memcmp(&q, &p, sizeof p) == 0) {
             break; /* there are no more */
         }
         p = q;
-        status = spari_plan_compare(d, &p, &few, &many, &part);
+        status = spari_plan_compare(d, &p, &few, INFINITY, &many, &part);
+        if (part > 0.5 * before && isfinite(part) && *level < SPARI_FINEST && !s->keep_dt) {
+            spari_record_free(&few); /* more nodes do not help: it is the dt, a finer one shows what nodes do */
+            spari_record_free(&many);
+            *more = begun;
+            ++*level;
+            return reference_nodes(d, present, level, more, left);
+        }
+        before = part;
         *left = isfinite(part) ? part * d->tolerance : 0;
         *more += part > spari_rule.reference_nodes && isfinite(part) ? 2 : 0;
         spari_record_free(&few);
         few = many;
         many = (spari_record){0};
         part = isfinite(part) ? part : 0;
+    }
+    if (status == SPAR_OK && few.value && !s->keep_dt && !s->keep_nodes && !d->misled) {
+        status = fewer_reference_nodes(d, present, *level, *more, &few, left);
     }
     spari_record_free(&few);
     return status;
@@ -405,6 +491,15 @@ static double left_in_levels(const spari_advisor *d, double *extrapolate) {
     return change / (fmin(fmax(rate, 1.25), 4) - 1) * d->tolerance;
 }
 
+/* What a level's own steps leave of error, in tolerances. */
+static double error_of_level(const spari_advisor *d, int k) {
+    double after = 0, part = 0, last = d->levels > 1 ? left_in_levels(d, &part) / d->tolerance : 0;
+    for (int i = k + 1; i < d->levels; i++) {
+        after += d->level[i].change;
+    }
+    return after + (part > 0 ? last / spari_rule.believed : last);
+}
+
 static double error_of_steps(const spari_advisor *d) {
     double part;
     return d->levels > 1 ? left_in_levels(d, &part) : INFINITY;
@@ -419,7 +514,7 @@ static int copy_reference(spari_advisor *d) {
     d->reference = l->record;
     d->reference.value = spari_copy(l->record.value, spari_record_size(&l->record));
     d->reference.recent = spari_copy(l->record.recent, spari_record_size(&l->record) / SPARI_SAMPLES * 4);
-    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = NULL;
+    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = d->reference.member_work = NULL;
     int status = d->reference.value && d->reference.recent
                      ? SPAR_OK
                      : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
@@ -438,13 +533,26 @@ void spari_plan_forget(spari_advisor *d) {
     d->levels = 0;
 }
 
-/* Halves dt until the error that is left in the steps and the one in the nodes are a small part of the tolerance, and
-   until what carries the answer is resolved. */
+/* Whether half the dt can pay although the error that is left will do: of the tolerance it leaves more to dt, of
+   order 2, in runs that cost at least about what a level that keeps the tolerance does. */
+static int finer_pays(spari_advisor *d) {
+    const spari_level *last = &d->level[d->levels - 1], *good = spari_plan_good_level(d);
+    double room = spari_rule.good - d->reference_error / d->tolerance, cost = spari_plan_cost(d, &last->record),
+           run = good ? spari_plan_cost(d, &good->record) : cost;
+    return d->reference_error > spari_rule.reference_most * d->tolerance ||
+           spari_plan_pays(d, 2 * cost, run * (1 - sqrt(room / spari_rule.good)));
+}
+
+/* Halves dt until the error that is left in the steps and the one in the nodes are a small part of the tolerance, or
+   small enough and the next run would not pay. */
 static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
     int made, keeps = d->session->keep_dt, ends = keeps ? level : SPARI_FINEST;
     double goal = spari_rule.reference_ends * d->tolerance;
     d->reference_error = INFINITY;
     for (; level <= ends && d->levels < SPARI_LEVELS && d->reference_error > goal; level++) {
+        if (isfinite(d->reference_error) && !finer_pays(d)) {
+            break;
+        }
         const spari_plan p = reference_plan(d, present, level, more);
         SPARI_TRY(run_level(d, &p, &made));
         spari_level *l = d->levels > 0 ? &d->level[d->levels - 1] : d->level;
@@ -489,19 +597,12 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
     double nodes;
     SPARI_TRY(reference_nodes(d, present, &level, &more, &nodes));
     SPARI_TRY(refine(d, present, level, more, nodes));
+    SPARI_REQUIRE(d->session, d->levels > 0, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
+                  SPARI_ADVISE, d->session->message);
     SPARI_TRY(copy_reference(d));
     SPARI_TRY(check_reference(d));
     *finest = d->level[d->levels - 1].plan;
     return SPAR_OK;
-}
-
-/* What a level's own steps leave of error, in tolerances. */
-static double error_of_level(const spari_advisor *d, int k) {
-    double after = 0, part = 0, last = d->levels > 1 ? left_in_levels(d, &part) / d->tolerance : 0;
-    for (int i = k + 1; i < d->levels; i++) {
-        after += d->level[i].change;
-    }
-    return after + (part > 0 ? last / spari_rule.believed : last);
 }
 
 const spari_level *spari_plan_rough(const spari_advisor *d) {
@@ -512,8 +613,21 @@ const spari_level *spari_plan_rough(const spari_advisor *d) {
     return &d->level[k];
 }
 
+const spari_level *spari_plan_good_level(const spari_advisor *d) {
+    const spari_level *good = NULL;
+    for (int k = 0; k < d->levels; k++) {
+        const spari_level *l = &d->level[k];
+        if (error_of_level(d, k) <= spari_rule.good && resolves(d, &l->plan) &&
+            (!good || spari_plan_cost(d, &l->record) < spari_plan_cost(d, &good->record))) {
+            good = l;
+        }
+    }
+    return good;
+}
+
 int64_t spari_plan_least_steps(const spari_advisor *d) {
     double resolving = d->shortest > 0 ? ceil(spari_rule.resolves / d->shortest) : 0;
+    resolving = fmax(resolving, 1.4 * (double)d->dear_steps); /* the next place of the grid */
     for (int k = 0; k < d->levels; k++) {
         double error = error_of_level(d, k);
         if (error <= spari_rule.good) { /* of order 2 */
@@ -547,7 +661,7 @@ static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const
         q.scheme = SPAR_COUPLING_IQN_ILS;
         q.rtol = spari_rule.stays_rtol;
     }
-    int status = spari_plan_run(d, &q, longer, &finer);
+    int status = spari_plan_run(d, &q, longer, INFINITY, &finer);
     if (status == SPAR_OK) {
         status = compare_runs(d, run, &finer, 1, &error);
     }
@@ -557,17 +671,21 @@ static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
-int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
+int spari_plan_look(const spari_advisor *d, const spari_plan *p) {
     int longer = spari_rule.longer, least = spari_rule.least_steps;
     longer = p->steps * longer < least ? (int)(least / p->steps) + 1 : longer;
-    longer = (int)fmin(longer, ceil(d->longer)); /* what comes after the host's run is nobody's concern */
+    return (int)fmin(longer, ceil(d->longer)); /* what comes after the host's run is nobody's concern */
+}
+
+int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
+    int longer = spari_plan_look(d, p);
     spari_record run;
     double far[2] = {0, 0};
     *stays = 1;
     if (longer == 1) {
         return SPAR_OK;
     }
-    int status = spari_plan_run(d, p, longer, &run);
+    int status = spari_plan_run(d, p, longer, INFINITY, &run);
     *stays = 0;
     if (status == SPAR_OK) {
         far[0] = seesaws(d, &run, &d->reference, longer) ||

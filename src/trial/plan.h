@@ -34,7 +34,8 @@ typedef struct spari_plan {
 
 typedef struct spari_outcome {
     spari_plan plan;
-    double error, cost; /* INFINITY: it fails */
+    double error, cost; /* INFINITY: it fails; a run that was ended for its cost has that */
+    double solutions;   /* of the fluid, in a step */
 } spari_outcome;
 
 /* A run of those that lead to the reference. */
@@ -54,18 +55,26 @@ typedef struct spari_advisor {
     int groups, *group; /* [members] of which group; -1: as it is */
     spari_level *level; /* [SPARI_LEVELS] */
     int levels;
+    int cap, few, misled;   /* nodes that the reference has at most, 0: any; so many are clearly too few for all beams
+                               at once; 1: a coarse dt had asked for too few */
     spari_record reference; /* what they lead to: errors are taken against it */
     double reference_error;
-    double shortest;      /* period that steps have to resolve, as a part of the trials' time; 0: any will do */
-    double fluid;         /* what a solution of the fluid counts for, */
-    int weighed;          /* known once a run has come to its end */
-    double now;           /* what a trial with the session as it is costs; 0: not known yet */
-    double spent;         /* what all trials have cost, */
-    int64_t solutions;    /* and those of the fluid before that was weighed */
+    double shortest;   /* period that steps have to resolve, as a part of the trials' time; 0: any will do */
+    double fluid;      /* what a solution of the fluid counts for, */
+    int weighed;       /* known once a run has come to its end */
+    double now;        /* what a trial with the session as it is costs; 0: not known yet */
+    double spent;      /* what all trials have cost, */
+    double shown;      /* what those had that led to the reference, judged the session as it is, or looked further, */
+    int64_t solutions; /* and those of the fluid before that was weighed */
+    double runs;       /* what is saved counts in a run of so many times the trials */
+    double known_good; /* cost of the cheapest settings that the reference has shown to keep the tolerance */
+    int good_as_is;    /* those are the session as it is */
+    int skipped;       /* trials not made because they could not save as much as they cost */
     spari_outcome *known; /* [SPARI_KNOWN] settings measured against the reference */
     int known_count, trials;
-    int stage;       /* SPARI_STAGE_*, */
-    double foreseen; /* and what all was reckoned to come to as it began, in the unit of progress; 0: not yet */
+    int64_t dear_steps; /* with so few a level came to cost too much, or failed */
+    int stage;          /* SPARI_STAGE_*, */
+    double foreseen;    /* and what all was reckoned to come to as it began, in the unit of progress; 0: not yet */
     spari_progress progress;
 } spari_advisor;
 
@@ -86,21 +95,27 @@ int spari_plan_fails(int status);
 /* The next stage begins: what asking will come to is reckoned anew. */
 void spari_plan_begin(spari_advisor *advisor, int stage);
 
+/* Whether a trial of that cost can pay, if it brings the cost of a trial's time in the run down by so much at most. */
+int spari_plan_pays(spari_advisor *advisor, double trial, double saving);
+
 /* All below are collective. A run over `longer` times what the host asked for; the record is to be freed also after a
-   failure. */
-int spari_plan_run(spari_advisor *advisor, const spari_plan *plan, int longer, spari_record *record);
+   failure. most: where it comes to cost more it ends, as one that fails; INFINITY: whatever it costs. */
+int spari_plan_run(spari_advisor *advisor, const spari_plan *plan, int longer, double most, spari_record *record);
 /* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
-int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, spari_outcome *out);
+int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, double most, spari_outcome *out);
 /* The same of a run that has been made. */
 int spari_plan_judge(spari_advisor *advisor, const spari_record *record, spari_outcome *out);
+/* The same of the runs that led to the reference. */
+int spari_plan_judge_levels(spari_advisor *advisor);
 /* Whether it keeps the tolerance; a tenth of that stays for what an estimate does not see. */
 int spari_plan_is_good(const spari_advisor *advisor, const spari_outcome *outcome);
-/* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. */
-int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double *part,
-                        double *cost);
+/* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. Once
+   there is a reference it is known like what is measured. */
+int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double most,
+                        double *part, double *cost);
 /* The same, keeping the run, which is to be freed; it is empty where it fails. */
-int spari_plan_compare(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, spari_record *record,
-                       double *part);
+int spari_plan_compare(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double most,
+                       spari_record *record, double *part);
 /* What the run has cost, the fluid's solutions among it. */
 double spari_plan_cost(const spari_advisor *advisor, const spari_record *record);
 /* Runs the session as it is; *record is to be freed. INFINITY: it fails. */
@@ -113,6 +128,10 @@ void spari_plan_forget(spari_advisor *advisor);
 const spari_level *spari_plan_rough(const spari_advisor *advisor);
 /* So many steps keep the tolerance with a tight coupling, as the levels show. */
 int64_t spari_plan_least_steps(const spari_advisor *advisor);
+/* The cheapest of the levels that keep the tolerance, as they lead to the reference; 0: none does. */
+const spari_level *spari_plan_good_level(const spari_advisor *advisor);
+/* So many times the trials' time that takes. Local. */
+int spari_plan_look(const spari_advisor *advisor, const spari_plan *plan);
 /* Whether the settings stay where they are for longer than the trials were: what grows slowly enough to pass a trial is
    found here; where it may be so, beside a run with half the dt and a tight coupling. */
 int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int *stays);

@@ -182,8 +182,9 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
     r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
     r->room = spari_zalloc(room, sizeof *r->room);
-    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room, SPAR_ERR_MEMORY,
-                  "no memory for the record of a trial run");
+    r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, where it is summed */
+    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room && r->member_work,
+                  SPAR_ERR_MEMORY, "no memory for the record of a trial run");
     return SPAR_OK;
 }
 
@@ -194,6 +195,7 @@ void spari_record_free(spari_record *r) {
     free(r->trail);
     free(r->start);
     free(r->room);
+    free(r->member_work);
     *r = (spari_record){0};
 }
 
@@ -436,6 +438,23 @@ double spari_record_reach(const spari_record *r) {
         most = fmax(most, sum);
     }
     return n > 0 ? sqrt(most / (double)n) : 0;
+}
+
+double spari_record_bend(const spari_record *r, const spar_session *s, const spar_member *member) {
+    int64_t first = 0;
+    double own = 0, all = 0;
+    for (const spar_member *m = s->members; m != member; m = m->next) {
+        first += stations_of(m);
+    }
+    for (int k = 0; k < SPARI_SAMPLES; k++) {
+        const double *x = r->value + k * width(r) + r->first[SPARI_OF_BEYOND];
+        for (int64_t i = 0; i < 3 * r->stations; i++) {
+            int is_own = i >= 3 * first && i < 3 * (first + stations_of(member));
+            own += is_own ? x[i] * x[i] : 0;
+            all += x[i] * x[i];
+        }
+    }
+    return all > 0 ? sqrt(own / all) : 0;
 }
 
 double spari_record_shortest(const spari_record *r, double part) {

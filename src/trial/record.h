@@ -39,6 +39,8 @@ struct spari_record {
     double work;           /* what the steps cost without the fluid, and what a solution of the fluid may cost by its */
     double fluid;          /* nodes, counted (cost.h); all ranks */
     int64_t solutions;     /* calls of the fluid solver */
+    int dear;              /* the run has ended because of what it cost */
+    double *member_work;   /* [members] of the work, what solving for each took; this rank's, then all ranks' */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
     int own;                          /* what this rank answers for a run that failed */
@@ -66,6 +68,8 @@ double spari_record_error(const spari_record *a, const spari_record *b, int goal
 void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part);
 /* Numbers that its samples are. */
 int64_t spari_record_size(const spari_record *record);
+/* What the motion beyond its root of one of the session's members is of all such motion. */
+double spari_record_bend(const spari_record *record, const spar_session *session, const spar_member *member);
 /* How far the motion beyond the root goes, the largest root of the mean square over places. */
 double spari_record_reach(const spari_record *record);
 /* The shortest period, as a part of the run's time, of what moves by more than this part of the motion: 0: nothing. */

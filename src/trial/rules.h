@@ -31,7 +31,8 @@ typedef struct spari_rules {
     double reference_most;   /* and above this one there is no reference */
     double reference_newton; /* with what it is solved, of the tolerance: Newton's, */
     double reference_rtol;   /* and the coupling's */
-    double reference_nodes;  /* nodes are added until two more change less than this share */
+    double reference_nodes;  /* nodes are added until two more change less than this share, */
+    double reference_fewer;  /* or left out as long as that changes less than this one, and one is put back */
     double regular[2];       /* changes that fall by factors between these two as dt is halved are of order 2: what two
                                 runs point to is then believed, but for */
     double believed;         /* this part of the way there */
@@ -50,7 +51,10 @@ typedef struct spari_rules {
     double worth;           /* a change has to bring the cost below this part of it */
     double heavy;           /* added mass over mass from which on neither explicit nor fixed-point coupling is tried */
     double worth_asking;    /* moves are tried as long as asking has cost less than this part of what has been saved, */
-    double least_runs;      /* in a run of so many times the trials at least */
+    double least_runs;      /* in a run of so many times the trials at least; no trial is made that cannot save as much
+                               there as it costs */
+    double at_most;         /* what is tried because it may be cheaper ends at so many times the cost to beat */
+    double coarse_most;     /* the coarse dt of the reference are left out from so many trials as the session is on */
     double looks_away;      /* motion that in the longer look is more than so many times what the reference has is
                                looked at beside a finer run */
     int least_nodes;        /* of an element; 2 lock */

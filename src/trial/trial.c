@@ -265,6 +265,22 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     return status;
 }
 
+enum { LOOKS_AT_COST = 16 }; /* in a run that must not come to more than so much */
+
+/* Collective where there is a limit. */
+static int check_cost(spar_session *s, const spari_run *run, int64_t i, spari_record *r) {
+    if (run->most <= 0 || i == run->steps || i * LOOKS_AT_COST / run->steps == (i - 1) * LOOKS_AT_COST / run->steps) {
+        return SPAR_OK;
+    }
+    double cost[2] = {r->work + spari_cost_members(s, NULL), 0}, part = (double)i / (double)run->steps;
+    SPARI_TRY(spari_comm_sum(s->comm, cost, 1, SPAR_OK, s->message, sizeof s->message));
+    double so_far = cost[0] + run->fluid * (double)r->solutions;
+    r->dear = so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most);
+    SPARI_REQUIRE(s, !r->dear, SPAR_ERR_NUMERIC, "it costs more than it could save, and ends after %lld of %lld steps",
+                  (long long)i, (long long)run->steps);
+    return SPAR_OK;
+}
+
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
@@ -273,6 +289,7 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
         SPARI_TRY(spari_record_look(r, s, i));
+        SPARI_TRY(check_cost(s, run, i, r));
     }
     for (int k = 0; k < 2; k++) {
         r->alternating[k] = size[1] + size[3] > 0 ? r->alternating[k] / (size[1] + size[3]) : 0;
@@ -283,10 +300,11 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
 /* What a run took, summed over the ranks. */
 static int share_costs(spar_session *s, spari_record *r) {
     enum { COSTS = 4 };
-    double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s), spari_cost_fluids(s)};
-    int status = spari_comm_sum(s->comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message);
+    double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s, r->member_work),
+                              spari_cost_fluids(s)};
+    SPARI_TRY(spari_comm_sum(s->comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message));
     r->seconds = cost[0], r->fluid_seconds = cost[1], r->work = cost[2], r->fluid = cost[3];
-    return status;
+    return spari_comm_sum(s->comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* As the host has begun its own run. */
@@ -309,7 +327,7 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
         memcpy(r->report, s->own->coupling->report, sizeof r->report);
         status = share_costs(s, r);
     } else {
-        r->work += spari_cost_members(s);
+        r->work += spari_cost_members(s, NULL);
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);

@@ -28,8 +28,10 @@ typedef struct spari_run {
     int (*instead)(spar_session *session, void *of); /* NULL, or what is done there in place of steps, with `of`; the
                                                         record stays empty. Collective, a status that all agree on */
     void *of;
-    int timed;                /* whether the time of the fluid's solutions is wanted */
-    int goals;                /* what the record has beside the motion (record.h) */
+    int timed;          /* whether the time of the fluid's solutions is wanted */
+    int goals;          /* what the record has beside the motion (record.h) */
+    double most, fluid; /* a run that comes to cost more is of no use and ends, SPAR_ERR_NUMERIC; 0: no such limit.
+                           With what a solution of the fluid counts for */
     spari_progress *progress; /* who hears of each run ahead of it, of calls that make many; else NULL */
 } spari_run;
 
