@@ -1,6 +1,6 @@
 /* The codes that benchmarks/peers compares (peer_codes.h). Kynema-FMB: peers_kynema beside the program, which is built
-   where cmake finds the package KynemaFMB, and reads the file written here. BeamDyn: beamdyn_driver of OpenFAST 5 on
-   the PATH, whose files are written here and whose table is read back. */
+   where cmake is told of Kynema-FMB, and reads the file written here. BeamDyn: beamdyn_driver of OpenFAST 5 on the
+   PATH, whose files are written here and whose table is read back. */
 #include "peer_codes.h"
 
 #include "math/basis.h"
@@ -395,7 +395,7 @@ static int is_beamdyn_here(void) {
 
 const peer_code peer_codes[PEER_CODES] = {
     {"spar", NULL, is_spar_here, run_spar},
-    {"Kynema-FMB", "cmake found no package KynemaFMB (-D KynemaFMB_DIR=...)", is_kynema_here, run_kynema},
+    {"Kynema-FMB", "it has not been built with it (cmake -D KynemaFMB_ROOT=...)", is_kynema_here, run_kynema},
     {"BeamDyn", "there is no beamdyn_driver on the PATH", is_beamdyn_here, run_beamdyn},
 };
 

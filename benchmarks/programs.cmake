@@ -31,14 +31,15 @@ target_compile_options(benchmarks_plain_native PRIVATE $<$<C_COMPILER_ID:GNU,Cla
 target_sources(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/flows.c")
 target_include_directories(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests")
 
-# The peers: what of Kynema-FMB is installed; nothing is fetched or built. BeamDyn's driver is looked for on the PATH as the
+# The peers: what of Kynema-FMB is installed where KynemaFMB_ROOT says (it ends the configuration where its own packages
+# are not found, so it is not looked for unasked); nothing is fetched or built. BeamDyn's driver is looked for on the PATH as the
 # program runs. Quadrature and tables of a member are the library's own, which the shared one hides.
 target_sources(benchmarks_peers PRIVATE "${PROJECT_SOURCE_DIR}/benchmarks/peer_codes.c")
 set_target_properties(benchmarks_peers PROPERTIES
   LINK_LIBRARIES "spar_flags;spar_example_parts;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
 target_include_directories(benchmarks_peers PRIVATE "${PROJECT_SOURCE_DIR}/src")
 get_property(spar_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
-if("CXX" IN_LIST spar_languages)
+if("CXX" IN_LIST spar_languages AND (KynemaFMB_ROOT OR KynemaFMB_DIR))
   find_package(KynemaFMB QUIET)
   if(TARGET KynemaFMB::kynema_fmb_library)
     add_executable(benchmarks_peers_kynema "${PROJECT_SOURCE_DIR}/benchmarks/peers_kynema.cpp")
