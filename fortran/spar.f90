@@ -316,6 +316,8 @@ module spar
     procedure :: solve_static => member_solve_static
     procedure, private :: member_get_error, member_get_error_single_1, member_get_error_single_2
     generic :: get_error => member_get_error, member_get_error_single_1, member_get_error_single_2
+    procedure, private :: member_get_newton, member_get_newton_single_1
+    generic :: get_newton => member_get_newton, member_get_newton_single_1
     procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
     procedure, private :: member_create_point, member_create_point_single_1
@@ -3243,6 +3245,16 @@ contains
 
     call finish(spar_member_get_error(self%handle, step, nodes), self%session, stat, errmsg)
   end subroutine member_get_error
+
+  subroutine member_get_newton(self, iterations, left, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: iterations
+    real(c_double), intent(inout), optional :: left
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_newton(self%handle, iterations, left), self%session, stat, errmsg)
+  end subroutine member_get_newton
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -6501,6 +6513,19 @@ contains
     call member_get_error(self, nodes=c_nodes, stat=stat, errmsg=errmsg)
     call take(c_nodes, nodes)
   end subroutine member_get_error_single_2
+
+  subroutine member_get_newton_single_1(self, iterations, left, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: iterations
+    real(c_float), intent(inout) :: left
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_left
+
+    allocate (c_left, source=untouched)
+    call member_get_newton(self, iterations=iterations, left=c_left, stat=stat, errmsg=errmsg)
+    call take(c_left, left)
+  end subroutine member_get_newton_single_1
 
   subroutine joint_set_frame_single_1(self, x, q, stat, errmsg)
     class(spar_joint), intent(inout) :: self

@@ -1247,6 +1247,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_error
 
+    function spar_member_get_newton(member, iterations, left) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: iterations
+      real(c_double), intent(inout), optional :: left
+      integer(c_int) :: status
+    end function spar_member_get_newton
+
     function spar_session_start(session, dt, solve, context, iterations) bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_ptr
       type(c_ptr), value :: session

@@ -56,6 +56,7 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
 static spar_session *on_all(void) {
     spar_session *s = NULL;
     OK(NULL, spar_session_create_mpi(MPI_COMM_WORLD, &s));
+    scene_strict(s);
     return s;
 }
 

@@ -30,9 +30,15 @@ static inline void scene_mass(double *M, double m, const double c[3], const doub
     }
 }
 
+/* Newton to its tolerance in every step: what is compared to rounding, or with a run that is asked otherwise */
+static inline void scene_strict(spar_session *s) {
+    OK(s, spar_session_set_option(s, "newton.stop", "strict"));
+}
+
 static inline spar_session *scene_session(void) {
     spar_session *s = NULL;
     OK(NULL, spar_session_create(&s));
+    scene_strict(s);
     return s;
 }
 

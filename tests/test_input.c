@@ -230,7 +230,8 @@ static void test_steps(void **state) {
 /* What is set is read: the defaults of spar.h, and all that setters have been given, also options as text. */
 static void test_read_back(void **state) {
     (void)state;
-    static const char *const option[][3] = {{"coupling.unconverged", "error", "accept"},
+    static const char *const option[][3] = {{"newton.stop", "tied", "strict"},
+                                            {"coupling.unconverged", "error", "accept"},
                                             {"coupling.patience", "3", "1000000"},
                                             {"coupling.norm", "motion", "loads"},
                                             {"fluid.added_mass", "acceleration", "velocity"},
@@ -254,7 +255,8 @@ static void test_read_back(void **state) {
     double rho, atol, rtol, omega, now[3];
     int substeps, most, order, scheme, on;
     char word[32];
-    spar_session *s = scene_session();
+    spar_session *s = NULL;
+    OK(NULL, spar_session_create(&s));
     OK(s, spar_session_get_integrator(s, &rho, &substeps));
     assert_true(rho == 0.9 && substeps == 1);
     OK(s, spar_session_get_newton(s, &atol, &rtol, &most));
@@ -268,6 +270,9 @@ static void test_read_back(void **state) {
     OK(s, spar_session_set_gravity(s, g));
     OK(s, spar_session_set_integrator(s, 0.25, 3));
     OK(s, spar_session_set_newton(s, 1e-3, 1e-4, 5));
+    OK(s, spar_session_get_option(s, "newton.stop", sizeof word, word));
+    assert_string_equal(word, "strict");
+    OK(s, spar_session_set_option(s, "newton.stop", "tied"));
     OK(s, spar_session_set_predictor(s, 2));
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_AITKEN, 1e-5, 1e-7, 9));
     OK(s, spar_session_set_relaxation(s, 0.3));

@@ -215,6 +215,7 @@ constants SPAR_PACE_RATIO=0 SPAR_PACE_NEXT_DT=1 SPAR_PACE_REJECT=2 SPAR_PACE_REJ
 call spar_session_get_pace int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
 call spar_step_within int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
 call spar_member_get_error int member|member|value| step|double|out| nodes|double|out|
+call spar_member_get_newton int member|member|value| iterations|int64_t|out| left|double|out|
 call spar_session_start int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_step_begin_start int session|session|value| dt|double|value|
 call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|

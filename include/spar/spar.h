@@ -196,8 +196,12 @@ SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
    SPAR_ERR_MEMORY: all is as before. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
-/* When Newton's iteration has converged: increments below atol + rtol times their scale (lengths by the member's,
-   rotations by 1).
+/* When Newton's iteration has converged: what is left of the increments, by the contraction that is seen, is below
+   atol + rtol times their scale (lengths by the member's, rotations by 1). In steps of exact and rigid members and of
+   those that joints tie that is so only after this call, or with the option newton.stop = strict: by default Newton
+   ends as soon as what it leaves does not count beside the error of the step and what the coupling is iterated to
+   (docs/accuracy.md), never before 1e-7 of the scale; strict is for comparisons to the last digits. Statics always take
+   these tolerances.
      atol, rtol: in, >= 0; defaults 1e-15, 1e-12
      max_iterations: in, >= 1, past which the answer is SPAR_ERR_NUMERIC; default 50 */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
@@ -240,6 +244,12 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
 SPAR_API int spar_session_set_threads(spar_session *session, int threads);
 SPAR_API int spar_session_get_threads(const spar_session *session, int *threads);
 /* All other settings, by name and text. key, value: in.
+     newton.stop            tied (default) | strict: where Newton's iteration of a step ends: tied, when what it leaves
+                            is a thousandth of the error of the step, by (E1) of docs/theory.md in the steps before, as
+                            a change of velocities that lasts, and a tenth of what the coupling is iterated to, by the
+                            motion; within 1e-7 and rtol of the increments. Strict at atol and rtol: the first step, at
+                            rest, without inertia. Strict: always there. spar_session_set_newton makes it strict.
+                            spar_member_get_newton tells what is left
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.patience      1 to 1000000, default 3: with coupling.unconverged = accept, so many steps on end that have
                             not converged are an error all the same; each is told to the log
@@ -1246,6 +1256,13 @@ SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_ste
            step, no solution)
    SPAR_ERR_STATE too in trials, statics and starts, and of the nodes within a step. */
 SPAR_API int spar_member_get_error(spar_member *member, double *step, double *nodes);
+
+/* What Newton's iteration of a member takes and leaves, as the rank that solves it knows (spar_member_get_owner); zeros
+   on the others, and of what is not solved by iteration. Each NULL: not wanted. Local.
+     iterations: out, so far, since it was committed or made anew
+     left: out, estimate of what the last solution in time left of the increments: of the member's length, or rad; of
+           members that joints tie the largest of all */
+SPAR_API int spar_member_get_newton(const spar_member *member, int64_t *iterations, double *left);
 
 /* The balanced start: accelerations at t = 0 of all members, and the fluid's loads there that answer to them. Places
    and velocities stay. A fluid that has an added mass gives loads by accelerations, and these follow from the loads:

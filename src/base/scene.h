@@ -54,7 +54,10 @@ struct spar_session {
     int substeps;
     double newton_atol, newton_rtol;
     int newton_max;
-    int predictor; /* its order; as many loads before those of t^n are kept */
+    int newton_strict;   /* option newton.stop = tied (default) | strict */
+    double newton_share; /* tied: of its acceleration, what Newton may leave in the solution under way for the
+                            coupling's sake; infinite: all */
+    int predictor;       /* its order; as many loads before those of t^n are kept */
     int scheme;
     double coupling_atol, coupling_rtol;
     int coupling_max;

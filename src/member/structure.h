@@ -98,13 +98,15 @@ struct spar_member {
     int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
     double step_error, speed;           /* where a tolerance is set: of the last step, m, and the largest so far, m/s */
-    void *solution;                     /* what its row keeps of it; NULL: nothing, or not here */
-    spari_assembly *assembly;           /* it is solved with others; NULL: alone */
-    spari_work *work;                   /* NULL: not asked for */
-    spari_added *added;   /* NULL: no guess of the added mass; else the loads above have lives of their own */
-    spari_means *means;   /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
-    spari_remake *advice; /* of spar_session_advise; NULL: none */
-    int away;             /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
+    double jerk, swing; /* option newton.stop = tied: by the length, the change of the acceleration in the last steps,
+                           1/s^3, and the acceleration, 1/s^2 (solve/leave.h); 0: not known */
+    void *solution;     /* what its row keeps of it; NULL: nothing, or not here */
+    spari_assembly *assembly; /* it is solved with others; NULL: alone */
+    spari_work *work;         /* NULL: not asked for */
+    spari_added *added;       /* NULL: no guess of the added mass; else the loads above have lives of their own */
+    spari_means *means;       /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
+    spari_remake *advice;     /* of spar_session_advise; NULL: none */
+    int away;                 /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
 };
 enum { SPARI_LOADS_AWAY = 1, SPARI_ALL_AWAY = 2 }; /* loads, and what is made of them; motion and joints as well */
 

@@ -57,6 +57,8 @@ int spari_coupling_weighs(const spar_session *session);
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
+/* Of its acceleration, what Newton may leave in the next solution for the coupling's sake; infinite: all. */
+double spari_coupling_share(const spar_session *session);
 /* After the loads have been exchanged: whether they agree with those used, as the tolerances have it; and the next
    loads to use, of a scheme that iterates. SPAR_ERR_NUMERIC: they are beyond numbers. */
 int spari_coupling_compare(spar_session *session, int *agreed);

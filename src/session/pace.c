@@ -3,82 +3,24 @@
 
 #include "../base/quiet.h"
 #include "../comm/comm.h"
-#include "../math/rotation.h"
-#include "../solve/fidelity.h"
-#include "../solve/scheme.h"
+#include "../solve/change.h"
 #include "own.h"
 
 #include <math.h>
 
 /* ---- the error of a step ---- */
 
-/* Velocity and acceleration of node i, of a driven root's member as seen from there, in its axes. */
-static void rates_from_root(const spar_member *m, const spari_motion *x, int64_t i, double v[6], double a[6]) {
-    memcpy(v, x->v + 6 * i, 6 * sizeof *v);
-    memcpy(a, x->a + 6 * i, 6 * sizeof *a);
-    if (m->root != SPAR_ROOT_DRIVEN) {
-        return;
-    }
-    const double *W = x->v + 3, *A = x->a + 3;
-    double d[3], c[3], w[3];
-    for (int k = 0; k < 3; k++) {
-        d[k] = m->xr[3 * i + k] + x->q[7 * i + k] - m->xr[k] - x->q[k];
-        v[k] -= x->v[k];
-        a[k] -= x->a[k];
-    }
-    spari_cross(W, d, c);
-    for (int k = 0; k < 3; k++) {
-        v[k] -= c[k];
-        w[k] = c[k] + 2 * v[k];
-    }
-    spari_cross(W, w, c);
-    spari_cross(A, d, w);
-    for (int k = 0; k < 3; k++) {
-        a[k] -= c[k] + w[k];
-    }
-    spari_rotate_back(x->q + 3, v, v);
-    spari_rotate_back(x->q + 3, a, a);
-}
-
-/* Whether the member's motion comes out of the scheme. */
-static int is_integrated(const spar_member *m) {
-    return m->row->solved && m->row->moves && (m->effects & SPAR_EFFECT_INERTIA) != 0;
-}
-
-/* Mean squares over the nodes, of one node its turns count as well, on arms of the member's length: of the change of
-   the acceleration over the step, and of the velocity at its end. */
-static void mean_squares(const spar_member *m, double *change, double *speed) {
-    double v[6], a[6], v0[6], a0[6], length = m->nodes == 1 ? spari_member_length(m) : 0;
-    *change = *speed = 0;
-    for (int64_t i = 0; i < m->nodes; i++) {
-        rates_from_root(m, &m->now, i, v0, a0);
-        rates_from_root(m, &m->after, i, v, a);
-        for (int k = 0; k < 6; k++) {
-            double weight = k < 3 ? 1 : length * length;
-            *change += weight * (a[k] - a0[k]) * (a[k] - a0[k]);
-            *speed += weight * v[k] * v[k];
-        }
-    }
-    *change /= (double)m->nodes;
-    *speed /= (double)m->nodes;
-}
-
-/* Accelerations at t = 0 are known only where a start has been balanced. */
-static int tells(const spar_session *s) {
-    return s->step > 0 || (s->members && s->members->begun);
-}
-
 /* The error, and the member's speed. (E1) */
 static double find_error(const spar_member *m, double *speed) {
-    double change, h = m->session->dt / m->session->substeps;
+    const spar_session *s = m->session;
     *speed = 0;
-    if (!is_integrated(m)) {
+    if (!spari_change_is(m)) {
         return 0;
     }
-    const spari_scheme c = spari_scheme_of(m, 0, h);
-    mean_squares(m, &change, speed);
-    *speed = sqrt(*speed);
-    return tells(m->session) ? fabs(c.beta + 0.5 * (c.alpha_m - c.alpha_f) - 1.0 / 6) * h * h * sqrt(change) : 0;
+    const spari_scheme c = spari_scheme_of(m, 0, s->dt / s->substeps);
+    const spari_change of = spari_change_of(m, 1);
+    *speed = of.speed;
+    return spari_change_tells(s) ? spari_change_error(&c, of.change) : 0;
 }
 
 double spari_pace_error(const spar_member *m) {
@@ -146,8 +88,8 @@ void spari_pace_accept(spar_session *s) {
         ratio = fmax(ratio, judge_member(m, &m->step_error, &speed));
         m->speed = speed;
     }
-    p->next = tells(s) ? next_dt(s, ratio) : s->dt;
-    p->ratio = tells(s) ? fade(p, ratio) : 0;
+    p->next = spari_change_tells(s) ? next_dt(s, ratio) : s->dt;
+    p->ratio = spari_change_tells(s) ? fade(p, ratio) : 0;
     p->last = ratio;
     p->cut = 0;
 }
@@ -179,9 +121,9 @@ int spar_session_get_pace(const spar_session *session, int64_t capacity, double 
     double ratio = judged ? spari_pace_judge(s) : p->last;
     const double all[SPAR_PACE_COUNT] = {
         [SPAR_PACE_RATIO] = ratio,
-        [SPAR_PACE_NEXT_DT] = !judged    ? p->next
-                              : tells(s) ? next_dt(s, ratio)
-                                         : s->dt,
+        [SPAR_PACE_NEXT_DT] = !judged                 ? p->next
+                              : spari_change_tells(s) ? next_dt(s, ratio)
+                                                      : s->dt,
         [SPAR_PACE_REJECT] = judged && ratio > 1,
         [SPAR_PACE_REJECTED] = (double)p->rejected,
     };

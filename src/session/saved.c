@@ -206,6 +206,8 @@ static void pass_member(passage *t, spar_member *m) {
     pass(t, &m->dissipated_step, 1);
     pass_numbers(t, &m->step_error, 1);
     pass_numbers(t, &m->speed, 1);
+    pass_numbers(t, &m->jerk, 1);
+    pass_numbers(t, &m->swing, 1);
     pass_int(t, &m->motion_given);
     pass_int(t, &m->drive_given);
     if (m->added) {

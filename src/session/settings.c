@@ -80,6 +80,7 @@ static const spari_setting settings[] = {
     REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE),
     WHOLE(GOAL, "goal", "goals", goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
           SPARI_ALIKE),
+    OPTION_WORD("newton.stop", newton_strict, "tied", "strict", SPARI_ALIKE | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_ALIKE),
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_ALIKE),
@@ -266,7 +267,9 @@ int spar_session_get_integrator(const spar_session *session, double *rho_inf, in
 }
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
-    return set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations});
+    SPARI_TRY(set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations}));
+    session->newton_strict = 1;
+    return SPAR_OK;
 }
 
 int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations) {

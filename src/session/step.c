@@ -213,6 +213,7 @@ int spar_step_solve(spar_session *session) {
     if (s->standing) {
         return spari_start_solve(s, __func__);
     }
+    s->newton_share = spari_coupling_share(s);
     status = spari_threads_solve(s);
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;

@@ -7,6 +7,7 @@
 #include "../member/applied.h"
 #include "alpha_nodes.h"
 #include "leap.h"
+#include "leave.h"
 #include "newton.h"
 #include "root.h"
 #include "solver.h"
@@ -352,16 +353,21 @@ double spari_alpha_size(const spari_solver *s, double *x) {
    new ones contract no better than old ones the mean never falls so far. */
 enum { PATIENCE = 5, PRICE = 10 };
 
+/* Where Newton ends earlier (leave.h) a solution takes fewer; for a coupling's sake it ends later than without. */
+static int patience(const spar_session *s) {
+    return s->newton_strict ? PATIENCE : isfinite(s->newton_share) ? PATIENCE - 1 : PATIENCE - 2;
+}
+
 /* Whether the tangent is kept after a solution of so many iterations; fresh: it was formed in it. */
-static int serves_on(spari_solver *s, int iterations, int fresh) {
+static int serves_on(spari_solver *s, int most, int iterations, int fresh) {
     if (fresh) { /* of the iterations the first few may have been without it */
         s->served = 1;
-        s->spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
+        s->spent = PRICE + (iterations < most ? iterations : most);
         return 1;
     }
     s->served++;
     s->spent += iterations;
-    return iterations <= PATIENCE || iterations * s->served <= s->spent;
+    return iterations <= most || iterations * s->served <= s->spent;
 }
 
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
@@ -408,7 +414,6 @@ static int begin_alone(void *self, int kept) {
 static const char *iterate_alone(void *self, double longest, spari_iterate *it) {
     const alpha_step *t = self;
     spari_solver *s = t->s;
-    const spar_session *session = t->member->session;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
     const double *q = t->e->seen.q;
     double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
@@ -430,7 +435,7 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
         correct_turned(s, t->member, t->c, t->e, s->body->linear[0] ? NULL : s->turn, longest, t->x, s->dx);
     s->newton++;
     it->correction = size.by;
-    it->tolerance = session->newton_atol + session->newton_rtol * (size.way + t->e->carried);
+    it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
     return NULL;
@@ -444,7 +449,7 @@ static void renew_alone(void *self) {
 static void end_alone(void *self, int iterations, int fresh) {
     const alpha_step *t = self;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    t->s->factored = t->s->factored && serves_on(t->s, iterations, fresh);
+    t->s->factored = t->s->factored && serves_on(t->s, patience(t->member->session), iterations, fresh);
     if (!t->s->factored || t->s->h_leapt > 0) { /* for an answer (spari_solver_answer): what leaps take the room for */
         spari_alpha_operators(t->s, t->c, t->e, t->x);
     }
@@ -452,11 +457,12 @@ static void end_alone(void *self, int iterations, int fresh) {
 
 /* The state at the end of a substep. */
 static int newton(const alpha_step *t) {
-    static const spari_newton how = {INFINITY, guess_alone, begin_alone, iterate_alone, renew_alone, end_alone};
+    static const spari_newton how = {INFINITY, 1e-6, guess_alone, begin_alone, iterate_alone, renew_alone, end_alone};
     const spar_session *session = t->member->session;
     alpha_step step = *t;
     int iterations = 0;
-    const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max, &iterations);
+    const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max,
+                                           spari_leave_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
                   "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
                   "or look at the loads",

@@ -4,6 +4,7 @@
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "fidelity.h"
+#include "leave.h"
 #include "newton.h"
 #include "tied.h"
 
@@ -74,7 +75,8 @@ static void correct_loads(spari_assembly *a, double cut) {
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
     for (int i = 0; i < a->limbs; i++) {
-        largest = fmax(largest, a->limb[i].row->change(a->limb + i));
+        a->limb[i].change = a->limb[i].row->change(a->limb + i);
+        largest = fmax(largest, a->limb[i].change);
     }
     double cut = largest > longest ? longest / largest : 1;
     for (int i = 0; i < a->limbs; i++) {
@@ -110,13 +112,23 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
     return 0;
 }
 
-static double tolerance(const spari_assembly *a) {
+/* What of a correction as large as `largest` may be left: strict by the largest way of all parts. A part is asked for
+   no more than a tenth of what the one that errs most is, to whose motion it is tied. */
+static double tolerance(const spari_assembly *a, double largest) {
     const spar_session *s = a->session;
-    double size = 0;
+    double size = 0, most = 0, worst = 0;
     for (int i = 0; i < a->limbs; i++) {
-        size = fmax(size, a->limb[i].row->way(a->limb + i));
+        spari_limb *p = a->limb + i;
+        double way = p->row->way(p);
+        p->leave = s->newton_strict ? 0 : spari_leave(p->member, &p->scheme, way);
+        size = fmax(size, way);
+        most = fmax(most, p->leave);
     }
-    return s->newton_atol + s->newton_rtol * size;
+    for (int i = 0; i < a->limbs && !s->newton_strict; i++) {
+        worst = fmax(worst, a->limb[i].change / fmax(a->limb[i].leave, 0.1 * most));
+    }
+    double strict = s->newton_atol + s->newton_rtol * size;
+    return worst > 0 ? fmax(strict, largest / worst) : strict;
 }
 
 static int kept_serves(const spari_assembly *a) {
@@ -189,7 +201,7 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
     }
     a->moved += it->correction;
     a->standing = a->standing && a->moved < near_tied;
-    it->tolerance = tolerance(a);
+    it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
     it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
     return NULL;
@@ -233,11 +245,16 @@ static int project(spari_assembly *a, double s, double dt) {
     return 0;
 }
 
+/* A line that goes taut or slack in a step shows it by its second correction: a contraction below counts as this. */
+#define LEAST_RATE 0.02
+
 /* NULL, or what went wrong in the last attempt. A far correction may lead to another way of closing a loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST, guess_tied, begin_tied, iterate_tied, renew_tied, end_tied};
+    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_tied, begin_tied,
+                                     iterate_tied,  renew_tied, end_tied};
     tied_step step = {a, s, dt, 0};
-    return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max, iterations);
+    return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max,
+                              spari_leave_begin(a->session, &a->trace), iterations);
 }
 
 /* Where the last solution has led to. */
@@ -248,7 +265,8 @@ static int guess_onward(void *self, spari_guess stays) {
 
 /* Driven joints that jump, in so many parts of their way: from the place of before each from where the last has led. */
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST, guess_onward, begin_tied, iterate_tied, renew_tied, end_tied};
+    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_onward, begin_tied,
+                                     iterate_tied,  renew_tied, end_tied};
     tied_step step = {a, s, dt, 0};
     const char *wrong = NULL;
     (void)predict(a, SPARI_KEEP_PLACE);
@@ -259,7 +277,8 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
                 l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
             }
         }
-        wrong = spari_newton_solve(&how, &step, 0, a->session->newton_max, iterations);
+        a->trace.rate = 0;
+        wrong = spari_newton_solve(&how, &step, 0, a->session->newton_max, &a->trace, iterations);
     }
     return wrong;
 }

@@ -53,6 +53,8 @@ int spari_assembly_balance(spari_assembly *assembly, double dt);
 int spari_assembly_answer(spari_assembly *assembly, int64_t count, int64_t apart, double *stacked);
 /* And what a unit of force would add to the way of its mass if nothing else held that, m/N; 0: without inertia. */
 double spari_assembly_answer_of_mass(const spari_assembly *assembly);
+/* What Newton's last solution has left of the motion, by estimate. */
+double spari_assembly_left(const spari_assembly *assembly);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
    [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */

@@ -41,9 +41,13 @@ void spari_assembly_unpack(spari_assembly *a, const double *from) {
     }
 }
 
+double spari_assembly_left(const spari_assembly *a) {
+    return a->trace.left;
+}
+
 /* ---- save and load ---- */
 
-enum { KEPT_HEAD = 2, TURNING = 144 };
+enum { KEPT_HEAD = 4, TURNING = 144 };
 
 /* Of a factored system: what remains of the members at the joints' nodes, and of the loads' turning. */
 static int64_t kept_size(const spari_assembly *a) {
@@ -61,6 +65,8 @@ int64_t spari_assembly_state_size(const spari_assembly *a) {
 void spari_assembly_save(const spari_assembly *a, double *state) {
     state[0] = a->factored;
     state[1] = a->limbs;
+    state[2] = a->trace.rate;
+    state[3] = a->trace.left;
     state += KEPT_HEAD;
     for (int i = 0; i < a->limbs && a->factored; i++) {
         spari_condensed_save(a->limb[i].condensed, state);
@@ -73,11 +79,13 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
     return count >= KEPT_HEAD && state[1] == a->limbs && state[0] >= 0 && state[0] < INT_MAX &&
-           state[0] == floor(state[0]) && count == (state[0] == 0 ? KEPT_HEAD : kept_size(a));
+           state[0] == floor(state[0]) && spari_trace_is(state + 2) &&
+           count == (state[0] == 0 ? KEPT_HEAD : kept_size(a));
 }
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored = state ? (int)state[0] : 0;
+    a->trace = (spari_trace){state ? state[2] : 0, state ? state[3] : 0};
     a->solved = 0;
     state = state ? state + KEPT_HEAD : NULL;
     for (int i = 0; i < a->limbs && a->factored; i++) {

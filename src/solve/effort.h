@@ -8,6 +8,7 @@ typedef struct spari_effort {
     int64_t iterations, tangents;     /* since the member was made: of Newton, and formed and factored */
     int nodes, elements, per_element; /* what each of them was of */
     int points;                       /* quadrature points that an iteration goes through; 0: it takes matrices */
+    double left;                      /* of the motion by Newton, in the last solution */
     int unknowns, band;               /* of the linear system, and how many of them a row couples at most */
 } spari_effort;
 

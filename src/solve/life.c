@@ -13,6 +13,7 @@
 #include "../member/learned.h"
 #include "../member/means.h"
 #include "fidelity.h"
+#include "leave.h"
 #include "work.h"
 
 #include <stdlib.h>
@@ -77,6 +78,7 @@ static void forget_begun(spar_member *m) {
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
+    m->jerk = m->swing = 0;
     spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
@@ -131,6 +133,7 @@ void spari_member_accept(spar_member *m) {
     if (m->means) {
         spari_means_accept(m);
     }
+    spari_leave_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     m->drive[0] = m->drive[1];

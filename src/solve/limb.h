@@ -102,6 +102,7 @@ typedef struct spari_limb {
     spari_ends ends;
     spari_pose root, before; /* a driven root at the substep's ends */
     double turn[4], power;
+    double change, leave;    /* of the correction under way: its size, and what may be left of it */
     int moved, owner_before; /* while it is made: the rank that had it, and what that kept of it */
     void *solution_before;
 } spari_limb;

@@ -18,6 +18,7 @@ typedef struct spari_iterate {
 
 typedef struct spari_newton {
     double farthest; /* a larger correction leads elsewhere */
+    double least;    /* a contraction that is kept for the next solution counts as no less */
     /* Starting values; 0: there are none of that kind. */
     int (*predict)(void *self, spari_guess stays);
     /* An attempt begins, with the tangent kept if it may; whether there is one. */
@@ -41,11 +42,18 @@ typedef struct spari_attempt {
 #define SPARI_SLOW 0.5
 #define SPARI_LONGEST 0.5
 
+/* Where a solution ends before it shows a contraction, the one kept from those before is trusted less. */
+#define SPARI_AGEING 1.5
+
+static inline double spari_newton_kept(const spari_newton *how, double rate) {
+    return rate <= 0 ? 0 : rate < how->least ? how->least : rate < SPARI_SLOW ? rate : SPARI_SLOW;
+}
+
 /* theta is the observed contraction, theta / (1 - theta) times the last correction what is left (Hairer & Wanner,
    Solving ODEs II, IV.8). NULL, or what went wrong. */
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
-                                               int *iterations) {
-    double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY;
+                                               spari_trace *trace, int *iterations) {
+    double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY, known = try.full ? 0 : trace->rate, worst = 0;
     int fresh = !how->begin(self, try.kept);
     for (int it = 1; it <= most; it++, ++*iterations) {
         spari_iterate n;
@@ -55,7 +63,11 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
         }
         double theta = last > 0 ? n.correction / last : 0;
         double left = last > 0 && theta < 1 && !try.full ? theta / (1 - theta) * n.correction : n.correction;
+        left = last > 0 ? left : left * (known > 0 ? known / (1 - known) : 1);
+        worst = theta > worst ? theta : worst;
         if (left <= n.tolerance || n.rounded || (theta > 0.5 && n.small)) {
+            trace->left = left;
+            trace->rate = n.rounded ? trace->rate : spari_newton_kept(how, last > 0 ? worst : SPARI_AGEING * known);
             how->end(self, it, fresh);
             return NULL;
         }
@@ -65,14 +77,17 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
         if (try.full || theta > SPARI_SLOW) {
             how->renew(self);
             fresh = 1;
+            worst = 0;
         }
         last = n.correction;
     }
     return "does not converge";
 }
 
-/* kept: there is a tangent that may serve. NULL, or what went wrong in the last attempt. */
-static inline const char *spari_newton_solve(const spari_newton *how, void *self, int kept, int most, int *iterations) {
+/* kept: there is a tangent that may serve. trace: of the last solution; the first iteration goes by its rate. NULL, or
+ * what went wrong in the last attempt. */
+static inline const char *spari_newton_solve(const spari_newton *how, void *self, int kept, int most,
+                                             spari_trace *trace, int *iterations) {
     static const spari_attempt attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 1, SPARI_KEEP_SHAPE},
@@ -83,7 +98,7 @@ static inline const char *spari_newton_solve(const spari_newton *how, void *self
         if (!how->predict(self, attempts[k].stays)) {
             continue;
         }
-        wrong = spari_newton_attempt(how, self, attempts[k], most, iterations);
+        wrong = spari_newton_attempt(how, self, attempts[k], most, trace, iterations);
         if (!wrong) {
             return NULL;
         }

@@ -14,6 +14,8 @@
 #include "../member/structure.h"
 #include "linear.h"
 
+#include <float.h>
+
 typedef struct spari_scheme {
     double h, alpha_m, alpha_f, beta, gamma;
     double cm, cv,
@@ -21,6 +23,16 @@ typedef struct spari_scheme {
     double rate; /* d v / d x in any case */
     int still;   /* no inertia: equilibrium at each time, rates from the increments */
 } spari_scheme;
+
+/* What Newton's iteration has shown in the last solution: its contraction (0: not known), and by it what is left of the
+   motion: of the member's length, rad. */
+typedef struct spari_trace {
+    double rate, left;
+} spari_trace;
+/* Whether two numbers of a file can be that. */
+static inline int spari_trace_is(const double *x) {
+    return x[0] >= 0 && x[0] < 1 && x[1] >= 0 && x[1] <= DBL_MAX;
+}
 
 /* Where a member's steps stand, and its loads [unique][6] within one. */
 typedef struct spari_steps {

@@ -156,6 +156,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
     const spari_body *b = s->body;
     *e = (spari_effort){.iterations = s->newton,
                         .tangents = s->factors,
+                        .left = s->trace.left,
                         .nodes = b->unique,
                         .elements = b->elements,
                         .per_element = b->per_element,
@@ -165,7 +166,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
 }
 
 /* Of a node: 25 doubles at either end of the step, 4 of the kept turn, 6 of the leap. */
-enum { STATE_HEAD = 14, STATE_NODE = 60 };
+enum { STATE_HEAD = 16, STATE_NODE = 60 };
 
 int64_t spari_solver_state_size(const spari_solver *s) {
     return STATE_HEAD + STATE_NODE * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
@@ -185,7 +186,9 @@ void spari_solver_save(const spari_solver *s, double *state) {
                                      s->power_begin,
                                      s->h_leapt,
                                      (double)s->served,
-                                     (double)s->spent};
+                                     (double)s->spent,
+                                     s->trace.rate,
+                                     s->trace.left};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
@@ -200,7 +203,7 @@ void spari_solver_save(const spari_solver *s, double *state) {
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
     int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n, size = spari_linear_state_size(s->linear);
     if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8]) ||
-        !spari_is_count(state[12]) || !spari_is_count(state[13])) {
+        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14)) {
         return 0;
     }
     return state[1] == 0 ? count == own : count == own + size && spari_linear_is_state(s->linear, state + own);
@@ -216,6 +219,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->power = state[9], s->power_begin = state[10];
     s->h_leapt = state[11];
     s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
+    s->trace.rate = state[14], s->trace.left = state[15];
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
     memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);

@@ -44,6 +44,7 @@ struct spari_solver {
     double *turn;              /* [n][4] their turn since */
     int64_t served, spent;     /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
+    spari_trace trace;         /* of Newton; strict it forgets the rate */
     int64_t newton, factors;   /* totals: iterations, factorisations */
 };
 

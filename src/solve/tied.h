@@ -29,12 +29,13 @@ struct spari_assembly {
     spari_link *link; /* on every rank; what follows is the owner's */
     double mass;      /* of the parts */
     int n;
-    int solved;       /* the parts and links stand at the end of a step */
-    int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
-    int violent;      /* velocities are held within the step's equations */
-    int standing;     /* the system below is factored, for the tangents there are and this cv, */
-    double cv, moved; /* and the parts' way since; only within a solution */
-    double scale;     /* of the constraints' rows */
+    int solved;        /* the parts and links stand at the end of a step */
+    spari_trace trace; /* of Newton; strict it forgets the rate */
+    int factored;      /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
+    int violent;       /* velocities are held within the step's equations */
+    int standing;      /* the system below is factored, for the tangents there are and this cv, */
+    double cv, moved;  /* and the parts' way since; only within a solution */
+    double scale;      /* of the constraints' rows */
     spari_linear *linear;
     double *entry; /* (i, j) of its matrix is entry[i + step j] */
     int64_t step;

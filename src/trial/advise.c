@@ -504,6 +504,7 @@ static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
 static int looser_newton(const spari_advisor *d, spari_plan *p, int g) {
     (void)d, (void)g;
     p->newton *= 1e3;
+    p->strict = 1;
     return p->newton <= spari_rule.loosest_newton;
 }
 

@@ -59,7 +59,7 @@ spari_plan spari_plan_present(const spari_advisor *d) {
     memset(&p, 0, sizeof p);
     p.steps = d->run.steps;
     p.substeps = s->substeps, p.scheme = s->scheme, p.predictor = s->predictor;
-    p.rtol = s->coupling_rtol, p.newton = s->newton_rtol;
+    p.rtol = s->coupling_rtol, p.newton = s->newton_rtol, p.strict = s->newton_strict;
     for (int g = 0; g < d->groups; g++) {
         const spar_member *m = spari_plan_member(d, g);
         p.group[g].nodes = m->per_element;
@@ -75,6 +75,7 @@ void spari_plan_settings(const spari_plan *p, double *values) {
     SPARI_VARY(values, predictor, p->predictor);
     SPARI_VARY(values, coupling_rtol, p->rtol);
     SPARI_VARY(values, newton_rtol, p->newton);
+    SPARI_VARY(values, newton_strict, p->strict);
 }
 
 int64_t spari_plan_steps(const spari_advisor *d, int j) {
@@ -162,7 +163,8 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
     if (scheme->iterates) {
         at += snprintf(text + at, size - (size_t)at, " %.0e", p->rtol);
     }
-    at += snprintf(text + at, size - (size_t)at, ", predictor %d, Newton %.0e", p->predictor, p->newton);
+    at += snprintf(text + at, size - (size_t)at, ", predictor %d, Newton ", p->predictor);
+    at += snprintf(text + at, size - (size_t)at, p->strict ? "%.0e" : "tied", p->newton);
     for (int g = 0; g < d->groups && (size_t)at + 80 < size; g++) {
         const spari_shape *b = &p->group[g];
         at += snprintf(text + at, size - (size_t)at, ", %s", spari_fidelity_name(b->fidelity));
@@ -338,6 +340,7 @@ static spari_plan reference_plan(const spari_advisor *d, const spari_plan *prese
     const spar_session *s = d->session;
     spari_plan p = *present;
     p.newton = fmax(spari_rule.reference_newton * d->tolerance, 1e-12);
+    p.strict = 1;
     p.substeps = 1;
     p.predictor = 1;
     if (!s->keep_coupling) {
@@ -657,6 +660,7 @@ static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const
     q.steps = 2 * p->steps;
     q.predictor = 1;
     q.newton = fmin(q.newton, spari_rule.stays_newton);
+    q.strict = 1;
     if (!d->session->keep_coupling) {
         q.scheme = SPAR_COUPLING_IQN_ILS;
         q.rtol = spari_rule.stays_rtol;

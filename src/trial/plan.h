@@ -26,8 +26,8 @@ typedef struct spari_shape {
 
 /* What a run is made with. Compared byte by byte: made by copies of one that began with zeros. */
 typedef struct spari_plan {
-    int64_t steps; /* of the time that the host asked for */
-    int substeps, scheme, predictor, unused;
+    int64_t steps;                           /* of the time that the host asked for */
+    int substeps, scheme, predictor, strict; /* strict: Newton ends at its rtol and nowhere before */
     double rtol, newton;
     spari_shape group[SPARI_GROUPS];
 } spari_plan;

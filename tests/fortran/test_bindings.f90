@@ -36,6 +36,7 @@ program test_bindings
   call refused(spar_session_get_tolerance(none), 'spar_session_get_tolerance')
   call refused(spar_session_get_pace(none, 0_c_int64_t), 'spar_session_get_pace')
   call refused(spar_member_get_error(none), 'spar_member_get_error')
+  call refused(spar_member_get_newton(none), 'spar_member_get_newton')
   call refused(spar_session_set_option(none), 'spar_session_set_option')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
   call refused(spar_session_get_phase(none), 'spar_session_get_phase')

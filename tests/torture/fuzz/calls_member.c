@@ -481,6 +481,13 @@ void do_spar_member_get_error(call *c) {
     RUN(c, spar_member_get_error(m->m, step, nodes));
 }
 
+void do_spar_member_get_newton(call *c) {
+    live_member *m = arg_member(c, -1);
+    int64_t *iterations = arg_out(c, (int64_t)sizeof *iterations, 1);
+    double *left = OUT_OR_NULL(c, 1);
+    RUN(c, spar_member_get_newton(m->m, iterations, left));
+}
+
 void do_spar_member_get_work(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = arg_count(c, 0, SPAR_WORK_COUNT + 2);

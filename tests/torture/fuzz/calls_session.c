@@ -230,7 +230,8 @@ void do_spar_session_set_option(call *c) {
                                        "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
                                        "coupling.motion_rtol", "coupling.target", "advise.fluid_cost",
                                        "advise.limit",         "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass"};
+                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass",
+                                       "newton.stop"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -252,7 +253,8 @@ void do_spar_session_set_option(call *c) {
                                             {"off", "on", "on"},
                                             {"all", "touched", "touched"},
 
-                                            {"acceleration", "velocity", "velocity"}};
+                                            {"acceleration", "velocity", "velocity"},
+                                            {"tied", "strict", "tied"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);

@@ -67,6 +67,7 @@ enum {
     CALL(spar_member_get_effects, 20, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_fidelity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_owner, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_member_get_newton, 20, FUZZ_PURE)                                                                        \
     CALL(spar_beam_get_elements, 20, FUZZ_PURE)                                                                        \
     CALL(spar_beam_get_quadrature, 20, FUZZ_PURE)                                                                      \
     CALL(spar_beam_get_damping, 20, FUZZ_PURE)                                                                         \

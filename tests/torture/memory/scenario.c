@@ -260,7 +260,8 @@ static void go(host *h, int steps) {
 
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
-    static const char *const option[][2] = {{"coupling.unconverged", "accept"},
+    static const char *const option[][2] = {{"newton.stop", "tied"},
+                                            {"coupling.unconverged", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},
                                             {"fluid.added_mass", "velocity"},
@@ -381,7 +382,8 @@ static void act_step(void) {
     double load[6] = {0, 1, 2, 0, 0.1, 0}, along[2][6] = {{0, 0, 1}, {0, 0.5}}, work[3], t, residual[64], size[64],
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
-    double pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6}, tension[12] = {1, 0, 0, 0, 0, 0, 2};
+    int64_t taken;
+    double left, pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6}, tension[12] = {1, 0, 0, 0, 0, 0, 2};
     int64_t step, node;
     int done = 0, iteration;
     spar_member *owner;
@@ -430,6 +432,7 @@ static void act_step(void) {
     NOTE(report);
     CALL(spar_session_get_pace, s, SPAR_PACE_COUNT, pace);
     CALL(spar_member_get_error, b, pace, pace + 1);
+    CALL(spar_member_get_newton, b, &taken, &left);
     NOTE(pace);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);

@@ -1,0 +1,66 @@
+/* How a step changes a member's acceleration: see change.h. */
+#include "change.h"
+
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "fidelity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Velocity and acceleration of node i, of a driven root's member as seen from there, in its axes. */
+static void rates_from_root(const spar_member *m, const spari_motion *x, int64_t i, double v[6], double a[6]) {
+    memcpy(v, x->v + 6 * i, 6 * sizeof *v);
+    memcpy(a, x->a + 6 * i, 6 * sizeof *a);
+    if (m->root != SPAR_ROOT_DRIVEN) {
+        return;
+    }
+    const double *W = x->v + 3, *A = x->a + 3;
+    double d[3], c[3], w[3];
+    for (int k = 0; k < 3; k++) {
+        d[k] = m->xr[3 * i + k] + x->q[7 * i + k] - m->xr[k] - x->q[k];
+        v[k] -= x->v[k];
+        a[k] -= x->a[k];
+    }
+    spari_cross(W, d, c);
+    for (int k = 0; k < 3; k++) {
+        v[k] -= c[k];
+        w[k] = c[k] + 2 * v[k];
+    }
+    spari_cross(W, w, c);
+    spari_cross(A, d, w);
+    for (int k = 0; k < 3; k++) {
+        a[k] -= c[k] + w[k];
+    }
+    spari_rotate_back(x->q + 3, v, v);
+    spari_rotate_back(x->q + 3, a, a);
+}
+
+int spari_change_is(const spar_member *m) {
+    return m->row->solved && m->row->moves && (m->effects & SPAR_EFFECT_INERTIA) != 0;
+}
+
+spari_change spari_change_of(const spar_member *m, int64_t stride) {
+    double v[6], a[6], v0[6], a0[6], length = m->nodes == 1 ? spari_member_length(m) : 0;
+    double change = 0, acceleration = 0, speed = 0, nodes = 0;
+    for (int64_t i = 0; i < m->nodes; i += stride) {
+        rates_from_root(m, &m->now, i, v0, a0);
+        rates_from_root(m, &m->after, i, v, a);
+        nodes += 1;
+        for (int k = 0; k < 6; k++) {
+            double weight = k < 3 ? 1 : length * length;
+            change += weight * (a[k] - a0[k]) * (a[k] - a0[k]);
+            acceleration += weight * a[k] * a[k];
+            speed += weight * v[k] * v[k];
+        }
+    }
+    return (spari_change){sqrt(change / nodes), sqrt(acceleration / nodes), sqrt(speed / nodes)};
+}
+
+int spari_change_tells(const spar_session *s) {
+    return s->step > 0 || (s->members && s->members->begun);
+}
+
+double spari_change_error(const spari_scheme *c, double change) {
+    return fabs(c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6) * c->h * c->h * change;
+}
