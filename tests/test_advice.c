@@ -102,10 +102,17 @@ static void test_weight_of_a_fluid(void **state) {
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         NEAR(spari_cost_solution(s, nodes, 7 * rows[k].times * each, 7), rows[k].counts * nodes, 0.5);
     }
+    for (int k = 0; k < 24; k++) { /* within a factor of two of 30 and of 27000 it is said that it may be either */
+        double times = 2.1 * pow(2, k), near = fabs(log(times / 30)), next = fabs(log(times / 27000));
+        int wavers = spari_cost_wavers(s, nodes, 7 * times * each, 7);
+        assert_int_equal(wavers, near < log(2) || next < log(2) || fabs(log(times / 2.43e7)) < log(2));
+    }
+    assert_int_equal(spari_cost_wavers(s, nodes, 0, 0), 0);
     NEAR(spari_cost_solution(s, nodes, 0, 0), nodes, 0);
     NEAR(spari_cost_solution(s, 0, 0, 0), spari_rule.price.fluid, 0); /* no nodes: not for nothing */
     OK(s, spar_session_set_option(s, "advise.fluid_cost", "2.5e-6"));
     NEAR(spari_cost_solution(s, nodes, 1e9, 7), 2.5e-6 * second, 0.5);
+    assert_int_equal(spari_cost_wavers(s, nodes, 7 * 30 * each, 7), 0); /* what the host says does not waver */
     assert_int_equal(spar_session_set_option(s, "advise.fluid_cost", "-1"), SPAR_ERR_ARGUMENT);
     spar_session_destroy(&s);
 }

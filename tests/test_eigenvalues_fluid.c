@@ -465,6 +465,63 @@ static void test_back(void **state) {
     assert_memory_equal(q[0], q[1], sizeof q[0]);
 }
 
+/* What a progress call hears. */
+typedef struct hearing {
+    const section *c;
+    int calls, stop, solved; /* answers 5 in this call, from 1; 0: in none. solved: solutions of the fluid before it */
+    double expected;
+} hearing;
+
+static int hear(spar_session *s, double done, double expected, void *context) {
+    hearing *h = context;
+    (void)s;
+    assert_true(done == h->calls && expected > done);
+    h->expected = expected;
+    h->solved = h->c->calls;
+    return ++h->calls == h->stop ? 5 : 0;
+}
+
+/* The host hears of each trial ahead of it: two of each mode with a memory, six without. Stopped at each of them the
+   call answers SPAR_ERR_USER, nothing comes out, what is saved is the same to the bit, and it is asked again to the
+   same values. */
+static void test_progress(void **state) {
+    (void)state;
+    for (int memory = 0; memory <= 5; memory += 5) {
+        section c;
+        double value[2][4] = {{0}};
+        int trials = (memory ? 2 : 6) * 6;
+        hearing h = {.c = &c};
+        spar_session *s = section_scene(&c, 1, memory > 0);
+        OK(s, spar_step(s, 0.1, blow, &c, NULL));
+        int64_t n = saved(s, before_bytes, sizeof before_bytes);
+        OK(s, spar_session_set_progress(s, hear, &h));
+        c.calls = 0;
+        for (int stop = 1; stop <= trials + 1; stop++) {
+            double *out = value[stop > trials ? 0 : 1];
+            int before = c.calls;
+            h = (hearing){.c = &c, .stop = stop};
+            out[0] = 77;
+            if (stop > trials) {
+                OK(s,
+                   spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
+                break;
+            }
+            REFUSED(s, SPAR_ERR_USER,
+                    "spar_session_solve_eigenvalues: the host has stopped it: its progress call returned 5",
+                    spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
+            assert_true(h.calls == stop && h.expected == trials && out[0] == 77);
+            assert_true(h.solved == c.calls && (stop > 1 || c.calls == before));
+            unchanged(s, n);
+        }
+        assert_int_equal(h.calls, trials);
+        OK(s, spar_session_set_progress(s, NULL, NULL));
+        OK(s, spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, value[1], 0, NULL, NULL));
+        assert_memory_equal(value[0], value[1], sizeof value[0]);
+        assert_int_equal(h.calls, trials);
+        spar_session_destroy(&s);
+    }
+}
+
 static int solve_within(spar_session *s, double t, double dt, int iteration, void *context) {
     double value[2];
     REFUSED(s, SPAR_ERR_STATE, "under way",
@@ -539,9 +596,9 @@ static void test_noise(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_section),  cmocka_unit_test(test_memory),  cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_follower), cmocka_unit_test(test_turning), cmocka_unit_test(test_tied),
-        cmocka_unit_test(test_spinning), cmocka_unit_test(test_disc),    cmocka_unit_test(test_back),
-        cmocka_unit_test(test_refusals), cmocka_unit_test(test_noise)};
+        cmocka_unit_test(test_section),  cmocka_unit_test(test_memory),   cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_follower), cmocka_unit_test(test_turning),  cmocka_unit_test(test_tied),
+        cmocka_unit_test(test_spinning), cmocka_unit_test(test_disc),     cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_back),     cmocka_unit_test(test_refusals), cmocka_unit_test(test_noise)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1353,11 +1353,12 @@ enum {
     SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
     SPAR_TRY_COUNT = 5
 };
-/* How far a call that makes many trials is (spar_session_advise, spar_session_report_effects): called before each of
-   its runs, between which the session is as it was. It may read the session, and changes nothing of it. Answer 0 to go
-   on; anything else ends the call: SPAR_ERR_USER, and all is as it was.
+/* How far a call that makes many trials is (spar_session_advise, spar_session_report_effects,
+   spar_session_solve_eigenvalues): called before each of its runs, between which the session is as it was. It may read
+   the session, and changes nothing of it. Answer 0 to go on; anything else ends the call: SPAR_ERR_USER, and all is as
+   it was.
      done: what has been run so far, from 0, in trials with the session as it is: of advice counted, as
-           SPAR_ADVICE_WORK, or runs where the session as it is fails; of effects runs
+           SPAR_ADVICE_WORK, or runs where the session as it is fails; of effects and eigenvalues runs
      expected: what it will come to, at first by what such calls have come to, later by what the runs show; never below
            done, nor, unless done is, above the option advise.limit */
 typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
@@ -1513,7 +1514,8 @@ enum {
      advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
    Beams of one make (all that is described but name, placement and initial velocity) get one advice. Costs are counted
    (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the same scene gets
-   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost. No trial is made
+   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost (unsaid its time, in
+   classes; SPAR_LOG_WARNING where that is near to a border of two). No trial is made
    that could not save, in a run of SPAR_ADVICE_SAVES' length, what it costs; but for those that show what keeps the
    tolerance. Where the session as it is keeps it and nothing cheaper pays, it is what is advised. What is kept as it
    is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is

@@ -37,6 +37,7 @@ typedef struct answer_trial {
     double *load;   /* [count][modes], out */
     double *scale;  /* [modes] sums of the sizes of the loads' parts: the largest of all trials so far, */
     double *left;   /* and how far the loads were from those in use where nothing moves */
+    int done, all;  /* trials */
 } answer_trial;
 
 /* ---- motion ---- */
@@ -234,6 +235,7 @@ static int try_mode(spar_session *s, answer_trial *of, const spari_wish *wish, c
         spari_record none;
         of->size = side ? -size : size;
         of->load = room + side * of->answer->count * ask->modes;
+        SPARI_TRY(spari_progress_tell(s, run.progress, of->done++, of->all));
         (void)spari_trial_run(s, &run, wish, &none);
         SPARI_TRY(none.own);
     }
@@ -256,10 +258,12 @@ static int run_trials(spar_session *s, const char *call, const spari_answer_ask 
     double *base = room, *in_use = base + 13 * ask->nodes, *scale = in_use + n, *left = scale + n, *both = left + n;
     answer_trial of = {.ask = ask, .call = call, .base = base, .answer = answer, .scale = scale, .left = left};
     double worst = 0;
+    int kinds = ask->memory > 0 ? 1 : 3;
+    of.all = 2 * kinds * n;
     keep_base(s, base);
     see_loads(s, ask, 0, in_use, scale);
     for (of.mode = 0; of.mode < n; of.mode++) {
-        for (of.kind = 0; of.kind < (ask->memory > 0 ? 1 : 3); of.kind++) {
+        for (of.kind = 0; of.kind < kinds; of.kind++) {
             double *to = answer->load + (int64_t)n * n * of.kind;
             SPARI_TRY(try_mode(s, &of, wish, in_use, both, to));
         }

@@ -13,7 +13,7 @@ enum { SPARI_PULSE = 22, SPARI_PULSE_MIDDLE = 9 };
 
 typedef struct spari_answer_ask {
     const spari_swing *swing;
-    spari_run run;    /* dt, before, solve, context */
+    spari_run run;    /* dt, before, solve, context, progress */
     int64_t memory;   /* steps of dt that loads last for after the motion has ended; 0: none */
     double amplitude; /* of a node's displacement by its member's length, and of its turn */
     int modes;

@@ -95,13 +95,25 @@ double spari_cost_fluids(const spar_session *s) {
     return sum;
 }
 
+/* The time of a solution, in what its nodes lead one to expect. */
+static double times_expected(double by_nodes, double seconds, int64_t solutions) {
+    const spari_prices *p = &spari_rule.price;
+    double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0;
+    return timed / fmax(by_nodes, p->fluid);
+}
+
 double spari_cost_solution(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
     const spari_prices *p = &spari_rule.price;
     if (s->fluid_cost > 0) {
         return whole(fmin(s->fluid_cost * p->second, 1e15));
     }
-    by_nodes = fmax(by_nodes, p->fluid);
-    double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0, times = timed / by_nodes;
+    double times = times_expected(by_nodes, seconds, solutions);
     double power = times > p->believed ? floor(0.5 * log(times) / log(p->believed) + 0.5) : 0;
-    return whole(by_nodes * pow(p->believed, 2 * power));
+    return whole(fmax(by_nodes, p->fluid) * pow(p->believed, 2 * power));
+}
+
+int spari_cost_wavers(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
+    const double near = 2; /* what a busy machine makes of a clock */
+    return spari_cost_solution(s, by_nodes, seconds / near, solutions) !=
+           spari_cost_solution(s, by_nodes, seconds * near, solutions);
 }

@@ -17,5 +17,7 @@ double spari_cost_fluids(const spar_session *session);
 /* What a solution of the fluid counts for: what the host says (option advise.fluid_cost), or else what its nodes say
    unless the time that solutions took is far from it; then that time, so coarsely that no clock's noise is in it. */
 double spari_cost_solution(const spar_session *session, double by_nodes, double seconds, int64_t solutions);
+/* Whether that time lies so near to a border of two classes that another run may find it in the other one. */
+int spari_cost_wavers(const spar_session *session, double by_nodes, double seconds, int64_t solutions);
 
 #endif

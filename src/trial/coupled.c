@@ -343,18 +343,21 @@ int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t mem
     for (const spar_member *m = s->members; m; m = m->next) {
         ask.fluid.nodes += m->committed ? m->nodes : 0;
     }
+    spari_progress progress = spari_progress_of(s, __func__);
+    ask.fluid.run.progress = &progress;
     int status = check_coupled(s, __func__, &ask, nodes, shift, eigenvalue);
     const spari_alike alike[] = {spari_real("dt", dt),
                                  spari_whole("memory", memory),
                                  spari_real("amplitude", amplitude),
                                  spari_given("before", before != NULL),
                                  spari_given("solve", solve != NULL),
+                                 spari_given("progress call", progress.tell != NULL),
                                  spari_whole("modes", modes),
                                  spari_whole("n", n)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, sizeof alike / sizeof *alike, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, solve_coupled(s, __func__, &ask, frame)));
+    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, solve_coupled(s, __func__, &ask, frame))));
     memcpy(s->message, message, sizeof message);
     return SPAR_OK;
 }

@@ -319,6 +319,13 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
                        SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
+    if (s->log && spari_cost_wavers(s, r->fluid, r->fluid_seconds, r->solutions)) {
+        (void)snprintf(text, sizeof text,
+                       "%s: the fluid's time, %.3g s a solution, is between two classes: another run may get other "
+                       "advice; the option advise.fluid_cost says what it costs",
+                       SPARI_ADVISE, r->fluid_seconds / (double)r->solutions);
+        spari_log(s, SPAR_LOG_WARNING, text);
+    }
 }
 
 int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_record *record) {
