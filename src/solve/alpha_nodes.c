@@ -115,7 +115,7 @@ spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t
 }
 
 void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
-    kernels_of(t->lanes, 6 * (to - from))->correct(t, from, to);
+    kernels_of(t->lanes, to - from)->correct(t, from, to);
 }
 
 spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_t to) {
