@@ -3,6 +3,9 @@
 
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
+#ifdef SPARI_X86
+#include <xmmintrin.h>
+#endif
 
 static _Thread_local spari_host host;
 
@@ -34,12 +37,70 @@ static void give_handler_back(void) {
     (void)pthread_mutex_unlock(&handler_lock);
 }
 
-static void hold(void) {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    (void)feholdexcept(&host.environment);
+#ifdef SPARI_X86
+/* Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1, 8.1.3, 8.1.5, 10.2.3. */
+enum { FLAGS = 0x3f, SSE_MASKED = 0x1f80, SSE_ROUNDING = 0x6000, X87_MASKED = 0x3f, X87_ROUNDING = 0x0c00 };
+
+static uint16_t x87_status(void) {
+    uint16_t status;
+    __asm__ volatile("fnstsw %0" : "=m"(status));
+    return status;
+}
+
+static uint32_t quiet_sse(uint32_t sse) {
+    return (sse & ~(uint32_t)SSE_ROUNDING) | SSE_MASKED;
+}
+
+static uint16_t quiet_x87(uint16_t control) {
+    return (uint16_t)((control & ~X87_ROUNDING) | X87_MASKED);
+}
+
+static void load_x87_control(uint16_t control) {
+    __asm__ volatile("fldcw %0" : : "m"(control));
+}
+
+static void hold_environment(spari_environment *e) {
+    e->sse = _mm_getcsr();
+    e->status = x87_status();
+    __asm__ volatile("fnstcw %0" : "=m"(e->control));
+    if (quiet_sse(e->sse) != e->sse) {
+        _mm_setcsr(quiet_sse(e->sse));
+    }
+    if (quiet_x87(e->control) != e->control) {
+        load_x87_control(quiet_x87(e->control));
+    }
+}
+
+static void give_environment_back(const spari_environment *e) {
+    if ((x87_status() ^ e->status) & FLAGS) { /* before a trap of the host's is on again: it would find them */
+        fenv_t all;
+        (void)fegetenv(&all);
+        all.__status_word = (uint16_t)((all.__status_word & ~FLAGS) | (e->status & FLAGS));
+        (void)fesetenv(&all);
+    }
+    if (quiet_x87(e->control) != e->control) {
+        load_x87_control(e->control);
+    }
+    if (_mm_getcsr() != e->sse) {
+        _mm_setcsr(e->sse);
+    }
+}
+#else
+static void hold_environment(spari_environment *e) {
+    (void)feholdexcept(e);
     if (fegetround() != FE_TONEAREST) {
         (void)fesetround(FE_TONEAREST);
     }
+}
+
+static void give_environment_back(const spari_environment *e) {
+    (void)fesetenv(e);
+}
+#endif
+
+static void hold(void) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    hold_environment(&host.environment);
     pthread_once(&once, make_locale);
     host.locale = uselocale(c_locale); /* without one: it stays */
     hold_handler();
@@ -48,7 +109,7 @@ static void hold(void) {
 static void give_back(void) {
     give_handler_back();
     (void)uselocale(host.locale);
-    (void)fesetenv(&host.environment);
+    give_environment_back(&host.environment);
 }
 
 void spari_quiet_begin(void) {

@@ -1,14 +1,29 @@
 /* The surroundings that the library computes in, whatever those of the host are. Floating-point traps are held: a host
    that traps invalid operations, divisions by zero and overflows (usual in Fortran) gets a status where a signal would
-   end it. Results are rounded to the nearest: rounded one way, what errors leave does not cancel, an iteration stalls far
-   above its tolerance, and a run's bits would be those of its host. Numbers are read and written with a point. GSL's
-   errors go to nobody: its handler may abort, is the host's outside, and being one for the process is off as long as any
-   thread is inside. The treatment of denormal numbers stays the host's; flags raised inside are not seen outside. */
+   end it. Results are rounded to the nearest: rounded one way, what errors leave does not cancel, an iteration stalls
+   far above its tolerance, and a run's bits would be those of its host. Numbers are read and written with a point.
+   GSL's errors go to nobody: its handler may abort, is the host's outside, and being one for the process is off as long
+   as any thread is inside. The treatment of denormal numbers stays the host's; flags raised inside are not seen
+   outside. */
 #ifndef SPARI_QUIET_H
 #define SPARI_QUIET_H
 
 #include <fenv.h>
 #include <locale.h>
+#include <stdint.h>
+
+/* How a thread computes: modes, traps and flags. <fenv.h> saves and loads the whole state of the old coprocessor, which
+   takes 100 ns a call; where the processor and its C library are known the few words that tell are looked at, and
+   loaded only where they differ. */
+#if defined(__x86_64__) && defined(__GNUC__) && defined(__GLIBC__)
+#define SPARI_X86 1
+typedef struct spari_environment {
+    uint32_t sse;             /* MXCSR */
+    uint16_t control, status; /* of the coprocessor, which long double computes with */
+} spari_environment;
+#else
+typedef fenv_t spari_environment;
+#endif
 
 /* Of this thread; one within the other costs nothing. */
 void spari_quiet_begin(void);
@@ -17,7 +32,7 @@ void spari_quiet_end(void);
 /* The host's own surroundings, around a call of the host's from inside. */
 typedef struct spari_host {
     int depth; /* public functions on the way */
-    fenv_t environment;
+    spari_environment environment;
     locale_t locale;
 } spari_host;
 void spari_host_begin(spari_host *inside);
