@@ -449,7 +449,9 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
         for (int i = 0; i < t.n && fluid->set[SPAR_NODES_MOTION].weight; i++) {
             spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_PLACE, t.buf[i]);
         }
-        longest_way(s, first, &t, &square, &farthest);
+        if (t.buf[1]) { /* need_second */
+            longest_way(s, first, &t, &square, &farthest);
+        }
     }
     SPARI_TRY(spari_fluid_check_rotation(fluid, least, __func__));
     if (largest) {

@@ -178,7 +178,7 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     SPARI_TRY(begin(fluid, &was, P == n));
     spari_resample_loads(elements, P, n, was.load, fluid->load);
     spari_resample_loads(elements, P, n, was.load_accepted, fluid->load_accepted);
-    if (was.parts) {
+    if (was.parts && fluid->parts) {
         fluid->parts->ended = was.parts->ended;
         spari_resample_loads(elements, P, n, was.parts->end[0], fluid->parts->end[0]);
     }

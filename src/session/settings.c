@@ -214,21 +214,25 @@ static int set(spar_session *session, const char *call, int by, const double *gi
     return SPAR_OK;
 }
 
-/* into: double or int as the row is, NULL: not wanted */
-static int get(const spar_session *session, const char *call, int by, void *const *into) {
+/* into[n]: double or int as the row is, NULL: not wanted */
+static int get(const spar_session *session, const char *call, int by, int n, void *const *into) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    for (int i = 0; i < SETTINGS; i++) {
+    for (int i = 0, k = 0; i < SETTINGS && k < n; i++) {
         if (settings[i].by == by) {
-            if (*into && settings[i].kind == SPARI_IS_REAL) {
-                *(double *)*into = spari_setting_value(session, settings + i);
-            } else if (*into) {
-                *(int *)*into = (int)spari_setting_value(session, settings + i);
+            void *to = into[k++];
+            if (to && settings[i].kind == SPARI_IS_REAL) {
+                *(double *)to = spari_setting_value(session, settings + i);
+            } else if (to) {
+                *(int *)to = (int)spari_setting_value(session, settings + i);
             }
-            into++;
         }
     }
     return SPAR_OK;
 }
+
+/* clang-format off */
+#define INTO(...) (int)(sizeof((void *const[]){__VA_ARGS__}) / sizeof(void *)), (void *const[]){__VA_ARGS__}
+/* clang-format on */
 
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
     SPARI_QUIET;
@@ -244,7 +248,7 @@ int spar_session_set_gravity(spar_session *session, const double g[3]) {
 }
 
 int spar_session_get_gravity(const spar_session *session, double g[3]) {
-    return get(session, __func__, GRAVITY, (void *const[]){g, g ? g + 1 : NULL, g ? g + 2 : NULL});
+    return get(session, __func__, GRAVITY, INTO(g, g ? g + 1 : NULL, g ? g + 2 : NULL));
 }
 
 int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
@@ -263,7 +267,7 @@ int spar_session_set_integrator(spar_session *session, double rho_inf, int subst
 }
 
 int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps) {
-    return get(session, __func__, INTEGRATOR, (void *const[]){rho_inf, substeps});
+    return get(session, __func__, INTEGRATOR, INTO(rho_inf, substeps));
 }
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
@@ -273,7 +277,7 @@ int spar_session_set_newton(spar_session *session, double atol, double rtol, int
 }
 
 int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations) {
-    return get(session, __func__, NEWTON, (void *const[]){atol, rtol, max_iterations});
+    return get(session, __func__, NEWTON, INTO(atol, rtol, max_iterations));
 }
 
 /* Room for the past loads that the order looks back on. */
@@ -299,7 +303,7 @@ int spar_session_set_predictor(spar_session *session, int order) {
 }
 
 int spar_session_get_predictor(const spar_session *session, int *order) {
-    return get(session, __func__, PREDICTOR, (void *const[]){order});
+    return get(session, __func__, PREDICTOR, INTO(order));
 }
 
 int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations) {
@@ -308,7 +312,7 @@ int spar_session_set_coupling(spar_session *session, int scheme, double atol, do
 
 int spar_session_get_coupling(const spar_session *session, int *scheme, double *atol, double *rtol,
                               int *max_iterations) {
-    return get(session, __func__, COUPLING, (void *const[]){scheme, atol, rtol, max_iterations});
+    return get(session, __func__, COUPLING, INTO(scheme, atol, rtol, max_iterations));
 }
 
 int spar_session_set_relaxation(spar_session *session, double omega) {
@@ -316,7 +320,7 @@ int spar_session_set_relaxation(spar_session *session, double omega) {
 }
 
 int spar_session_get_relaxation(const spar_session *session, double *omega) {
-    return get(session, __func__, RELAXATION, (void *const[]){omega});
+    return get(session, __func__, RELAXATION, INTO(omega));
 }
 
 int spar_session_set_reproducible(spar_session *session, int on) {
@@ -324,7 +328,7 @@ int spar_session_set_reproducible(spar_session *session, int on) {
 }
 
 int spar_session_get_reproducible(const spar_session *session, int *on) {
-    return get(session, __func__, REPRODUCIBLE, (void *const[]){on});
+    return get(session, __func__, REPRODUCIBLE, INTO(on));
 }
 
 int spar_session_set_goal(spar_session *session, int goals) {
@@ -332,7 +336,7 @@ int spar_session_set_goal(spar_session *session, int goals) {
 }
 
 int spar_session_get_goal(const spar_session *session, int *goals) {
-    return get(session, __func__, GOAL, (void *const[]){goals});
+    return get(session, __func__, GOAL, INTO(goals));
 }
 
 int spar_session_set_tolerance(spar_session *session, double drift, double rtol) {
@@ -349,7 +353,7 @@ int spar_session_set_tolerance(spar_session *session, double drift, double rtol)
 }
 
 int spar_session_get_tolerance(const spar_session *session, double *drift, double *rtol) {
-    return get(session, __func__, TOLERANCE, (void *const[]){drift, rtol});
+    return get(session, __func__, TOLERANCE, INTO(drift, rtol));
 }
 
 /* ---- options ---- */

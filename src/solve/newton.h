@@ -59,7 +59,7 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
         spari_iterate n;
         const char *wrong = how->iterate(self, longest, &n);
         if (wrong) {
-            return wrong;
+            return wrong; /* cppcheck-suppress returnDanglingLifetime ; a constant text, not of n */
         }
         double theta = last > 0 ? n.correction / last : 0;
         double left = last > 0 && theta < 1 && !try.full ? theta / (1 - theta) * n.correction : n.correction;
