@@ -336,7 +336,7 @@ static void test_pays_for_itself(void **state) {
     print_message("as advised: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n",
                   again[SPAR_ADVICE_COST], again[SPAR_ADVICE_SHOWING], finding, again[SPAR_ADVICE_SAVES],
                   again[SPAR_ADVICE_SKIPPED]);
-    assert_true(again[SPAR_ADVICE_SKIPPED] > 0);
+    assert_true(again[SPAR_ADVICE_SKIPPED] >= 2); /* the look at what there is already, and trials */
     spar_session_destroy(&p.s);
 }
 
