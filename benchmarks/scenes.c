@@ -431,7 +431,7 @@ int scene_converge_at(const scene *s, double phase, double refine, int elements,
     scene_result result;
     fine.phase = phase;
     fine.dt = scene_dt(s, s->standard.dt / refine), fine.elements = elements, fine.nodes = nodes;
-    fine.scheme = SPAR_COUPLING_IQN_ILS, fine.tolerance = 1e-9;
+    fine.scheme = SPAR_COUPLING_IQN_ILS, fine.tolerance = 1e-9, fine.newton = 1e-12;
     TRY(play(s, &fine, &result));
     memcpy(reference->history, result.history, sizeof result.history);
     memcpy(reference->load, result.load, sizeof result.load);
