@@ -140,7 +140,8 @@ static int carry_change(spar_session *s, const change *c, const char *call) {
         any = any || (a->member && a->member->per_element != a->was.per_element);
         for (int64_t j = 0; j < c->count && a->fluid; j++) {
             const anew *of = &c->made[j];
-            if (of->member == spari_fluid_member(a->fluid) && of->member->per_element != of->was.per_element) {
+            if (of->member && of->member == spari_fluid_member(a->fluid) &&
+                of->member->per_element != of->was.per_element) {
                 c->carried[count++] = (spari_carried){a->fluid, a->fluid_was, &of->was};
             }
         }

@@ -505,7 +505,7 @@ int spari_record_vouches(const spari_record *r) {
     int most = 0, crossings = 0;
     for (int k = SPARI_SAMPLES / 2; k < SPARI_SAMPLES; k++) {
         for (int64_t i = 0; i < n; i++) {
-            size += pow(r->value[k * width(r) + at + i], 2) / (SPARI_SAMPLES / 2);
+            size += pow(r->value[k * width(r) + at + i], 2) / (0.5 * SPARI_SAMPLES);
         }
     }
     if (scatter_of(r, SPARI_SAMPLES / 2, mean, &most) <= spari_rule.settled * sqrt(size)) {
