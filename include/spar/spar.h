@@ -1491,12 +1491,12 @@ enum {
     SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
     SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
     SPAR_ADVICE_TRIALS = 9,        /* runs made */
-    SPAR_ADVICE_WORK = 10, /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
+    SPAR_ADVICE_WORK = 10,    /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
     SPAR_ADVICE_SHOWING = 11, /* of that, what it took to know what keeps the tolerance: the session as it is, the
                                  reference, and the longer look */
-    SPAR_ADVICE_SAVES = 12,   /* what the rest brings, in the same unit: what a run as long as was asked for, and no less
-                                 than ten times the trials, saves against the cheapest settings that were known then to
-                                 keep the tolerance: the session as it is, or with dt fine enough */
+    SPAR_ADVICE_SAVES = 12, /* what the rest brings, in the same unit: what a run as long as was asked for, and no less
+                               than ten times the trials, saves against the cheapest settings that were known then to
+                               keep the tolerance: the session as it is, or with dt fine enough */
     SPAR_ADVICE_SKIPPED = 13, /* trials not made because they could not save as much as they would have cost: what they
                                  would have varied stays */
     SPAR_ADVICE_COUNT = 14

@@ -169,7 +169,7 @@ static int is_elastic(const spari_plan *p, int g) {
 
 /* Of what does not bend: the fewest, where the loads find the same line. */
 static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
-    double part = INFINITY, took;
+    double part = INFINITY, took = *cost;
     int now = p->group[g].nodes, own = spari_plan_member(d, g)->per_element;
     spari_plan q = *p;
     q.group[g].nodes = spari_rule.least_nodes;
