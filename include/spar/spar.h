@@ -246,7 +246,7 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
 /* All other settings, by name and text. key, value: in.
      newton.stop            tied (default) | strict: where Newton's iteration of a step ends: tied, when what it leaves
                             is a thousandth of the error of the step, by (E1) of docs/theory.md in the steps before, as
-                            a change of velocities that lasts, and a tenth of what the coupling is iterated to, by the
+                            a change of velocities that lasts, and of what the coupling is iterated to, by the
                             motion; within 1e-7 and rtol of the increments. Strict at atol and rtol: the first step, at
                             rest, without inertia. Strict: always there. spar_session_set_newton makes it strict.
                             spar_member_get_newton tells what is left
