@@ -353,9 +353,9 @@ double spari_alpha_size(const spari_solver *s, double *x) {
    new ones contract no better than old ones the mean never falls so far. */
 enum { PATIENCE = 5, PRICE = 10 };
 
-/* Where Newton ends earlier (leave.h) a solution takes fewer; for a coupling's sake it ends later than without. */
+/* Where Newton ends earlier (leave.h) a solution takes fewer; for the sake of a coupling it hardly does. */
 static int patience(const spar_session *s) {
-    return s->newton_strict ? PATIENCE : isfinite(s->newton_share) ? PATIENCE - 1 : PATIENCE - 2;
+    return s->newton_strict || isfinite(s->newton_share) ? PATIENCE : PATIENCE - 2;
 }
 
 /* Whether the tangent is kept after a solution of so many iterations; fresh: it was formed in it. */
