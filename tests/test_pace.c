@@ -290,7 +290,7 @@ static void watch_nodes(const scene *of, int nodes, int onto, double x[SAMPLES][
                 }
                 spari_rotate_back(q + 3, u + 3 * j, u + 3 * j);
             }
-            spari_resample_values(1, nodes, onto, 3, -1, u, x[i * SAMPLES / steps - 1]);
+            spari_resample_values((spari_mesh){1, nodes}, (spari_mesh){1, onto}, 3, -1, u, x[i * SAMPLES / steps - 1]);
         }
     }
     *said = sqrt(*said);

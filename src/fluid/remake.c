@@ -174,15 +174,15 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     was = *fluid;
     spar_member as_it_was = *before;
     was.member = &as_it_was; /* its line is the one the map was made on */
-    int elements = before->elements, P = before->per_element, n = fluid->member->per_element;
-    SPARI_TRY(begin(fluid, &was, P == n));
-    spari_resample_loads(elements, P, n, was.load, fluid->load);
-    spari_resample_loads(elements, P, n, was.load_accepted, fluid->load_accepted);
+    const spari_mesh from = spari_member_mesh(before), to = spari_member_mesh(fluid->member);
+    SPARI_TRY(begin(fluid, &was, spari_mesh_alike(from, to)));
+    spari_resample_loads(from, to, was.load, fluid->load);
+    spari_resample_loads(from, to, was.load_accepted, fluid->load_accepted);
     if (was.parts && fluid->parts) {
         fluid->parts->ended = was.parts->ended;
-        spari_resample_loads(elements, P, n, was.parts->end[0], fluid->parts->end[0]);
+        spari_resample_loads(from, to, was.parts->end[0], fluid->parts->end[0]);
     }
-    return P == n ? copy_bins(fluid, &was) : SPAR_OK;
+    return spari_mesh_alike(from, to) ? copy_bins(fluid, &was) : SPAR_OK;
 }
 
 /* ---- reproducible sums on other nodes ---- */
@@ -214,7 +214,7 @@ void spari_fluid_put_carried(spar_fluid *f, const spar_member *before, const dou
     int64_t n = 6 * before->nodes;
     for (int k = 0; k < CARRIED; k++) {
         if (to[k] && values) {
-            spari_resample_loads(before->elements, before->per_element, f->member->per_element, values + k * n, to[k]);
+            spari_resample_loads(spari_member_mesh(before), spari_member_mesh(f->member), values + k * n, to[k]);
         } else if (to[k]) {
             memset(to[k], 0, 6 * (size_t)f->member->nodes * sizeof *to[k]);
         }

@@ -4,6 +4,7 @@
 #include "basis.h"
 #include "rotation.h"
 
+#include <math.h>
 #include <string.h>
 
 void spari_resample_basis(int P, double xi, double *phi) {
@@ -23,43 +24,80 @@ static void places_of(int n, double *x) {
     }
 }
 
-void spari_resample_values(int elements, int P, int n, int width, int turn, const double *from, double *to) {
-    double x[SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
+int spari_resample_place(int from, int e, double x, int to, double *xi) {
+    if (from == to) {
+        *xi = x;
+        return e;
+    }
+    int last = x >= 1; /* (e + x) / from of the line, in elements of `to`: in whole numbers as far as it goes */
+    int64_t along = (int64_t)(e + last) * to, on = along / from;
+    double rest = (double)(along % from);
+    if (last && rest == 0) {
+        *xi = 1;
+        return (int)on - 1;
+    }
+    rest = (rest + (last || x <= -1 ? 0 : 0.5 * (1 + x) * to)) / from;
+    on += (int64_t)floor(rest);
+    rest -= floor(rest);
+    *xi = on < to ? 2 * rest - 1 : 1;
+    return on < to ? (int)on : to - 1;
+}
+
+int64_t spari_resample_end(int from, int e, int side, spari_mesh to) {
+    double xi;
+    int at = spari_resample_place(from, e, side ? 1 : -1, to.elements, &xi);
+    return xi <= -1 ? (int64_t)at * to.per_element : xi >= 1 ? (int64_t)(at + 1) * to.per_element - 1 : -1;
+}
+
+/* Of the nodes [P] of one element, at a place of it. */
+static void interpolate_nodes(int P, const double *phi, int width, int turn, const double *f, double *t) {
+    memset(t, 0, (size_t)width * sizeof *t);
+    for (int l = 0; l < P; l++) {
+        const double *fl = f + width * l;
+        double sign = turn >= 0 && spari_quat_dot(f + turn, fl + turn) < 0 ? -1 : 1;
+        for (int c = 0; c < width; c++) {
+            t[c] += phi[l] * (turn >= 0 && c >= turn && c < turn + 4 ? sign : 1) * fl[c];
+        }
+    }
+    if (turn >= 0) {
+        spari_quat_normalise(t + turn);
+    }
+}
+
+void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, const double *values, double *out) {
+    int P = from.per_element, n = to.per_element;
+    double x[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], xi;
     places_of(n, x);
     for (int k = 0; k < n; k++) {
-        spari_resample_basis(P, x[k], phi);
-        for (int e = 0; e < elements; e++) {
-            const double *f = from + (int64_t)width * e * P;
-            double *t = to + (int64_t)width * ((int64_t)e * n + k);
-            memset(t, 0, (size_t)width * sizeof *t);
-            for (int l = 0; l < P; l++) {
-                const double *fl = f + width * l;
-                double sign = turn >= 0 && spari_quat_dot(f + turn, fl + turn) < 0 ? -1 : 1;
-                for (int c = 0; c < width; c++) {
-                    t[c] += phi[l] * (turn >= 0 && c >= turn && c < turn + 4 ? sign : 1) * fl[c];
-                }
+        for (int e = 0; e < to.elements; e++) {
+            int of = spari_resample_place(to.elements, e, x[k], from.elements, &xi);
+            if (e == 0 || from.elements != to.elements) {
+                spari_resample_basis(P, xi, phi);
             }
-            if (turn >= 0) {
-                spari_quat_normalise(t + turn);
-            }
+            interpolate_nodes(P, phi, width, turn, values + (int64_t)width * of * P,
+                              out + (int64_t)width * ((int64_t)e * n + k));
         }
     }
 }
 
-void spari_resample_loads(int elements, int P, int n, const double *loads, double *out) {
-    if (P == n) {
-        memcpy(out, loads, (size_t)(6 * (int64_t)elements * P) * sizeof *out);
+void spari_resample_loads(spari_mesh from, spari_mesh to, const double *loads, double *out) {
+    int P = from.per_element, n = to.per_element;
+    if (spari_mesh_alike(from, to)) {
+        memcpy(out, loads, (size_t)(6 * (int64_t)from.elements * P) * sizeof *out);
         return;
     }
-    double x[SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
+    double x[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], xi;
     places_of(P, x);
-    memset(out, 0, (size_t)(6 * (int64_t)elements * n) * sizeof *out);
+    memset(out, 0, (size_t)(6 * (int64_t)to.elements * n) * sizeof *out);
     for (int l = 0; l < P; l++) {
-        spari_resample_basis(n, x[l], phi);
-        for (int e = 0; e < elements; e++) {
+        for (int e = 0; e < from.elements; e++) {
+            int on = spari_resample_place(from.elements, e, x[l], to.elements, &xi);
+            if (e == 0 || from.elements != to.elements) {
+                spari_resample_basis(n, xi, phi);
+            }
             for (int k = 0; k < n; k++) {
                 for (int c = 0; c < 6; c++) {
-                    out[6 * ((int64_t)e * n + k) + c] += phi[k] * loads[6 * ((int64_t)e * P + l) + c];
+                    out[6 * ((int64_t)on * n + k) + c] += phi[k] * loads[6 * ((int64_t)e * P + l) + c];
                 }
             }
         }

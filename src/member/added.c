@@ -460,6 +460,6 @@ void spari_added_carry(const spar_member *from, spar_member *m) {
     const double *was[] = {old->past[0], old->past[1], old->mean[0], old->mean[1], old->mean[2], old->scheme};
     double *is[] = {d->past[0], d->past[1], d->mean[0], d->mean[1], d->mean[2], d->scheme};
     for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
-        spari_resample_values(m->elements, from->per_element, m->per_element, 6, -1, was[k], is[k]);
+        spari_resample_values(spari_member_mesh(from), spari_member_mesh(m), 6, -1, was[k], is[k]);
     }
 }

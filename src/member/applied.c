@@ -522,7 +522,7 @@ int spari_applied_remake(const spar_member *from, spar_member *m) {
         b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
         status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
         if (status == SPAR_OK) {
-            spari_resample_loads(m->elements, from->per_element, m->per_element, a->follower, b->follower);
+            spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), a->follower, b->follower);
         }
     }
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {

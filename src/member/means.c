@@ -81,7 +81,7 @@ void spari_means_carry(const spar_member *from, spar_member *m) {
     const double *rows[3] = {old->mean, old->seen[0], old->seen[1]};
     double *to[3] = {k->mean, k->seen[0], k->seen[1]};
     for (int i = 0; i < 3; i++) {
-        spari_resample_values(m->elements, from->per_element, m->per_element, 6, -1, rows[i], to[i]);
+        spari_resample_values(spari_member_mesh(from), spari_member_mesh(m), 6, -1, rows[i], to[i]);
     }
     k->dt = old->dt;
     k->has[0] = k->has[1] = 1;

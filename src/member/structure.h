@@ -5,6 +5,7 @@
 
 #include "../base/crew.h"
 #include "../base/scene.h"
+#include "../math/resample.h"
 
 #include <string.h>
 
@@ -174,6 +175,10 @@ static inline int spari_member_root_is_given(const spar_member *member) {
 /* How many of the root's six unknowns its root condition holds: the first. */
 static inline int spari_member_held(const spar_member *member) {
     return member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
+}
+/* What its line is divided into. */
+static inline spari_mesh spari_member_mesh(const spar_member *member) {
+    return (spari_mesh){member->elements, member->per_element};
 }
 /* Position along the whole line of element and local xi, and back (the joint belongs to the lower element). */
 static inline double spari_member_xi(const spar_member *member, int element, double local) {

@@ -139,7 +139,7 @@ static int find_nodes_error(spar_member *m, double *error) {
     finer f = {NULL, NULL, NULL, NULL, NULL};
     int status = onto ? find_loads(m, &load) : spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     if (status == SPAR_OK) {
-        spari_resample_loads(m->elements, P, n, load, onto);
+        spari_resample_loads(spari_member_mesh(m), (spari_mesh){m->elements, n}, load, onto);
         wish.per_element = n;
         int owner = m->owner;
         m->owner = spari_comm_rank(m->session->comm);

@@ -45,9 +45,9 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
         b->node_q = given->node_q ? spari_zalloc(4 * m->nodes, sizeof *b->node_q) : NULL;
         SPARI_REQUIRE(m->session, b->node_x && (b->node_q || !given->node_q), SPAR_ERR_MEMORY,
                       "no memory for a trial of '%s'", m->name);
-        spari_resample_values(m->elements, old->per_element, m->per_element, 3, -1, given->node_x, b->node_x);
+        spari_resample_values(spari_member_mesh(old), spari_member_mesh(m), 3, -1, given->node_x, b->node_x);
         if (b->node_q) {
-            spari_resample_values(m->elements, old->per_element, m->per_element, 4, 0, given->node_q, b->node_q);
+            spari_resample_values(spari_member_mesh(old), spari_member_mesh(m), 4, 0, given->node_q, b->node_q);
         }
     }
     return SPAR_OK;
@@ -55,19 +55,19 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
 
 /* Past loads are kept as far as either predictor looks. */
 static void carry_state(spar_member *old, spar_member *m) {
-    int E = m->elements, P = old->per_element, n = m->per_element;
+    const spari_mesh was = spari_member_mesh(old), is = spari_member_mesh(m);
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         const spari_nodal *row = spari_nodal_table + k;
         const double *from = *spari_nodal_array(old, k);
         double *to = *spari_nodal_array(m, k);
         if (row->kind == SPARI_NODAL_MOTION) {
-            spari_resample_values(E, P, n, row->width, row->width == 7 ? 3 : -1, from, to);
+            spari_resample_values(was, is, row->width, row->width == 7 ? 3 : -1, from, to);
         } else if (row->kind == SPARI_NODAL_LOAD && from && to) {
-            spari_resample_loads(E, P, n, from, to);
+            spari_resample_loads(was, is, from, to);
         }
     }
     if (old->begun) {
-        spari_resample_values(E, P, n, 6, -1, old->begun, m->now.a);
+        spari_resample_values(was, is, 6, -1, old->begun, m->now.a);
     }
     spari_member_restart(m);
     spari_added_carry(old, m);
