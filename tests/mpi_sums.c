@@ -272,8 +272,8 @@ static void parts_of_a_step(void **state) {
     }
 }
 
-/* The beam with other nodes, as if that had been advised. */
-static int give_nodes(scene *c, int per_element) {
+/* The beam in other elements, as if that had been advised. */
+static int give_nodes(scene *c, int elements, int per_element) {
     spar_session *s = c->session;
     spari_advised *advised = s->own->advised = calloc(1, sizeof *advised);
     c->beam->advice = calloc(1, sizeof *c->beam->advice);
@@ -282,13 +282,13 @@ static int give_nodes(scene *c, int per_element) {
     advised->given = 1;
     advised->of = spari_advised_of(s);
     *c->beam->advice = spari_remake_of(c->beam);
-    c->beam->advice->per_element = per_element;
+    c->beam->advice->elements = elements, c->beam->advice->per_element = per_element;
     return spar_session_apply_advice(s, NULL);
 }
 
-/* With other nodes in the middle of a run in which one fluid on the beam has fallen silent: its loads go over, whoever
-   had them, and the run has the bits of one process. So have the errors that trials
-   on as many nodes find. */
+/* With other nodes, or other elements too, in the middle of a run in which one fluid on the beam has fallen silent: its
+   loads go over, whoever had them, and the run has the bits of one process. So have the errors that trials on as many
+   nodes find. */
 static void other_nodes(void **state) {
     (void)state;
     const MPI_Comm world = MPI_COMM_WORLD;
@@ -306,9 +306,9 @@ static void other_nodes(void **state) {
             OK(c.session, spar_session_try(c.session, 0.02, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, report));
             OK(c.session, spar_session_try(c.session, 0.01, 16, NULL, solve, &c, 1, SPAR_TRY_COUNT, report));
             scene_tip(c.beam, tip);
-            OK(c.session, give_nodes(&c, 4));
+            OK(c.session, give_nodes(&c, parts ? 3 : 2, parts ? 3 : 4));
             OK(c.session, spar_member_get_count(c.beam, &n));
-            assert_int_equal(n, 8);
+            assert_int_equal(n, parts ? 9 : 8);
             advance(&c, 3, turns);
             OK(c.session, spar_member_get_motion(c.beam, x, NULL, NULL));
             OK(c.session, spar_member_get_loads(c.beam, y));
@@ -345,7 +345,7 @@ static void other_nodes_and_fluids(void **state) {
     advance(&alone, 3, turns);
     advance(&all, 2, turns);
     if (size > 1) {
-        REFUSED(all.session, SPAR_ERR_COMM, "list of fluids", give_nodes(&all, 4));
+        REFUSED(all.session, SPAR_ERR_COMM, "list of fluids", give_nodes(&all, 2, 4));
     }
     OK(all.session, spar_member_get_count(all.beam, &n));
     assert_int_equal(n, POINTS);

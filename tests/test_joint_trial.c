@@ -2,6 +2,11 @@
    members that are tied. */
 #include "scene.h"
 
+#include "member/joint.h"
+#include "session/own.h"
+#include "trial/apply.h"
+#include "trial/remake.h"
+
 enum { MEMBERS = 3, JOINTS = 3, MOST = 40 };
 
 static int kind = SPAR_FIDELITY_EXACT; /* of the wing; one below exact is welded to the ground by its free root */
@@ -214,6 +219,50 @@ static void test_held_within(void **state) {
     spar_session_destroy(&c.session);
 }
 
+/* The wing with other elements, as if that had been advised. */
+static int give_elements(scene *c, int elements, int nodes) {
+    spar_session *s = c->session;
+    spari_advised *advised = s->own->advised = calloc(1, sizeof *advised);
+    c->member[0]->advice = calloc(1, sizeof *c->member[0]->advice);
+    assert_true(advised && c->member[0]->advice);
+    (void)spari_settings_varied(s, advised->setting);
+    advised->given = 1;
+    advised->of = spari_advised_of(s);
+    *c->member[0]->advice = spari_remake_of(c->member[0]);
+    c->member[0]->advice->elements = elements, c->member[0]->advice->per_element = nodes;
+    return spar_session_apply_advice(s, NULL);
+}
+
+/* The hinge is in the middle, where two elements meet: with four of them it holds the node that is there then, the body
+   stays where it is, and the run goes on as the other, to what other elements make of it. With three there is no such
+   node: refused, to the bit. */
+static void test_other_elements(void **state) {
+    (void)state;
+    for (int64_t node = 5; node <= 6; node++) { /* both nodes of the place */
+        scene a, b;
+        double x[2][7];
+        create(&a, 6, node, 0.5);
+        create(&b, 6, node, 0.5);
+        run(&a, 5);
+        run(&b, 5);
+        REFUSED(b.session, SPAR_ERR_STATE, "lies within an element", give_elements(&b, 3, 6));
+        free(b.session->own->advised);
+        free(b.member[0]->advice);
+        same(&a, &b);
+        OK(b.session, give_elements(&b, 4, 6));
+        assert_int_equal(b.joint[0]->node[1], node == 5 ? 11 : 12);
+        OK(a.session, spar_member_get_motion(a.member[1], x[0], NULL, NULL));
+        OK(b.session, spar_member_get_motion(b.member[1], x[1], NULL, NULL));
+        assert_memory_equal(x[0], x[1], sizeof x[0]);
+        run(&a, 10);
+        run(&b, 10);
+        double turn = turn_of_hinge(&a);
+        NEAR(turn_of_hinge(&b), turn, 1e-3 * fabs(turn));
+        spar_session_destroy(&a.session);
+        spar_session_destroy(&b.session);
+    }
+}
+
 /* The same of wings that are linear or modal. */
 static void test_lower_fidelities(void **state) {
     for (kind = SPAR_FIDELITY_LINEAR; kind <= SPAR_FIDELITY_MODAL; kind++) {
@@ -251,9 +300,12 @@ static void test_advice_of_fidelity(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_to_the_bit),       cmocka_unit_test(test_effects),
-        cmocka_unit_test(test_advice),           cmocka_unit_test(test_held_within),
-        cmocka_unit_test(test_lower_fidelities), cmocka_unit_test(test_advice_of_fidelity)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_to_the_bit),
+                                       cmocka_unit_test(test_effects),
+                                       cmocka_unit_test(test_advice),
+                                       cmocka_unit_test(test_held_within),
+                                       cmocka_unit_test(test_other_elements),
+                                       cmocka_unit_test(test_lower_fidelities),
+                                       cmocka_unit_test(test_advice_of_fidelity)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -599,6 +599,53 @@ static void test_apply_in_a_run(void **state) {
     spar_session_destroy(&c.s);
 }
 
+/* Likewise with other elements, as if that had been advised: 2 of 6 nodes become halves, thirds and one. */
+static void test_apply_elements(void **state) {
+    (void)state;
+    const int divided[][2] = {{4, 5}, {3, 6}, {1, 11}};
+    const double follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        scene c = {.load = 0.05, .drag = 0.01, .moments = 1};
+        double advice[SPAR_ADVICE_COUNT], off = 0;
+        outlook before, after;
+        long size;
+        int elements, nodes;
+        build(&c, 1);
+        OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_FOLLOWER, follower));
+        OK(c.s, spar_member_set_load(c.b, 4, SPAR_LOAD_DEAD, dead));
+        step(&c, 0.01, 8);
+        ask_advice(&c, advice);
+        c.b->advice->elements = divided[k][0], c.b->advice->per_element = divided[k][1];
+        c.b->advice->fidelity = SPAR_FIDELITY_EXACT, c.b->advice->modes = 0;
+        look_at(&c, &before);
+        OK(c.s, spar_session_apply_advice(c.s, NULL));
+        look_at(&c, &after);
+        OK(c.s, spar_beam_get_elements(c.b, &elements, &nodes));
+        assert_true(elements == divided[k][0] && nodes == divided[k][1] && after.nodes == (int64_t)elements * nodes);
+        for (int i = 0; i < 3; i++) {
+            NEAR(after.sum[i], before.sum[i], 1e-11);
+            NEAR(after.tip[i], before.tip[i], 1e-13);
+            NEAR(after.body[i], before.body[i], 0);
+        }
+        assert_memory_equal(after.work, before.work, sizeof after.work);
+        for (int i = 0; i < 3 * NODES; i++) {
+            off = fmax(off, fabs(after.x[i] - before.x[i]));
+        }
+        print_message("%d of %d in place of 2 of 6: %.2g m off, the tip is %.3g m down\n", elements, nodes, off,
+                      before.tip[2]);
+        NEAR(off, 0, 1e-3 * fabs(before.tip[2]));
+        OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
+        char *saved = contents("trial_apply.spar", &size);
+        OK(c.s, spar_session_apply_advice(c.s, NULL));
+        same_file(c.s, saved, size);
+        free(saved);
+        step(&c, 0.01, 8);
+        look_at(&c, &before);
+        assert_true(before.work[SPAR_WORK_FLUID] != after.work[SPAR_WORK_FLUID]);
+        spar_session_destroy(&c.s);
+    }
+}
+
 static void test_bad_input(void **state) {
     (void)state;
     scene c = {.load = 0.02};
@@ -969,6 +1016,7 @@ int main(void) {
         cmocka_unit_test(test_advice_stays_stable),
         cmocka_unit_test(test_apply_refuses),
         cmocka_unit_test(test_apply_in_a_run),
+        cmocka_unit_test(test_apply_elements),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
         cmocka_unit_test(test_asking),

@@ -487,9 +487,10 @@ void spari_applied_load(spar_member *m, spari_image *image) {
 
 /* ---- other nodes ---- */
 
-/* The points stay where they are; xi = sum phi_l xi_l tells where, as the basis has all linear functions. */
+/* The points stay where they are, in their order; xi = sum phi_l xi_l tells where, as the basis has all linear
+   functions. */
 static int remake_line(const spar_member *from, const line_load *line, const spar_member *m, line_load *out) {
-    int P = from->per_element, n = m->per_element, E = m->elements, points = line->first[E];
+    int P = from->per_element, n = m->per_element, E = m->elements, points = line->first[from->elements];
     double x[SPARI_MAX_NODES];
     spari_gll(P, x, NULL, NULL);
     out->first = spari_zalloc(E + 1, sizeof *out->first);
@@ -499,14 +500,20 @@ static int remake_line(const spar_member *from, const line_load *line, const spa
     if (!out->first || !out->phi || !out->load || !out->room) {
         return SPAR_ERR_MEMORY;
     }
-    memcpy(out->first, line->first, (size_t)(E + 1) * sizeof *out->first);
     memcpy(out->load, line->load, (size_t)points * 6 * sizeof *out->load);
-    for (int k = 0; k < points; k++) {
+    for (int k = 0, e = 0; k < points; k++) {
         double xi = 0;
         for (int l = 0; l < P; l++) {
             xi += line->phi[(int64_t)k * P + l] * x[l];
         }
+        while (k >= line->first[e + 1]) {
+            e++;
+        }
+        out->first[1 + spari_resample_place(from->elements, e, xi, E, &xi)]++;
         spari_resample_basis(n, xi, out->phi + (int64_t)k * n);
+    }
+    for (int e = 0; e < E; e++) {
+        out->first[e + 1] += out->first[e];
     }
     return SPAR_OK;
 }

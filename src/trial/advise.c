@@ -742,7 +742,7 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         *m->advice = spari_remake_of(m);
         if (d->group[k] >= 0) {
             const spari_shape *b = &p->group[d->group[k]];
-            *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0};
+            *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0, m->elements};
         }
     }
     const double made[SPAR_ADVICE_COUNT] = {

@@ -70,8 +70,9 @@ static void set_advised(spar_session *s, change *c) {
 
 static int is_as_advised(const spar_member *m) {
     const spari_remake *to = m->advice;
-    return !to || (to->per_element == m->per_element && to->fidelity == m->fidelity && to->modes == m->modes &&
-                   (to->points == 0 || to->points == m->beam->points));
+    return !to ||
+           (to->per_element == m->per_element && (to->elements == 0 || to->elements == m->elements) &&
+            to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
 /* Members that are tied begin anew together: whether one of them has to. */
@@ -131,17 +132,20 @@ static int remake_fluids(spar_session *s, change *c) {
     return SPAR_OK;
 }
 
+static int has_other_nodes(const anew *a) {
+    return !spari_mesh_alike(spari_member_mesh(a->member), spari_member_mesh(&a->was));
+}
+
 /* Collective. */
 static int carry_change(spar_session *s, const change *c, const char *call) {
     int64_t count = 0;
     int any = 0;
     for (int64_t k = 0; k < c->count; k++) {
         const anew *a = &c->made[k];
-        any = any || (a->member && a->member->per_element != a->was.per_element);
+        any = any || (a->member && has_other_nodes(a));
         for (int64_t j = 0; j < c->count && a->fluid; j++) {
             const anew *of = &c->made[j];
-            if (of->member && of->member == spari_fluid_member(a->fluid) &&
-                of->member->per_element != of->was.per_element) {
+            if (of->member && of->member == spari_fluid_member(a->fluid) && has_other_nodes(of)) {
                 c->carried[count++] = (spari_carried){a->fluid, a->fluid_was, &of->was};
             }
         }

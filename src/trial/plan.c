@@ -18,7 +18,7 @@
 /* ---- plans ---- */
 
 static int is_varied(const spar_member *m) {
-    return m->kind == SPARI_BEAM && !m->external && !spari_ties_hold_within(m);
+    return m->kind == SPARI_BEAM && !m->external && !spari_ties_hold_within(m, m->elements);
 }
 
 /* Whether two beams are copies of each other. */

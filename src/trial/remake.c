@@ -15,7 +15,8 @@
 #include <string.h>
 
 spari_remake spari_remake_of(const spar_member *m) {
-    return (spari_remake){.per_element = m->per_element, .fidelity = m->fidelity, .modes = m->modes};
+    return (spari_remake){
+        .per_element = m->per_element, .fidelity = m->fidelity, .modes = m->modes, .elements = m->elements};
 }
 
 /* ---- description and state ---- */
@@ -38,6 +39,11 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
         b->points = b->points < least ? least : b->points;
     }
     m->per_element = wish->per_element;
+    m->elements = wish->elements > 0 ? wish->elements : m->elements;
+    SPARI_REQUIRE(m->session, m->elements == old->elements || !old->beam->node_x, SPAR_ERR_STATE,
+                  "'%s' has the nodes that it was given: it cannot have %d elements in place of %d; describe its axis, "
+                  "or keep the elements",
+                  m->name, m->elements, old->elements);
     m->nodes = (int64_t)m->elements * m->per_element;
     if (old->beam->node_x) { /* the nodes given stand for the line between them */
         const spari_beam *given = old->beam;

@@ -11,11 +11,12 @@ struct spari_remake {
     int64_t modes;   /* of a modal member */
     int points;      /* beams: quadrature points of the rule in force; 0: as described */
     int left_out;    /* SPAR_EFFECT_* that are not to be there */
+    int elements;    /* beams: how many, 0: as many as there are. One whose nodes were given keeps its own */
 };
 
 /* The member as it is. */
 spari_remake spari_remake_of(const spar_member *member);
-/* Makes `member` anew. Its state at t^n goes over: displacements and rotations by the element's own interpolation,
+/* Makes `member` anew. Its state at t^n goes over: displacements and rotations by the elements' own interpolation,
    loads by its transpose, so that their sum is kept. Accelerations begin from the balance of forces. *old: what it was;
    give it to spari_member_restore, also after a failure. Local. */
 int spari_member_remake(spar_member *member, const spari_remake *wish, spar_member *old);

@@ -20,24 +20,26 @@ int spari_ties_lay_aside(spar_session *s, spari_ties *t) {
     return SPAR_OK;
 }
 
-/* The end of an element that a node is; -1: it lies within. */
-static int end_of(const spar_member *m, int64_t node) {
+/* The node of a line so divided that a node of the member is as the end of an element of both; -1: it is none. */
+static int64_t same_end(const spar_member *m, int64_t node, spari_mesh mesh) {
     int64_t k = node % m->per_element;
-    return k == 0 ? 0 : k == m->per_element - 1 ? 1 : -1;
+    return k > 0 && k < m->per_element - 1 ? -1
+                                           : spari_resample_end(m->elements, (int)(node / m->per_element), k > 0, mesh);
 }
 
 int spari_ties_follow(const spar_member *m, const spar_member *old) {
-    for (spar_joint *j = m->session->joints; j && m->per_element != old->per_element; j = j->next) {
+    for (spar_joint *j = m->session->joints; j && !spari_mesh_alike(spari_member_mesh(m), spari_member_mesh(old));
+         j = j->next) {
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
             }
-            int end = end_of(old, j->node[side]);
-            SPARI_REQUIRE(m->session, end >= 0, SPAR_ERR_STATE,
-                          "joint '%s' holds node %lld of '%s', which lies within an element: the member cannot have "
-                          "other nodes; tie ends of elements",
+            int64_t node = same_end(old, j->node[side], spari_member_mesh(m));
+            SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
+                          "joint '%s' holds node %lld of '%s', which lies within an element, of those there are or "
+                          "of those to come: the member cannot have other nodes; tie ends of elements",
                           j->name, (long long)j->node[side], m->name);
-            j->node[side] = j->node[side] / old->per_element * m->per_element + (end ? m->per_element - 1 : 0);
+            j->node[side] = node;
         }
     }
     return SPAR_OK;
@@ -67,11 +69,12 @@ void spari_ties_adopt(spar_session *s, spari_ties *t) {
     *t = (spari_ties){0};
 }
 
-int spari_ties_hold_within(const spar_member *m) {
+int spari_ties_hold_within(const spar_member *m, int elements) {
+    const spari_mesh mesh = {elements, m->per_element};
     int within = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            within = within || (j->member[side] == m && end_of(m, j->node[side]) < 0);
+            within = within || (j->member[side] == m && same_end(m, j->node[side], mesh) < 0);
         }
     }
     return within;

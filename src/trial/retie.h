@@ -14,13 +14,13 @@ typedef struct spari_ties {
 /* What the joints and assemblies are is put aside, and the session has assemblies no more. A status and a message.
    Local, as all below. */
 int spari_ties_lay_aside(spar_session *session, spari_ties *ties);
-/* After a member has been made anew, `old` being what it was: its joints' nodes. A joint at a node that other nodes per
-   element have not is refused. The assemblies are then to be made. */
+/* After a member has been made anew, `old` being what it was: its joints' nodes. A joint at a node that the other
+   elements or nodes have not is refused. The assemblies are then to be made. */
 int spari_ties_follow(const spar_member *member, const spar_member *old);
 /* As it was laid aside, after the members have been restored; or it stays as it is now. */
 void spari_ties_restore(spar_session *session, spari_ties *ties);
 void spari_ties_adopt(spar_session *session, spari_ties *ties);
-/* Whether a joint holds a node of the member within an element. */
-int spari_ties_hold_within(const spar_member *member);
+/* Whether a joint holds a node of the member that lies within an element, or would if it had so many. */
+int spari_ties_hold_within(const spar_member *member, int elements);
 
 #endif

@@ -155,11 +155,11 @@ static int carry_loads(spar_session *s, const stash *t) {
     int64_t count = 0;
     int any = 0, k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        any = any || m->per_element != member_before(s, t, m)->per_element;
+        any = any || !spari_mesh_alike(spari_member_mesh(m), spari_member_mesh(member_before(s, t, m)));
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         const spar_member *before = member_before(s, t, spari_fluid_member(f));
-        if (before->per_element != spari_fluid_member(f)->per_element) {
+        if (!spari_mesh_alike(spari_member_mesh(before), spari_member_mesh(spari_fluid_member(f)))) {
             t->carried[count++] = (spari_carried){f, t->fluids[k], before};
         }
     }
