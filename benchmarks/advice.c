@@ -1,7 +1,9 @@
 /* Whether advice is kept: on each scene spar_session_advise is asked for some tolerances, the scene is built to what it
    says, run over its whole time and compared with a converged run; its cost with the cheapest of 120 settings such as
    one would choose by hand, both timed in turn. advice [--scene name] [--tolerance x] [--part x] [--out file.csv]
-   [--verbose]. part: of the scene's time that trials see, default 1/2. A table on stdout; --out for advice.gp. */
+   [--elements n] [--nodes n] [--scan] [--verbose]. part: of the scene's time that trials see, default 1/2; elements,
+   nodes: that the scene has before it is asked, else its own; scan: all numbers of elements and nodes beside what is
+   advised, with the rest of the advice. A table on stdout; --out for advice.gp. */
 #include "scenes.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ typedef struct choice {
     double error, seconds;
 } choice;
 
-static int verbose;
+static int verbose, scans;
 static FILE *csv; /* NULL: not wanted */
 
 static void show(const spar_session *s, int level, const char *text, void *context) {
@@ -106,6 +108,7 @@ static knobs advised(const scene *s, const scene_run *run, const double *advice)
     k.fidelity = fidelity, k.modes = modes, k.nodes = nodes;
     k.rule = points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     k.points = points;
+    k.elements = (int)advice[SPAR_ADVICE_ELEMENTS];
     return k;
 }
 
@@ -145,9 +148,34 @@ static const char *words(const knobs *k, char *text, size_t size) {
     if (k->substeps > 1) {
         snprintf(substeps, sizeof substeps, " in %d", k->substeps);
     }
-    snprintf(text, size, "dt %.4g%s, %s%s, predictor %d, Newton %.0e, %s%s, %d%s nodes", k->dt, substeps,
-             scheme[k->scheme], tolerance, k->predictor, k->newton, fidelity[k->fidelity], modes, k->nodes, points);
+    snprintf(text, size, "dt %.4g%s, %s%s, predictor %d, Newton %.0e, %s%s, %d x %d%s nodes", k->dt, substeps,
+             scheme[k->scheme], tolerance, k->predictor, k->newton, fidelity[k->fidelity], modes, k->elements, k->nodes,
+             points);
     return text;
+}
+
+/* Elements and nodes by brute force: the cheapest that keep the tolerance. */
+static void scan(const scene *s, const scene_reference *reference, const choice *mine, double tolerance) {
+    enum { MOST_ELEMENTS = 6, LEAST_NODES = 3, MOST_NODES = 12, BEST = 4 };
+    choice best[BEST + 1];
+    int count = 0;
+    for (int elements = 1; elements <= MOST_ELEMENTS; elements++) {
+        for (int nodes = LEAST_NODES; nodes <= MOST_NODES; nodes++) {
+            choice c = *mine;
+            c.k.elements = elements, c.k.nodes = nodes;
+            play(s, reference, 3, &c);
+            int at = count;
+            for (; at > 0 && best[at - 1].seconds > c.seconds && c.error <= tolerance; at--) {
+                best[at] = best[at - 1];
+            }
+            best[at] = c;
+            count += c.error <= tolerance && count < BEST;
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        printf("       scan:   %d x %d, error %.2e, cost %.2f\n", best[i].k.elements, best[i].k.nodes, best[i].error,
+               best[i].seconds / mine->seconds);
+    }
 }
 
 /* For the picture: what it was, the tolerance, error and cost over the default's. */
@@ -187,6 +215,9 @@ static int check(const scene *s, const scene_reference *reference, const choice 
     } else {
         printf("       hand:   none of the %d keeps it\n", CHOICES);
     }
+    if (scans) {
+        scan(s, reference, &mine, tolerance);
+    }
     fflush(stdout);
     keep(s, "advice", tolerance, &mine, standard);
     keep(s, "best", tolerance, &hand, standard);
@@ -218,10 +249,14 @@ int main(int argc, char **argv) {
         {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {3e-2, 1e-2}, {1e-2, 1e-3}};
     const char *only = NULL;
     double tolerance = 0, part = 0.5;
+    int elements = 0, nodes = 0;
     for (int i = 1; i < argc; i++) {
         verbose |= strcmp(argv[i], "--verbose") == 0;
+        scans |= strcmp(argv[i], "--scan") == 0;
         only = strcmp(argv[i], "--scene") == 0 && i + 1 < argc ? argv[++i] : only;
         tolerance = strcmp(argv[i], "--tolerance") == 0 && i + 1 < argc ? strtod(argv[++i], NULL) : tolerance;
+        elements = strcmp(argv[i], "--elements") == 0 && i + 1 < argc ? atoi(argv[++i]) : elements;
+        nodes = strcmp(argv[i], "--nodes") == 0 && i + 1 < argc ? atoi(argv[++i]) : nodes;
         if (strcmp(argv[i], "--out") == 0 && i + 1 < argc && !csv) {
             csv = fopen(argv[++i], "w");
         }
@@ -233,7 +268,10 @@ int main(int argc, char **argv) {
     for (int i = 0; i < SCENE_COUNT; i++) {
         if (!only || strcmp(only, scenes[i].name) == 0) {
             fprintf(stderr, "%s ...\r", scenes[i].name);
-            failed += check_scene(&scenes[i], tolerance > 0 ? &tolerance : tolerances[i], tolerance > 0 ? 1 : 2, part);
+            scene s = scenes[i];
+            s.standard.elements = elements > 0 ? elements : s.standard.elements;
+            s.standard.nodes = nodes > 0 ? nodes : s.standard.nodes;
+            failed += check_scene(&s, tolerance > 0 ? &tolerance : tolerances[i], tolerance > 0 ? 1 : 2, part);
         }
     }
     if (csv) {

@@ -124,6 +124,7 @@ static knobs by_hand(const scene *of, const answer *a) {
     k.scheme = (int)a->advice[SPAR_ADVICE_SCHEME], k.tolerance = a->advice[SPAR_ADVICE_COUPLING_RTOL];
     k.predictor = (int)a->advice[SPAR_ADVICE_PREDICTOR], k.newton = a->advice[SPAR_ADVICE_NEWTON_RTOL];
     k.fidelity = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
+    k.elements = (int)a->advice[SPAR_ADVICE_ELEMENTS];
     k.points = a->points, k.rule = a->points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     return k;
 }

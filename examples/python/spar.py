@@ -233,7 +233,7 @@ constants SPAR_GOAL_MOTION=1 SPAR_GOAL_REACTION=2 SPAR_GOAL_SECTION=4 SPAR_GOAL_
 call spar_session_set_goal int session|session|value| goals|int|value|
 call spar_session_get_goal int session|session|value| goals|int|out|
 call spar_session_push_numbers int session|session|value| n|int64_t|value| numbers|double|in|[n]
-constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_WORK=10 SPAR_ADVICE_SHOWING=11 SPAR_ADVICE_SAVES=12 SPAR_ADVICE_SKIPPED=13 SPAR_ADVICE_COUNT=14
+constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_WORK=10 SPAR_ADVICE_SHOWING=11 SPAR_ADVICE_SAVES=12 SPAR_ADVICE_SKIPPED=13 SPAR_ADVICE_ELEMENTS=14 SPAR_ADVICE_COUNT=15
 call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| length|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
 call spar_session_apply_advice int session|session|value| dt|double|out|
 call spar_member_get_advice int member|member|value| fidelity|int|out| modes|int64_t|out| nodes_per_element|int|out| points|int|out|

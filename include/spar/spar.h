@@ -291,7 +291,8 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
                             step; and so are statics, trials and advice on all ranks. A file of spar_session_save
                             has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
-                            vary (default) | keep: what spar_session_advise may propose to change
+                            vary (default) | keep: what spar_session_advise may propose to change; with nodes go
+                            elements
      advise.limit           >= 0, default 0 (none): what asking for advice may cost, counted, in trials with the session
                             as it is; SPAR_ERR_LIMIT where there is no advice by then
      advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
@@ -1499,7 +1500,8 @@ enum {
                                keep the tolerance: the session as it is, or with dt fine enough */
     SPAR_ADVICE_SKIPPED = 13, /* trials not made because they could not save as much as they would have cost: what they
                                  would have varied stays */
-    SPAR_ADVICE_COUNT = 14
+    SPAR_ADVICE_ELEMENTS = 14, /* of all beams together; of each: spar_beam_get_elements, once it is in force */
+    SPAR_ADVICE_COUNT = 15
 };
 /* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
    coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
@@ -1512,28 +1514,29 @@ enum {
      before, solve, context: in, as of spar_session_try, called with other dt too
      capacity: in, of the advice
      advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
-   Beams of one make (all that is described but name, placement and initial velocity) get one advice. Costs are counted
-   (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the same scene gets
-   the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost (unsaid its time, in
-   classes; SPAR_LOG_WARNING where that is near to a border of two). No trial is made
-   that could not save, in a run of SPAR_ADVICE_SAVES' length, what it costs; but for those that show what keeps the
-   tolerance. Where the session as it is keeps it and nothing cheaper pays, it is what is advised. What is kept as it
-   is: the options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED: solve is
-   NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached;
+   Beams of one make (all that is described but name, placement and initial velocity) get one advice. Elements are
+   kept where the host has given the nodes, or where a joint or a kept load is at a node that would not end one. Costs
+   are counted (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the
+   same scene gets the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost
+   (unsaid its time, in classes; SPAR_LOG_WARNING where that is near to a border of two). No trial is made that could
+   not save, in a run of SPAR_ADVICE_SAVES' length, what it costs; but for those that show what keeps the tolerance.
+   Where the session as it is keeps it and nothing cheaper pays, it is what is advised. What is kept as it is: the
+   options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED:
+   solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached;
    SPAR_ERR_LIMIT: the option advise.limit. After a failure all is as it was. */
 SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
                                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                                  double *advice);
-/* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of
-   beams fidelity, modes, nodes per element and quadrature points. dt stays the host's to take. Beams for which
-   something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the work done
-   on them, and their motion, which goes over by the element's own interpolation (loads by its transpose: their sum
-   stays); accelerations begin from the balance of forces. Their fluids keep handles and nodes and are mapped again.
-   Counts change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set from now on, is
-   the host's to say anew. All else stays to the last bit. What the advice does not have stays: rho_inf, the coupling's
-   atol, limits and options, Newton's atol, elements, effects asked for. A beam whose nodes the host has given has its
-   line through the new ones from then on; of the motion a lower fidelity keeps what it can show. Sections of fluids
-   keep places and frames. Called again it does nothing.
+/* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and
+   of beams fidelity, modes, elements, nodes per element and quadrature points. dt stays the host's to take. Beams for
+   which something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the
+   work done on them, and their motion, which goes over by the elements' own interpolation (loads by its transpose:
+   their sum stays); accelerations begin from the balance of forces. Their fluids keep handles and nodes and are
+   mapped again. Counts change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set
+   from now on, is the host's to say anew. All else stays to the last bit. What the advice does not have stays:
+   rho_inf, the coupling's atol, limits and options, Newton's atol, effects asked for. A beam whose nodes the host has
+   given has its line through the new ones from then on; of the motion a lower fidelity keeps what it can show.
+   Sections of fluids keep places and frames. Called again it does nothing.
      dt: out, SPAR_ADVICE_DT, s; NULL: not wanted
    Collective. SPAR_ERR_STATE: a step or a trial is under way, there is no advice, members have been added or described
    otherwise since, or a fluid has nodes that are not mapped. After a failure all is as it was. */

@@ -217,6 +217,10 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
     }
 }
 
+const double *spari_applied_follower(const spar_member *m) {
+    return m->applied ? m->applied->follower : NULL;
+}
+
 double spari_applied_residual(const spar_member *m, const double *q, double factor, double *r) {
     int P = m->per_element;
     double largest = 0, out[6 * SPARI_MAX_NODES];

@@ -41,4 +41,7 @@ void spari_foundation_nodal(const spar_member *member, const double *q, double f
 /* What they store there. */
 double spari_foundation_energy(const spar_member *member, const double *q);
 
+/* The follower loads at its nodes [nodes][6], global axes at the reference; NULL: none. */
+const double *spari_applied_follower(const spar_member *member);
+
 #endif

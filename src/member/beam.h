@@ -45,6 +45,8 @@ enum { SPARI_LUMPS = 10000 }; /* at most */
 void spari_pretension_at(const spari_beam *beam, double eta, double out[6]);
 /* The quadrature rule in force. */
 int spari_beam_rule(const spari_beam *beam);
+/* How many quadrature points it has in other elements; points: of its rule, 0: as described. */
+int64_t spari_beam_points(const spar_member *member, int elements, int per_element, int points);
 
 /* 0 if the stiffness is symmetric (1e-6 of the diagonal) and positive definite, else a text that says what is wrong. */
 const char *spari_stiffness_fault(const double C[36]);

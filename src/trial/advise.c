@@ -13,6 +13,7 @@
 #include "../solve/fidelity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,6 +72,105 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w
     return SPAR_OK;
 }
 
+/* What a run costs, in what a shape of a group has to do with, with another of its shapes: by what an iteration of its
+   solution counts for, and by its nodes. */
+static double with_shape(const spari_advisor *d, const shaping *w, int g, double cost, const spari_shape *from,
+                         const spari_shape *to) {
+    const spar_member *m = spari_plan_member(d, g);
+    const spari_shape *both[2] = {from, to};
+    double solved[2], whole = base_cost(d, w);
+    for (int k = 0; k < 2; k++) {
+        const spari_shape *b = both[k];
+        solved[k] = b->fidelity == SPAR_FIDELITY_EXACT ? spari_cost_exact(m, b->elements, b->nodes, b->points)
+                                                       : spari_cost_frame(m, b->elements, b->nodes, (int)b->modes);
+    }
+    double nodes = (double)(to->elements * to->nodes) / (from->elements * from->nodes);
+    return cost * (1 + w->work[g] / whole * (solved[1] / solved[0] - 1) + w->nodes[g] / whole * (nodes - 1));
+}
+
+/* The most nodes of so many elements that are expected to be cheaper than what there is; 0: none. */
+static int most_nodes(const spari_advisor *d, const shaping *w, int g, double cost, const spari_shape *now,
+                      int elements) {
+    spari_shape b = *now;
+    b.elements = elements;
+    for (b.nodes = SPARI_MAX_NODES; b.nodes >= spari_rule.least_nodes; b.nodes--) {
+        if (with_shape(d, w, g, cost, now, &b) <= spari_rule.worth * cost) {
+            return b.nodes;
+        }
+    }
+    return 0;
+}
+
+/* So many elements: with the most nodes that are cheaper than what there is; where they will do, the fewest that do. No
+   fewer than half the unknowns there are will. *found: whether it is better so. */
+static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w, int elements, double *cost,
+                        int *found) {
+    const spari_shape now = p->group[g];
+    const double before = *cost;
+    int half = (now.elements * (now.nodes - 1) + 2 * elements - 1) / (2 * elements),
+        few = half, /* and one is `half` + 1 */
+        most = most_nodes(d, w, g, before, &now, elements), enough = most + 1;
+    few = few < spari_rule.least_nodes - 1 ? spari_rule.least_nodes - 1 : few;
+    *found = 0;
+    for (int at = most; enough - few > 1; at = (few + enough) / 2) {
+        spari_plan q = *p;
+        spari_shape *b = &q.group[g];
+        double part, took;
+        b->elements = elements, b->nodes = few + 1;
+        if (!shape_pays(d, w, *cost, with_shape(d, w, g, before, &now, b))) {
+            break;
+        }
+        b->nodes = at;
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, spari_rule.at_most * *cost, &part, &took));
+        if (part <= spari_rule.elements) {
+            enough = at;
+        } else {
+            few = at;
+        }
+        if (part <= spari_rule.elements && took <= spari_rule.worth * *cost) {
+            *p = q;
+            *cost = took;
+            *found = 1;
+        }
+    }
+    return SPAR_OK;
+}
+
+static void tell_kept(const spari_advisor *d, const spar_member *m, const char *why) {
+    char text[SPARI_MESSAGE_SIZE];
+    if (d->session->log) {
+        (void)snprintf(text, sizeof text, "%s: '%.100s' keeps its %d elements: %s", SPARI_ADVISE, m->name, m->elements,
+                       why);
+        spari_log(d->session, SPAR_LOG_INFO, text);
+    }
+}
+
+/* Other numbers of elements, from those there are on down and up, as far as they are better, and two beyond. */
+static int choose_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
+    static const int ladder[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+    enum { RUNGS = sizeof ladder / sizeof *ladder, TRIED = 2 };
+    const int begun = p->group[g].elements;
+    const char *holds = NULL;
+    int tried = 0;
+    for (int way = -1; way <= 1; way += 2) {
+        int idle = 0;
+        for (int k = way < 0 ? RUNGS - 1 : 0; k >= 0 && k < RUNGS && idle < TRIED; k += way) {
+            int found = 0;
+            const char *why = spari_plan_holds(d, g, ladder[k]);
+            holds = why ? why : holds;
+            if ((ladder[k] - begun) * way > 0 && !why) {
+                SPARI_TRY(try_elements(d, p, g, w, ladder[k], cost, &found));
+                idle = found ? 0 : idle + 1;
+                tried = 1;
+            }
+        }
+    }
+    if (!tried && holds) {
+        tell_kept(d, spari_plan_member(d, g), holds);
+    }
+    return SPAR_OK;
+}
+
 /* What is tried of a beam in place of what it is, in this order. after: an earlier row that must have been taken, -1:
    none is needed. */
 static const struct {
@@ -113,7 +213,7 @@ static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int
     int solves = spari_member_is_tied(m) ? 2 : 1; /* what is tied is iterated, whatever it is */
     if (fidelities[k].fidelity >= SPAR_FIDELITY_LINEAR) {
         solved = w->count[g] * solves * (double)w->base.solutions *
-                 spari_cost_frame(m, p->group[g].nodes, (int)fidelities[k].modes);
+                 spari_cost_frame(m, p->group[g].elements, p->group[g].nodes, (int)fidelities[k].modes);
     }
     return fmax(0, cost - fmax(0, w->work[g] - solved));
 }
@@ -195,6 +295,7 @@ static int choose_shapes(spari_advisor *d, spari_plan *p, const shaping *w) {
         if (is_elastic(p, g)) {
             SPARI_TRY(choose_points(d, p, g, w, &cost));
             SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
+            SPARI_TRY(d->session->keep_nodes || d->misled ? SPAR_OK : choose_elements(d, p, g, w, &cost));
         } else {
             SPARI_TRY(choose_stiff_nodes(d, p, g, w, &cost));
         }
@@ -242,7 +343,7 @@ static void weigh_base(const spari_advisor *d, const spari_plan *p, shaping *w) 
     w->scale = pow((double)spari_plan_least_steps(d) / (double)p->steps, power);
     for (const spar_member *m = d->session->members; m; m = m->next, k++) {
         int g = d->group[k];
-        double own = g < 0 ? (double)m->nodes : m->elements * p->group[g].nodes;
+        double own = g < 0 ? (double)m->nodes : p->group[g].elements * p->group[g].nodes;
         rest -= w->base.member_work[k];
         nodes += own;
         if (g >= 0) {
@@ -735,6 +836,7 @@ static void free_room(const spari_advisor *d, spari_remake **room) {
 static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_remake **room,
                       double *advice) {
     const spari_plan *p = &best->plan;
+    double elements = 0;
     int k = 0;
     for (spar_member *m = d->session->members; m; m = m->next, k++) {
         m->advice = m->advice ? m->advice : room[k];
@@ -742,8 +844,9 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         *m->advice = spari_remake_of(m);
         if (d->group[k] >= 0) {
             const spari_shape *b = &p->group[d->group[k]];
-            *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0, m->elements};
+            *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0, b->elements};
         }
+        elements += m->kind == SPARI_BEAM ? m->advice->elements : 0;
     }
     const double made[SPAR_ADVICE_COUNT] = {
         [SPAR_ADVICE_DT] = d->run.dt * (double)d->run.steps / (double)p->steps,
@@ -760,6 +863,7 @@ static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_ou
         [SPAR_ADVICE_SHOWING] = d->now > 0 ? d->shown / d->now : -1,
         [SPAR_ADVICE_SAVES] = d->now > 0 ? d->runs * (d->known_good - best->cost) / d->now : 0,
         [SPAR_ADVICE_SKIPPED] = d->skipped,
+        [SPAR_ADVICE_ELEMENTS] = elements,
     };
     memcpy(advice, made, sizeof made);
     spari_advised *advised = d->session->own->advised;

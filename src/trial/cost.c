@@ -3,6 +3,7 @@
 
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
+#include "../member/beam.h"
 #include "../session/coupling.h"
 #include "../session/own.h"
 #include "../solve/fidelity.h"
@@ -49,9 +50,24 @@ double spari_cost_members(const spar_session *s, double *each) {
     return sum;
 }
 
-double spari_cost_frame(const spar_member *m, int nodes, int modes) {
-    int unknowns = modes > 0 ? modes : 6 * (m->elements * (nodes - 1) + !spari_member_root_is_given(m));
-    const spari_effort e = {.nodes = m->elements * (nodes - 1) + 1,
+static int unknowns_of(const spar_member *m, int elements, int nodes) {
+    return 6 * (elements * (nodes - 1) + !spari_member_root_is_given(m));
+}
+
+double spari_cost_exact(const spar_member *m, int elements, int nodes, int points) {
+    int unknowns = unknowns_of(m, elements, nodes);
+    const spari_effort e = {.nodes = elements * (nodes - 1) + 1,
+                            .elements = elements,
+                            .per_element = nodes,
+                            .points = (int)spari_beam_points(m, elements, nodes, points),
+                            .unknowns = unknowns,
+                            .band = spari_effort_band(unknowns, 6 * nodes)};
+    return iteration_cost(&e) + tangent_cost(&e);
+}
+
+double spari_cost_frame(const spar_member *m, int elements, int nodes, int modes) {
+    int unknowns = modes > 0 ? modes : unknowns_of(m, elements, nodes);
+    const spari_effort e = {.nodes = elements * (nodes - 1) + 1,
                             .per_element = nodes,
                             .unknowns = unknowns,
                             .band = modes > 0 ? modes : spari_effort_band(unknowns, 6 * nodes)};

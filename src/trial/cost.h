@@ -10,8 +10,10 @@ double spari_cost_step(const spar_session *session, int iterations);
 /* All that has been solved since the members were made, of those this rank owns. each[members]: what for each of them;
    NULL: not wanted. */
 double spari_cost_members(const spar_session *session, double *each);
-/* What a solution of a linear beam costs, or of a modal one (modes > 0), with so many nodes to an element. */
-double spari_cost_frame(const spar_member *member, int nodes, int modes);
+/* What a solution of a linear beam costs, or of a modal one (modes > 0), in so many elements and nodes of each. */
+double spari_cost_frame(const spar_member *member, int elements, int nodes, int modes);
+/* What an iteration of Newton and a tangent of an exact one cost; points: of its quadrature, 0: as described. */
+double spari_cost_exact(const spar_member *member, int elements, int nodes, int points);
 /* What a solution of this rank's fluids may cost, by their nodes. */
 double spari_cost_fluids(const spar_session *session);
 /* What a solution of the fluid counts for: what the host says (option advise.fluid_cost), or else what its nodes say

@@ -5,6 +5,7 @@
 #include "retie.h"
 
 #include "../math/basis.h"
+#include "../member/applied.h"
 #include "../member/beam.h"
 #include "../session/accelerate.h"
 #include "../solve/fidelity.h"
@@ -53,6 +54,35 @@ int spari_plan_groups(spari_advisor *d) {
     return SPAR_OK;
 }
 
+/* Whether a load is kept at a node that is the end of an element now, or would be, and not both. */
+static int is_loaded_within(const spar_member *m, int elements) {
+    const double *follower = spari_applied_follower(m);
+    for (int64_t node = 0; node < m->nodes; node++) {
+        int any = 0;
+        for (int c = 0; c < 6; c++) {
+            any = any || m->dead[6 * node + c] != 0 || (follower && follower[6 * node + c] != 0);
+        }
+        if (any && spari_ties_end(m, node, (spari_mesh){elements, m->per_element}) < 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+const char *spari_plan_holds(const spari_advisor *d, int group, int elements) {
+    const char *why = NULL;
+    int k = 0;
+    for (const spar_member *m = d->session->members; m && !why; m = m->next, k++) {
+        if (d->group[k] == group && elements != m->elements) {
+            why = m->beam->node_x                       ? "its nodes are given"
+                  : spari_ties_hold_within(m, elements) ? "a joint holds a node that would lie within an element"
+                  : is_loaded_within(m, elements)       ? "a load is kept at a node that lies within an element"
+                                                        : NULL;
+        }
+    }
+    return why;
+}
+
 spari_plan spari_plan_present(const spari_advisor *d) {
     const spar_session *s = d->session;
     spari_plan p;
@@ -62,6 +92,7 @@ spari_plan spari_plan_present(const spari_advisor *d) {
     p.rtol = s->coupling_rtol, p.newton = s->newton_rtol, p.strict = s->newton_strict;
     for (int g = 0; g < d->groups; g++) {
         const spar_member *m = spari_plan_member(d, g);
+        p.group[g].elements = m->elements;
         p.group[g].nodes = m->per_element;
         p.group[g].fidelity = m->fidelity;
         p.group[g].modes = m->modes;
@@ -139,7 +170,8 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
         if (d->group[k] >= 0) {
             const spari_shape *g = &p->group[d->group[k]];
             spari_remake *r = wish.member + k;
-            r->per_element = g->nodes, r->fidelity = g->fidelity, r->modes = g->modes, r->points = g->points;
+            r->elements = g->elements, r->per_element = g->nodes, r->fidelity = g->fidelity, r->modes = g->modes,
+            r->points = g->points;
         }
     }
     run.steps = longer * p->steps;
@@ -171,7 +203,7 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
         if (b->modes > 0) {
             at += snprintf(text + at, size - (size_t)at, " %lld", (long long)b->modes);
         }
-        at += snprintf(text + at, size - (size_t)at, " of %d nodes", b->nodes);
+        at += snprintf(text + at, size - (size_t)at, " of %d x %d nodes", b->elements, b->nodes);
         if (b->points > 0) {
             at += snprintf(text + at, size - (size_t)at, " and %d points", b->points);
         }

@@ -20,7 +20,7 @@ enum { SPARI_STAGE_REFERENCE, SPARI_STAGE_SHAPES, SPARI_STAGE_TIME, SPARI_STAGE_
 
 /* What of a beam is chosen. */
 typedef struct spari_shape {
-    int nodes, fidelity, points;
+    int elements, nodes, fidelity, points;
     int64_t modes;
 } spari_shape;
 
@@ -82,6 +82,9 @@ typedef struct spari_advisor {
 int spari_plan_groups(spari_advisor *advisor);
 /* A member of the group. */
 const spar_member *spari_plan_member(const spari_advisor *advisor, int group);
+/* Why one of the group cannot have so many elements, since what the host gave by nodes, and what it has tied or loaded
+   at nodes, stays where it is; NULL: all can. */
+const char *spari_plan_holds(const spari_advisor *advisor, int group, int elements);
 /* The session as it is. */
 spari_plan spari_plan_present(const spari_advisor *advisor);
 /* Its settings of the session, as trials vary them: of values[SPARI_MOST_VARIED] those that a plan has. */

@@ -20,8 +20,7 @@ int spari_ties_lay_aside(spar_session *s, spari_ties *t) {
     return SPAR_OK;
 }
 
-/* The node of a line so divided that a node of the member is as the end of an element of both; -1: it is none. */
-static int64_t same_end(const spar_member *m, int64_t node, spari_mesh mesh) {
+int64_t spari_ties_end(const spar_member *m, int64_t node, spari_mesh mesh) {
     int64_t k = node % m->per_element;
     return k > 0 && k < m->per_element - 1 ? -1
                                            : spari_resample_end(m->elements, (int)(node / m->per_element), k > 0, mesh);
@@ -34,7 +33,7 @@ int spari_ties_follow(const spar_member *m, const spar_member *old) {
             if (j->member[side] != m) {
                 continue;
             }
-            int64_t node = same_end(old, j->node[side], spari_member_mesh(m));
+            int64_t node = spari_ties_end(old, j->node[side], spari_member_mesh(m));
             SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
                           "joint '%s' holds node %lld of '%s', which lies within an element, of those there are or "
                           "of those to come: the member cannot have other nodes; tie ends of elements",
@@ -74,7 +73,7 @@ int spari_ties_hold_within(const spar_member *m, int elements) {
     int within = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            within = within || (j->member[side] == m && same_end(m, j->node[side], mesh) < 0);
+            within = within || (j->member[side] == m && spari_ties_end(m, j->node[side], mesh) < 0);
         }
     }
     return within;

@@ -20,6 +20,8 @@ int spari_ties_follow(const spar_member *member, const spar_member *old);
 /* As it was laid aside, after the members have been restored; or it stays as it is now. */
 void spari_ties_restore(spar_session *session, spari_ties *ties);
 void spari_ties_adopt(spar_session *session, spari_ties *ties);
+/* The node of a line so divided that a node of the member is as the end of an element of both; -1: it is none. */
+int64_t spari_ties_end(const spar_member *member, int64_t node, spari_mesh mesh);
 /* Whether a joint holds a node of the member that lies within an element, or would if it had so many. */
 int spari_ties_hold_within(const spar_member *member, int elements);
 

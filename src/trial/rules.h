@@ -45,6 +45,7 @@ typedef struct spari_rules {
     double settled;         /* motion that in the second half of the trials changes by less than this part goes on so */
     double resolves;        /* steps in the shortest period of what moves by more than the tolerance, at least */
     double fidelity, nodes; /* shares that a lower fidelity and fewer nodes may take, */
+    double elements;        /* other elements in place of those, with nodes of their own, */
     double points, newton;  /* fewer quadrature points, a looser Newton */
     double loosest_newton;  /* its tolerance goes no further */
     double good;            /* share that the error of good settings is below: the rest is for what no trial shows */
