@@ -1498,8 +1498,8 @@ enum {
     SPAR_ADVICE_SAVES = 12, /* what the rest brings, in the same unit: what a run as long as was asked for, and no less
                                than ten times the trials, saves against the cheapest settings that were known then to
                                keep the tolerance: the session as it is, or with dt fine enough */
-    SPAR_ADVICE_SKIPPED = 13, /* trials not made because they could not save as much as they would have cost: what they
-                                 would have varied stays */
+    SPAR_ADVICE_SKIPPED = 13,  /* trials not made because they could not save as much as they would have cost: what they
+                                  would have varied stays */
     SPAR_ADVICE_ELEMENTS = 14, /* of all beams together; of each: spar_beam_get_elements, once it is in force */
     SPAR_ADVICE_COUNT = 15
 };
