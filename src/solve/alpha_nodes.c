@@ -38,22 +38,23 @@ static const double inverse_series[] = {1.0 / 12,
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 
+/* Passes over nodes that tell how large their motions are. */
+enum { TAKE, PLACE, SIZE, SIZED };
+
 /* The kernels of one instruction set. */
 typedef struct node_kernels {
     int width;
     double (*back)(const spari_node_work *t, int64_t from, int64_t to);
     void (*forth)(const spari_node_work *t, int64_t from, int64_t to);
-    spari_node_size (*take)(const spari_node_work *t, int64_t from, int64_t to);
+    spari_node_size (*sized[SIZED])(const spari_node_work *t, int64_t from, int64_t to);
     void (*correct)(const spari_node_work *t, int64_t from, int64_t to);
-    spari_node_size (*place)(const spari_node_work *t, int64_t from, int64_t to);
-    spari_node_size (*size)(const spari_node_work *t, int64_t from, int64_t to);
     void (*show)(const spari_root_view *t, int64_t from, int64_t to);
 } node_kernels;
 
 #define NODE_KERNELS(set)                                                                                              \
     {                                                                                                                  \
-        (int)(sizeof(lanes_##set) / sizeof(double)), turn_back_##set, turn_forth_##set, take_##set, correct_##set,     \
-            place_##set, size_##set, show_##set                                                                        \
+        (int)(sizeof(lanes_##set) / sizeof(double)), turn_back_##set, turn_forth_##set,                                \
+            {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, correct_##set, show_##set               \
     }
 static const node_kernels plain_nodes = NODE_KERNELS(plain);
 #ifdef SPARI_X86
@@ -86,9 +87,14 @@ static const node_kernels *kernels_from(int lanes, int64_t from, int64_t to, int
     return kernel;
 }
 
-static void enlarge(spari_node_size *so_far, spari_node_size more) {
-    so_far->way = fmax(so_far->way, more.way);
-    so_far->turn = fmax(so_far->turn, more.turn);
+static spari_node_size largest_of(int pass, const spari_node_work *t, int64_t from, int64_t to) {
+    spari_node_size size = {0, 0};
+    for (int64_t end; from < to; from = end) {
+        spari_node_size more = kernels_from(t->lanes, from, to, &end)->sized[pass](t, from, end);
+        size.way = fmax(size.way, more.way);
+        size.turn = fmax(size.turn, more.turn);
+    }
+    return size;
 }
 
 double spari_nodes_turn_back(const spari_node_work *t, int64_t from, int64_t to) {
@@ -107,11 +113,7 @@ void spari_nodes_turn_forth(const spari_node_work *t, int64_t from, int64_t to) 
 }
 
 spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t to) {
-    spari_node_size size = {0, 0};
-    for (int64_t end; from < to; from = end) {
-        enlarge(&size, kernels_from(t->lanes, from, to, &end)->take(t, from, end));
-    }
-    return size;
+    return largest_of(TAKE, t, from, to);
 }
 
 void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
@@ -119,19 +121,11 @@ void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
 }
 
 spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_t to) {
-    spari_node_size size = {0, 0};
-    for (int64_t end; from < to; from = end) {
-        enlarge(&size, kernels_from(t->lanes, from, to, &end)->place(t, from, end));
-    }
-    return size;
+    return largest_of(PLACE, t, from, to);
 }
 
 spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t to) {
-    spari_node_size size = {0, 0};
-    for (int64_t end; from < to; from = end) {
-        enlarge(&size, kernels_from(t->lanes, from, to, &end)->size(t, from, end));
-    }
-    return size;
+    return largest_of(SIZE, t, from, to);
 }
 
 void spari_nodes_show(const spari_root_view *t, int64_t from, int64_t to) {
