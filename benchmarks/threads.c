@@ -24,7 +24,7 @@ static void need(const spar_session *s, int status) {
 static spar_member *add_beam(spar_session *s, int number, int elements, int nodes, double length) {
     const double eta[2] = {0, 1}, line[6] = {0, 5.0 * number, 0, length, 5.0 * number, 0};
     double K[36] = {0}, M[36] = {0};
-    const double k[6] = {1e9, 1e8, 1e8, 1e7, 1e7, 2e7}, m[6] = {100, 100, 100, 10, 5, 5};
+    const double k[6] = {1e10, 1e9, 1e9, 1e9, 1e9, 2e9}, m[6] = {100, 100, 100, 10, 5, 5};
     for (int i = 0; i < 6; i++) {
         K[7 * i] = k[i], M[7 * i] = m[i];
     }

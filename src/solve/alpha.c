@@ -464,8 +464,8 @@ static int newton(const alpha_step *t) {
     const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max,
                                            spari_leave_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
-                  "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt or more substeps, "
-                  "or look at the loads",
+                  "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt, more substeps or "
+                  "a smaller rho_inf, or look at the loads",
                   t->member->name, wrong, iterations, session->time);
     return SPAR_OK;
 }
