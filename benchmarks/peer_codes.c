@@ -50,25 +50,39 @@ static double angle_at(const peer_scene *scene, double t) {
     return scene->smoothly ? 0.5 * t - 0.5 * scene->end / pi * sin(pi * t / scene->end) : t;
 }
 
-static int make_blade(spar_session *s, const peer_scene *scene, int k, spar_member **b) {
+/* A blade and, of scenes that ask for it, the joint about the hub that drives its root. */
+typedef struct blade {
+    spar_member *beam;
+    spar_joint *root;
+} blade;
+
+static int make_joint(spar_session *s, const char *name, blade *b) {
+    const double x[3] = {0}, q[4] = {1, 0, 0, 0};
+    return spar_joint_create(s, name, b->beam, 0, NULL, 0, 63, &b->root) || spar_joint_set_frame(b->root, x, q) ||
+           spar_joint_set_driven(b->root, 63);
+}
+
+static int make_blade(spar_session *s, const peer_scene *scene, int k, blade *b) {
     const double part = part_at(scene, 0);
     const double omega[3] = {0, part * scene->turning, 0}, force[6] = {0, 0, part * scene->force, 0, 0, 0};
     double x[3], q[4];
     char name[16];
+    int root = scene->joints ? SPAR_ROOT_FREE : scene->turning > 0 ? SPAR_ROOT_DRIVEN : SPAR_ROOT_FIXED;
     (void)snprintf(name, sizeof name, "blade%d", k + 1);
     root_of(scene, k, 0, x, q);
-    return spar_beam_create(s, name, 1, scene->nodes, b) || scene->describe(*b, scene->of) ||
-           spar_beam_set_quadrature(*b, scene->rule, scene->points) || spar_member_set_placement(*b, x, q) ||
-           spar_member_set_root(*b, scene->turning > 0 ? SPAR_ROOT_DRIVEN : SPAR_ROOT_FIXED) ||
-           spar_member_set_initial_velocity(*b, NULL, NULL, omega) || spar_member_commit(*b) ||
-           spar_member_set_load(*b, scene->nodes - 1, SPAR_LOAD_DEAD, force);
+    return spar_beam_create(s, name, 1, scene->nodes, &b->beam) || scene->describe(b->beam, scene->of) ||
+           spar_beam_set_quadrature(b->beam, scene->rule, scene->points) || spar_member_set_placement(b->beam, x, q) ||
+           spar_member_set_root(b->beam, root) || spar_member_set_initial_velocity(b->beam, NULL, NULL, omega) ||
+           spar_member_commit(b->beam) || spar_member_set_load(b->beam, scene->nodes - 1, SPAR_LOAD_DEAD, force) ||
+           (scene->joints && make_joint(s, name, b));
 }
 
-static int make_blades(const peer_scene *scene, spar_session **s, spar_member **b) {
+static int make_blades(const peer_scene *scene, spar_session **s, blade *b) {
     const double gravity[3] = {0, 0, -scene->gravity};
-    int bad = spar_session_create(s) || spar_session_set_integrator(*s, 0, 1) || spar_session_set_gravity(*s, gravity);
+    int bad = spar_session_create(s) || spar_session_set_integrator(*s, scene->rho_inf, 1) ||
+              spar_session_set_gravity(*s, gravity);
     for (int k = 0; k < scene->blades && !bad; k++) {
-        bad = make_blade(*s, scene, k, &b[k]);
+        bad = make_blade(*s, scene, k, b + k);
     }
     if (bad) {
         fprintf(stderr, "peers: %s\n", *s ? spar_session_message(*s) : "no session");
@@ -77,7 +91,7 @@ static int make_blades(const peer_scene *scene, spar_session **s, spar_member **
 }
 
 /* Its root and force at t. */
-static int drive(spar_member *b, const peer_scene *scene, int k, double t) {
+static int drive(const blade *b, const peer_scene *scene, int k, double t) {
     const double load[6] = {0, 0, part_at(scene, t) * scene->force, 0, 0, 0};
     double from[3], x[3], q[7] = {0}, v[6] = {0}, a[6] = {0};
     double turn = scene->turning * angle_at(scene, t), w = scene->turning * part_at(scene, t);
@@ -91,8 +105,13 @@ static int drive(spar_member *b, const peer_scene *scene, int k, double t) {
     q[3] = cos(0.5 * turn), q[4] = q[6] = 0, q[5] = sin(0.5 * turn);
     v[0] = w * x[2], v[2] = -w * x[0], v[4] = w;
     a[0] += faster * x[2], a[2] -= faster * x[0], a[4] = faster;
-    return (scene->turning > 0 && spar_member_drive_root(b, q, v, a)) ||
-           (scene->smoothly && spar_member_set_load(b, scene->nodes - 1, SPAR_LOAD_DEAD, load));
+    if (b->root) {
+        const double motion[6] = {0, 0, 0, 0, turn, 0}, rate[6] = {0, 0, 0, 0, w, 0},
+                     rises[6] = {0, 0, 0, 0, faster, 0};
+        return spar_joint_drive(b->root, motion, rate, rises);
+    }
+    return (scene->turning > 0 && spar_member_drive_root(b->beam, q, v, a)) ||
+           (scene->smoothly && spar_member_set_load(b->beam, scene->nodes - 1, SPAR_LOAD_DEAD, load));
 }
 
 /* From where the tip is to its deflection in the frame of the hub. */
@@ -114,12 +133,12 @@ static int tip_of(const spar_member *b, const peer_scene *scene, double u[3]) {
     return 0;
 }
 
-static int move(spar_session *s, spar_member **b, const peer_scene *scene, int steps) {
+static int move(spar_session *s, const blade *b, const peer_scene *scene, int steps) {
     double dt = scene->end / steps;
     int bad = 0;
     for (int i = 0; i < steps && !bad; i++) {
         for (int k = 0; k < scene->blades && !bad; k++) {
-            bad = drive(b[k], scene, k, (i + 1) * dt);
+            bad = drive(b + k, scene, k, (i + 1) * dt);
         }
         bad = bad || spar_step_begin(s, dt) || spar_step_solve(s) || spar_step_accept(s);
     }
@@ -134,12 +153,12 @@ static double now(void) {
 
 static int run_once(const peer_scene *scene, int steps, peer_tolerance t, peer_run *r) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES] = {NULL};
+    blade b[MOST_BLADES] = {{NULL, NULL}};
     int bad = make_blades(scene, &s, b) || spar_session_set_newton(s, t.atol, t.rtol, 30);
     double since = now();
     bad = bad || move(s, b, scene, steps);
     r->us = (now() - since) / steps;
-    bad = bad || tip_of(b[0], scene, r->u);
+    bad = bad || tip_of(b[0].beam, scene, r->u);
     spar_session_destroy(&s);
     return bad;
 }
@@ -190,23 +209,23 @@ static void write_sections(FILE *f, const spari_beam *beam) {
 
 static int write_kynema(const peer_scene *scene) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES] = {NULL};
+    blade b[MOST_BLADES] = {{NULL, NULL}};
     double xi[MOST_NODES], x[3 * MOST_NODES], q[4 * MOST_NODES], mu[6];
     FILE *f = NULL;
     spari_gll(scene->nodes, xi, NULL, NULL);
-    int bad = make_blades(scene, &s, b) || spar_member_get_reference(b[0], x, q) || spar_beam_get_damping(b[0], mu) ||
-              !(f = open_file("peer_kynema.txt", "w"));
+    int bad = make_blades(scene, &s, b) || spar_member_get_reference(b[0].beam, x, q) ||
+              spar_beam_get_damping(b[0].beam, mu) || !(f = open_file("peer_kynema.txt", "w"));
     if (!bad) {
-        fprintf(f, "%d %.17g %.17g %.17g %.17g %.17g %d\n", scene->blades, scene->hub, scene->turning, scene->gravity,
-                scene->force, scene->end, scene->smoothly);
+        fprintf(f, "%d %.17g %.17g %.17g %.17g %.17g %.17g %d\n", scene->blades, scene->hub, scene->turning,
+                scene->gravity, scene->force, scene->end, scene->rho_inf, scene->smoothly);
         fprintf(f, "%.17g %.17g %.17g %.17g %.17g %.17g\n%d\n", mu[0], mu[1], mu[2], mu[3], mu[4], mu[5], scene->nodes);
         for (int i = 0; i < scene->nodes; i++) {
             const double *y = x + 3 * i, *p = q + 4 * i;
             fprintf(f, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", 0.5 * (1 + xi[i]), y[0], y[1], y[2], p[0],
                     p[1], p[2], p[3]);
         }
-        write_quadrature(f, scene, b[0]->beam);
-        write_sections(f, b[0]->beam);
+        write_quadrature(f, scene, b[0].beam->beam);
+        write_sections(f, b[0].beam->beam);
         bad = fclose(f) != 0;
     }
     spar_session_destroy(&s);
@@ -279,10 +298,10 @@ static int write_primary(const peer_scene *scene, const spari_beam *beam, double
     }
     fprintf(f,
             "--------- BEAMDYN INPUT FILE ---\n---\n---- SIMULATION CONTROL ----\nFalse  Echo\n"
-            "False  QuasiStaticInit\n0  rhoinf\n%d  quadrature\n%d  refine\n\"DEFAULT\"  n_fact\n\"DEFAULT\"  DTBeam\n"
+            "False  QuasiStaticInit\n%g  rhoinf\n%d  quadrature\n%d  refine\n\"DEFAULT\"  n_fact\n\"DEFAULT\"  DTBeam\n"
             "\"DEFAULT\"  load_retries\n30  NRMax\n%g  stop_tol\n\"DEFAULT\"  tngt_stf_fd\n"
             "\"DEFAULT\"  tngt_stf_comp\n\"DEFAULT\"  tngt_stf_pert\n\"DEFAULT\"  tngt_stf_difftol\nTrue  RotStates\n",
-            scene->refine > 0 ? 2 : 1, scene->refine > 0 ? scene->refine : 1, tolerance);
+            scene->rho_inf, scene->refine > 0 ? 2 : 1, scene->refine > 0 ? scene->refine : 1, tolerance);
     fprintf(f,
             "---- GEOMETRY PARAMETER ----\n1  member_total\n%d  kp_total\n1  %d\n"
             "kp_xr kp_yr kp_zr initial_twist\n(m) (m) (m) (deg)\n",
@@ -373,11 +392,11 @@ static int drive_beamdyn(const peer_scene *scene, int steps, double dt, double *
    that stay as they are. */
 static int run_beamdyn(const peer_scene *scene, int steps, peer_tolerance t, peer_run *r) {
     spar_session *s = NULL;
-    spar_member *b[MOST_BLADES] = {NULL};
+    blade b[MOST_BLADES] = {{NULL, NULL}};
     double few, all;
     int tenth = steps / 10;
-    int bad = scene->blades > 1 || scene->smoothly || make_blades(scene, &s, b) || write_blade(b[0]->beam) ||
-              write_primary(scene, b[0]->beam, t.atol);
+    int bad = scene->blades > 1 || scene->smoothly || make_blades(scene, &s, b) || write_blade(b[0].beam->beam) ||
+              write_primary(scene, b[0].beam->beam, t.atol);
     spar_session_destroy(&s);
     if (bad || drive_beamdyn(scene, tenth, scene->end / steps, &few) ||
         drive_beamdyn(scene, steps, scene->end / steps, &all)) {

@@ -5,7 +5,7 @@
 
 #include <spar/spar.h>
 
-/* One element a blade; spectral damping 0. Blades lie along x from the hub, which turns about y; weight and force point
+/* One element a blade. Blades lie along x from the hub, which turns about y; weight and force point
    along z. The first blade's tip is looked at, from the frame that turns with the hub. Smoothly: force and speed grow
    with sin^2 from nothing to all at the end, so that an error of second order is one; else they are there at once. */
 typedef struct peer_scene {
@@ -18,6 +18,8 @@ typedef struct peer_scene {
     double gravity;      /* m/s^2 */
     double force;        /* N, on each tip */
     double end;          /* s */
+    double rho_inf;      /* spectral radius at infinite frequency */
+    int joints;          /* spar's roots are free, on joints to the ground that drive them */
     int smoothly;
 } peer_scene;
 

@@ -1,7 +1,8 @@
 /* spar beside published codes that are installed here, in turns, on the same beams: processor time of a step, the error
    that Newton leaves and that of dt, and what each code at its best takes to an error.
 
-   peers [--curves] [--csv FILE] [--blade FILE] [scene ...]     default box6 box8 box11
+   peers [--curves | --errors] [--csv FILE] [--blade FILE] [--end SECONDS] [--rho-inf R] [--joints] [scene ...]
+   default box6 box8 box11
 
    A scene is a name and the nodes of a blade:
      box    the composite box of Wang et al. (Wind Energy 20, 2017), 10 m, clamped, 150 N at the tip at once
@@ -11,8 +12,10 @@
      blade  one of --blade (BeamDyn's primary file; else of the NREL 5-MW rotor), undamped, set turning smoothly up to
             0.16 rad/s; 50 Gauss points
      rotor  three of them
-   --curves: all dt and tolerances too. Each code is compared with its own solution: Newton's error with the tightest
-   tolerance at the same dt, that of dt with the limit dt -> 0 by Richardson. What is not here is said to be not here.
+   --curves: all dt and tolerances too. --errors: errors of dt alone, nothing timed. --end: how long, and how long forces
+   and speeds of smooth scenes grow; dt stays. --rho-inf: of all codes, default 0. --joints: blades of spar that turn are
+   on joints that drive them. Each code is compared with its own solution: Newton's error with the tightest tolerance at
+   the same dt, that of dt with the limit dt -> 0 by Richardson. What is not here is said to be not here.
  */
 #include "nrel5mw.h"
 #include "peer_codes.h"
@@ -62,6 +65,13 @@ static int describe_file(spar_member *b, const void *of) {
     return spar_beam_read_beamdyn(b, of, NULL) || spar_beam_set_damping(b, none);
 }
 
+/* What the command line asks; end 0: each scene's own. */
+typedef struct asked {
+    const char *file, *table;
+    int curves, errors, joints;
+    double end, rho_inf;
+} asked;
+
 /* A scene and what is asked of it: steps at its longest dt, halvings of dt, those to compare Newton at. */
 typedef struct deck {
     char name[16];
@@ -69,7 +79,8 @@ typedef struct deck {
     int fewest, dts, at[2], turns;
 } deck;
 
-static int read_deck(const char *name, const char *file, const nrel5mw *tables, deck *d) {
+static int read_deck(const char *name, const asked *a, const nrel5mw *tables, deck *d) {
+    const char *file = a->file;
     size_t letters = strspn(name, "abcdefghijklmnopqrstuvwxyz");
     int nodes = atoi(name + letters), rotor = strncmp(name, "rotor", letters) == 0;
     const peer_scene box = {.describe = describe_box,
@@ -114,6 +125,12 @@ static int read_deck(const char *name, const char *file, const nrel5mw *tables, 
     } else {
         return 1;
     }
+    d->scene.rho_inf = a->rho_inf;
+    d->scene.joints = a->joints && d->scene.turning > 0;
+    if (a->end > 0) {
+        d->fewest = (int)fmax(1, round(d->fewest * a->end / d->scene.end));
+        d->scene.end = a->end;
+    }
     return 0;
 }
 
@@ -143,13 +160,18 @@ static int run_tight(int code, const peer_scene *scene, int steps, double u[3]) 
 }
 
 /* The limit dt -> 0, by the order, 1 or 2, that three dt show: under a force that comes at once not all begin with the
-   second. */
+   second. The least is a quarter of the least compared, or half of it where a code does not solve such short steps. */
 static int limit_of(int code, const deck *d, double u[3]) {
     double of[3][3];
-    for (int i = 0; i < 3; i++) {
-        if (run_tight(code, &d->scene, d->fewest << (d->dts - 1 + i), of[i])) {
-            return 1;
+    int bad = 1;
+    for (int least = d->dts - 1; least >= d->dts - 2 && bad; least--) {
+        bad = 0;
+        for (int i = 0; i < 3 && !bad; i++) {
+            bad = run_tight(code, &d->scene, d->fewest << (least + i), of[i]);
         }
+    }
+    if (bad) {
+        return 1;
     }
     int order = distance(of[0], of[1]) > sqrt(8) * distance(of[1], of[2]) ? 2 : 1;
     for (int i = 0; i < 3; i++) {
@@ -304,26 +326,32 @@ static void print_least(const deck *d, point (*points)[LEVELS][PEER_CODES], doub
     printf(own ? "\n" : "   spar does not have it\n");
 }
 
+static void print_errors(const deck *d, const double (*limit)[3]) {
+    printf("\n%s, error of dt from %g s on, halved each time, m\n", d->name, d->scene.end / d->fewest);
+    for (int k = 0; k < PEER_CODES; k++) {
+        printf(here[k] ? "  %-12s" : "", peer_codes[k].name);
+        for (int dt = 0; dt < d->dts && here[k]; dt++) {
+            double u[3];
+            int bad = run_tight(k, &d->scene, d->fewest << dt, u);
+            printf(" %.2e%s", bad ? NAN : distance(u, limit[k]), dt == d->dts - 1 ? "\n" : "");
+        }
+    }
+}
+
 static void compare_curves(const deck *d, const double (*limit)[3], FILE *csv) {
     static point points[MOST_DTS][LEVELS][PEER_CODES];
     for (int dt = 0; dt < d->dts; dt++) {
         measure_levels(d, dt, 2, limit, points[dt]);
     }
     write_points(csv, d, points);
-    printf("\n%s, error of dt from %g s on, halved each time, m\n", d->name, d->scene.end / d->fewest);
-    for (int k = 0; k < PEER_CODES; k++) {
-        printf(here[k] ? "  %-12s" : "", peer_codes[k].name);
-        for (int dt = 0; dt < d->dts && here[k]; dt++) {
-            printf(" %.1e%s", points[dt][0][k].of_dt, dt == d->dts - 1 ? "\n" : "");
-        }
-    }
+    print_errors(d, limit);
     printf("least milliseconds to an error of the tip at %g s, each code at its best dt and tolerance\n", d->scene.end);
     for (double most = 1e-1; most > 5e-5; most /= sqrt(10)) {
         print_least(d, points, most);
     }
 }
 
-static void play(const deck *d, int curves, FILE *csv) {
+static void play(const deck *d, const asked *a, FILE *csv) {
     double limit[PEER_CODES][3];
     int were[PEER_CODES];
     memcpy(were, here, sizeof here);
@@ -339,10 +367,12 @@ static void play(const deck *d, int curves, FILE *csv) {
         }
     }
     (void)fflush(stdout);
-    for (int i = 0; i < 2 && (i == 0 || d->at[i] != d->at[0]); i++) {
+    for (int i = 0; i < 2 && (i == 0 || d->at[i] != d->at[0]) && !a->errors; i++) {
         compare_newton(d, d->at[i], (const double(*)[3])limit);
     }
-    if (curves) {
+    if (a->errors) {
+        print_errors(d, (const double(*)[3])limit);
+    } else if (a->curves) {
         compare_curves(d, (const double(*)[3])limit, csv);
     }
     (void)fflush(stdout);
@@ -351,38 +381,56 @@ static void play(const deck *d, int curves, FILE *csv) {
 
 /* ---- the program ---- */
 
-static int play_all(int count, char **names, const char *file, int curves, FILE *csv, const nrel5mw *tables) {
+static int play_all(int count, char **names, const asked *a, FILE *csv, const nrel5mw *tables) {
     deck d;
     for (int i = 0; i < count; i++) {
-        if (read_deck(names[i], file, tables, &d)) {
+        if (read_deck(names[i], a, tables, &d)) {
             fprintf(stderr, "peers: no scene '%s': box, push, nrel, blade or rotor, and 3 to 20 nodes\n", names[i]);
             return 2;
         }
-        play(&d, curves, csv);
+        play(&d, a, csv);
     }
     return 0;
 }
 
-int main(int argc, char **argv) {
-    static char *usual[] = {"box6", "box8", "box11"};
-    const char *file = NULL, *table = NULL;
-    int curves = 0, at = 1;
-    nrel5mw tables;
+/* Where scenes begin among the arguments; -1: one is not known. */
+static int read_arguments(int argc, char **argv, asked *a) {
+    int at = 1;
     for (; at < argc && argv[at][0] == '-'; at++) {
         int two = at + 1 < argc;
         if (strcmp(argv[at], "--curves") == 0) {
-            curves = 1;
+            a->curves = 1;
+        } else if (strcmp(argv[at], "--errors") == 0) {
+            a->errors = 1;
+        } else if (strcmp(argv[at], "--joints") == 0) {
+            a->joints = 1;
         } else if (two && strcmp(argv[at], "--csv") == 0) {
-            table = argv[++at];
+            a->table = argv[++at];
         } else if (two && strcmp(argv[at], "--blade") == 0) {
-            file = argv[++at];
+            a->file = argv[++at];
+        } else if (two && strcmp(argv[at], "--end") == 0) {
+            a->end = atof(argv[++at]);
+        } else if (two && strcmp(argv[at], "--rho-inf") == 0) {
+            a->rho_inf = atof(argv[++at]);
         } else {
-            fprintf(stderr, "usage: peers [--curves] [--csv FILE] [--blade FILE] [scene ...]\n");
-            return 2;
+            return -1;
         }
     }
-    FILE *csv = table ? fopen(table, "w") : NULL;
-    if ((table && !csv) || peer_codes_begin(argv[0]) || nrel5mw_load(&tables, SPAR_DATA_DIR "/nrel5mw") != SPAR_OK) {
+    return at;
+}
+
+int main(int argc, char **argv) {
+    static char *usual[] = {"box6", "box8", "box11"};
+    asked a = {0};
+    nrel5mw tables;
+    int at = read_arguments(argc, argv, &a);
+    if (at < 0) {
+        fprintf(stderr, "usage: peers [--curves | --errors] [--csv FILE] [--blade FILE] [--end SECONDS] [--rho-inf R] "
+                        "[--joints] [scene ...]\n");
+        return 2;
+    }
+    FILE *csv = a.table ? fopen(a.table, "w") : NULL;
+    if ((a.table && !csv) || peer_codes_begin(argv[0]) || nrel5mw_load(&tables, SPAR_DATA_DIR "/nrel5mw") != SPAR_OK) {
         fprintf(stderr, "peers: cannot write, or no tables of the NREL 5-MW rotor\n");
         return 1;
     }
@@ -393,8 +441,7 @@ int main(int argc, char **argv) {
     if (csv) {
         fprintf(csv, "scene,code,dt,tolerance,us,left,of_dt,error,ms\n");
     }
-    int status = argc > at ? play_all(argc - at, argv + at, file, curves, csv, &tables)
-                           : play_all(3, usual, file, curves, csv, &tables);
+    int status = argc > at ? play_all(argc - at, argv + at, &a, csv, &tables) : play_all(3, usual, &a, csv, &tables);
     nrel5mw_free(&tables);
     peer_codes_end();
     return csv && fclose(csv) != 0 ? 1 : status;

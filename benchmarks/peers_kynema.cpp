@@ -18,7 +18,7 @@ using Matrix = std::array<std::array<double, 6>, 6>;
 
 struct Scene {
     std::size_t blades{};
-    double hub{}, turning{}, gravity{}, force{}, end{};
+    double hub{}, turning{}, gravity{}, force{}, end{}, rho_inf{};
     bool smoothly{};
     std::array<double, 6> damping{};
     std::vector<double> s;                         // of the nodes, 0 to 1
@@ -30,7 +30,8 @@ struct Scene {
 static bool read_scene(const char *path, Scene &scene) {
     std::ifstream file(path);
     std::size_t n = 0;
-    file >> scene.blades >> scene.hub >> scene.turning >> scene.gravity >> scene.force >> scene.end >> scene.smoothly;
+    file >> scene.blades >> scene.hub >> scene.turning >> scene.gravity >> scene.force >> scene.end >> scene.rho_inf >>
+        scene.smoothly;
     for (auto &x : scene.damping) {
         file >> x;
     }
@@ -125,7 +126,7 @@ static bool run(const Scene &scene, int steps, double atol, double rtol, Run &ou
     const double dt = scene.end / steps;
     const auto roots = make_blades(scene, model);
     const auto last = scene.nodes.size() - 1;
-    auto parameters = kynema_fmb::StepParameters(true, 30, dt, 0., atol, rtol);
+    auto parameters = kynema_fmb::StepParameters(true, 30, dt, scene.rho_inf, atol, rtol);
     auto [state, elements, constraints, solver] = model.CreateSystemWithSolver<>();
     auto force = Kokkos::create_mirror_view(state.f);
     Kokkos::deep_copy(force, state.f);
