@@ -188,7 +188,8 @@ SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
 /* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). dt may grow or shrink by any factor from step to
    step: what a longer step does not resolve is damped by rho_inf a step and feeds nothing.
-     rho_inf: in, spectral radius at infinite frequency, in [0,1]; 1 keeps all, 0 damps most; default 0.9. An exact beam
+     rho_inf: in, spectral radius at infinite frequency, in [0,1]; 1 keeps all, 0 damps most and has 5.4 times the error
+           of dt that 0.9 has; default 0.9. An exact beam
            that spins at Omega without a driven root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5
            Omega dt
      substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
