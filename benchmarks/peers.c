@@ -12,10 +12,10 @@
      blade  one of --blade (BeamDyn's primary file; else of the NREL 5-MW rotor), undamped, set turning smoothly up to
             0.16 rad/s; 50 Gauss points
      rotor  three of them
-   --curves: all dt and tolerances too. --errors: errors of dt alone, nothing timed. --end: how long, and how long forces
-   and speeds of smooth scenes grow; dt stays. --rho-inf: of all codes, default 0. --joints: blades of spar that turn are
-   on joints that drive them. Each code is compared with its own solution: Newton's error with the tightest tolerance at
-   the same dt, that of dt with the limit dt -> 0 by Richardson. What is not here is said to be not here.
+   --curves: all dt and tolerances too. --errors: errors of dt alone, nothing timed. --end: how long, and how long
+   forces and speeds of smooth scenes grow; dt stays. --rho-inf: of all codes, default 0. --joints: blades of spar that
+   turn are on joints that drive them. Each code is compared with its own solution: Newton's error with the tightest
+   tolerance at the same dt, that of dt with the limit dt -> 0 by Richardson. What is not here is said to be not here.
  */
 #include "nrel5mw.h"
 #include "peer_codes.h"
