@@ -1,4 +1,4 @@
-/* What code needs that is compiled once for each width of vectors: see width.h. */
+/* What code needs that is compiled once for each width of vectors: see width.h and widths.h. */
 #ifndef SPARI_LANES_H
 #define SPARI_LANES_H
 

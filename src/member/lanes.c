@@ -4,25 +4,8 @@
 #include "../math/basis.h"
 #include "tangent.h"
 
-#define SPARI_WIDTH 2
-#include "../math/width.h"
-#include "forces_lanes.h"
-#include "nodes_lanes.h"
-#include "tangent_lanes.h"
-#ifdef SPARI_X86
-#define SPARI_WIDTH 4
-#include "../math/width.h"
-#include "forces_lanes.h"
-#include "nodes_lanes.h"
-#include "tangent_lanes.h"
-#define SPARI_WIDTH 8
-#include "../math/width.h"
-#include "forces_lanes.h"
-#include "nodes_lanes.h"
-#include "tangent_lanes.h"
-#endif
-#define SPARI_WIDTH 0
-#include "../math/width.h"
+#define SPARI_KERNELS "../member/element_lanes.h"
+#include "../math/widths.h"
 
 /* The kernels of one instruction set; forces by what of its mass a section shows. */
 typedef struct lane_kernels {

@@ -24,19 +24,8 @@ static const double inverse_series[] = {1.0 / 12,
                                         43867.0 / 5109094217170944000,
                                         174611.0 / 802857662698291200000.0};
 
-#define SPARI_WIDTH 2
-#include "../math/width.h"
-#include "alpha_lanes.h"
-#ifdef SPARI_X86
-#define SPARI_WIDTH 4
-#include "../math/width.h"
-#include "alpha_lanes.h"
-#define SPARI_WIDTH 8
-#include "../math/width.h"
-#include "alpha_lanes.h"
-#endif
-#define SPARI_WIDTH 0
-#include "../math/width.h"
+#define SPARI_KERNELS "../solve/alpha_lanes.h"
+#include "../math/widths.h"
 
 /* Passes over nodes that tell how large their motions are. */
 enum { TAKE, PLACE, SIZE, SIZED };

@@ -16,19 +16,8 @@
 /* Columns of a dense matrix are solved for so many at a time. */
 enum { SPARI_CORNER = 8 };
 
-#define SPARI_WIDTH 2
-#include "../math/width.h"
-#include "linear_lanes.h"
-#ifdef SPARI_X86
-#define SPARI_WIDTH 4
-#include "../math/width.h"
-#include "linear_lanes.h"
-#define SPARI_WIDTH 8
-#include "../math/width.h"
-#include "linear_lanes.h"
-#endif
-#define SPARI_WIDTH 0
-#include "../math/width.h"
+#define SPARI_KERNELS "../solve/linear_lanes.h"
+#include "../math/widths.h"
 
 /* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
 enum { LONG = 64, ELEMENTS = 16 };

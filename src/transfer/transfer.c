@@ -45,19 +45,8 @@ static carrier carrier_of(const double *c) {
     return m;
 }
 
-#define SPARI_WIDTH 2
-#include "../math/width.h"
-#include "kernel.h"
-#ifdef SPARI_X86
-#define SPARI_WIDTH 4
-#include "../math/width.h"
-#include "kernel.h"
-#define SPARI_WIDTH 8
-#include "../math/width.h"
-#include "kernel.h"
-#endif
-#define SPARI_WIDTH 0
-#include "../math/width.h"
+#define SPARI_KERNELS "../transfer/kernel.h"
+#include "../math/widths.h"
 
 /* The kernels of one instruction set. */
 typedef struct kernels {

@@ -1,0 +1,5 @@
+/* All kernels of an element for one vector width. Included by lanes.c once per width with the macros of math/width.h.
+   No include guard: this is a body, not an interface. */
+#include "forces_lanes.h"
+#include "nodes_lanes.h"
+#include "tangent_lanes.h"
