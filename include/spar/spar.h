@@ -737,11 +737,14 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
      load_steps: in, >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails
    A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame that turns
    with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
-   accelerations become those of the deformed shape turning steadily. Under dead forces (no moments, no followers) the
-   result is the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is
-   refused. Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a
-   log is warned. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the
-   way; SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
+   accelerations become those of the deformed shape turning steadily. Members that joints tie to such a root, to a node
+   that is told to turn, or to a hinge that is driven with a rate against what stands, turn with it as one; there gravity
+   and dead loads across the axis, parts that turn or are driven against each other, and joints to what stands that are
+   not alike all around are SPAR_ERR_UNSUPPORTED. Under dead forces (no moments, no followers) the result is the stable
+   equilibrium that growing loads lead to: past a limit or branching point there is none, and it is refused. Where
+   neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log is warned.
+   SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the way;
+   SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
@@ -804,8 +807,8 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
    points and external members (points, external members and prescribed beams move as they are told, and
    spar_member_get_loads adds what joints put on them). In a trial, and with advice in force, a beam may have other
    nodes: its joints stay where they are, at ends of elements; a beam held within an element keeps its nodes.
-   spar_member_solve_static solves for all that a member is tied to; where nothing holds an assembly, the message names
-   the motion that is free. */
+   spar_member_solve_static solves for all that a member is tied to, at rest or turning as one; where nothing holds an
+   assembly, the message names the motion that is free. */
 
 /* A joint of two nodes. It goes with its session. Before the first step.
      name: in, unique in the session, not empty, copied

@@ -65,6 +65,13 @@ static inline void spari_rotate_back(const double q[4], const double x[3], doubl
     spari_rotate(c, x, y);
 }
 
+/* Whether x has a part across an axis, of length 1, beyond rounding. */
+static inline int spari_across(const double axis[3], const double x[3]) {
+    double part[3];
+    spari_cross(axis, x, part);
+    return spari_norm(part) > 1e-9 * spari_norm(x);
+}
+
 /* y = R x; y may be x. Many vectors are turned for half of what spari_rotate takes. */
 static inline void spari_matrix_times(const double r[9], const double x[3], double y[3]) {
     double a = r[0] * x[0] + r[1] * x[1] + r[2] * x[2], b = r[3] * x[0] + r[4] * x[1] + r[5] * x[2];

@@ -262,6 +262,15 @@ int spari_applied_potential(const spar_member *m) {
     return !a->follower && !a->line[SPAR_LOAD_FOLLOWER].first && !moments;
 }
 
+int spari_applied_across(const spar_member *m, const double axis[3]) {
+    const line_load *dead = m->applied ? &m->applied->line[SPAR_LOAD_DEAD] : NULL;
+    int across = 0;
+    for (int k = 0; dead && dead->first && k < 2 * dead->first[m->elements]; k++) {
+        across = across || spari_across(axis, dead->load + 3 * (int64_t)k);
+    }
+    return across;
+}
+
 /* ---- tangent ---- */
 
 /* S (rows at row, columns at col) += f * skew(a) */

@@ -22,6 +22,8 @@ void spari_applied_tangent(const spar_member *member, int e, const double *q, do
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
 /* Whether the loads have a potential: dead forces and springs only. */
 int spari_applied_potential(const spar_member *member);
+/* Whether loads along its line that do not turn have parts across an axis, of length 1. */
+int spari_applied_across(const spar_member *member, const double axis[3]);
 /* Into a file, and back in two passes: the first gets what it needs into member->applied_next (image->failed when it
  * cannot), the second takes it. */
 void spari_applied_save(const spar_member *member, spari_image *image);

@@ -4,6 +4,7 @@
 
 #include "../base/scene.h"
 #include "tied.h"
+#include "turning.h"
 
 #include <float.h>
 #include <math.h>
@@ -126,6 +127,7 @@ static void keep_point(spari_assembly *a, int back) {
 /* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
 static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
     for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].turning = a->turns ? &a->turning : NULL;
         a->limb[i].row->rest(a->limb + i, fluid(a->limb[i].member), onward);
     }
     for (int i = 0; i < a->links && !onward; i++) {
@@ -156,12 +158,16 @@ static double follow_loads(spari_assembly *a, int load_steps, char *text, int si
     return done;
 }
 
-/* Nothing has been found: all is as it was. */
-static int refuse_rest(spari_assembly *a, double done, const char *text) {
+static void give_up_rest(spari_assembly *a) {
     for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->leave_rest(a->limb + i);
     }
     spari_assembly_leave(a);
+}
+
+/* Nothing has been found: all is as it was. */
+static int refuse_rest(spari_assembly *a, double done, const char *text) {
+    give_up_rest(a);
     return spari_fail(a->session, SPAR_ERR_NUMERIC,
                       "the members that joint '%s' ties together: no equilibrium found beyond %.6g of the loads%s%s; "
                       "the state is as it was",
@@ -178,11 +184,9 @@ static int look_at_rest(spari_assembly *a) {
     return SPAR_OK;
 }
 
-int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
+static int find_equilibrium_of(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
+                               int onward) {
     char text[240] = "";
-    if (!a->here || a->limbs == 0) {
-        return a->here ? look_at_rest(a) : SPAR_OK;
-    }
     begin_rest(a, fluid, onward);
     double done = onward ? follow_loads(a, 1, text, sizeof text) : 0;
     if (done < 1) {
@@ -197,10 +201,26 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
     for (int i = 0; i < a->limbs; i++) {
         a->limb[i].row->end_rest(a->limb + i);
     }
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->links && !a->turns; i++) {
         memset(a->link[i].joint->after.rate, 0, sizeof a->link[i].joint->after.rate);
     }
     return SPAR_OK;
+}
+
+int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
+    if (!a->here || a->limbs == 0) {
+        return a->here ? look_at_rest(a) : SPAR_OK;
+    }
+    int status = spari_turning_begin(a);
+    status = status == SPAR_OK ? find_equilibrium_of(a, fluid, load_steps, onward) : status;
+    if (status == SPAR_OK && a->turns) {
+        status = spari_turning_check(a);
+        if (status != SPAR_OK) {
+            give_up_rest(a);
+        }
+    }
+    spari_turning_end(a);
+    return status;
 }
 
 void spari_assembly_settle(spari_assembly *a) {
@@ -208,7 +228,9 @@ void spari_assembly_settle(spari_assembly *a) {
         spar_joint *j = a->link[i].joint;
         j->now = j->after;
         j->drive[0] = j->drive[1];
-        memset(j->drive[0].rate, 0, sizeof j->drive[0].rate);
+        for (int k = 0; k < 6; k++) { /* of what turns; else 0 */
+            j->drive[0].rate[k] = j->driven >> k & 1 ? j->after.rate[k] : 0;
+        }
         memset(j->drive[0].acceleration, 0, sizeof j->drive[0].acceleration);
     }
 }

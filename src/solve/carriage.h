@@ -55,6 +55,8 @@ typedef struct spari_carriage {
     double *twice;   /* and S s_w / 2 [n] */
     int still;       /* the forces are those without inertia, under */
     double factor;   /* so much of loads and gravity */
+    int steady;      /* the whole turns steadily with steady_turn, the root where it is put: no step */
+    double steady_turn[3];
 } spari_carriage;
 
 /* Finds the nodes that joints tie; before the matrices are there. SPAR_OK or SPAR_ERR_MEMORY. */

@@ -130,7 +130,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
 
 /* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
 static int steps_on(const spari_frame *f) {
-    return !f->carriage->still && f->steps.started;
+    return !f->carriage->still && !f->carriage->steady && f->steps.started;
 }
 
 /* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
@@ -369,14 +369,19 @@ void spari_carriage_push(const spari_frame *f, const spar_member *m, const doubl
 /* ---- the tangent ---- */
 
 /* The root moved by `by` along k, in the axes of the frame, with the rates that go along. */
-static spari_pose moved_root(const spari_pose *root, int k, double by, double cm, double cv, const double tinv[9]) {
+static spari_pose moved_root(const spari_carriage *c, const spari_pose *root, int k, double by, double cm, double cv,
+                             const double tinv[9]) {
     spari_pose p = *root;
     double unit[3] = {0}, axis[3], x[3], turn[4];
     unit[k % 3] = by;
     spari_rotate(root->q + 3, unit, axis);
     if (k < 3) {
+        if (c->steady) {
+            spari_cross(c->steady_turn, axis, x);
+            spari_cross(c->steady_turn, x, x);
+        }
         for (int i = 0; i < 3; i++) {
-            p.a[i] += cm * axis[i];
+            p.a[i] += cm * axis[i] + (c->steady ? x[i] : 0);
         }
         return p;
     }
@@ -398,7 +403,7 @@ static void form_columns(spari_frame *f, const spar_member *m, const spari_pose 
     for (int k = 0; k < 6; k++) {
         double *column = c->border + (int64_t)(6 + k) * f->n, by = (k < 3 ? m->body->length : 1) * 1e-5 / fastest;
         for (int side = 0; side < 2; side++) {
-            const spari_pose p = moved_root(root, k, side ? -by : by, cm, cv, tinv);
+            const spari_pose p = moved_root(c, root, k, side ? -by : by, cm, cv, tinv);
             forces_at(f, m, &p, c->out + (int64_t)side * f->n);
         }
         for (int i = 0; i < f->n; i++) {

@@ -6,6 +6,7 @@
 #define SPARI_LIMB_H
 
 #include "root.h"
+#include "turn.h"
 
 struct spari_frame;
 struct spari_limb;
@@ -102,8 +103,9 @@ typedef struct spari_limb {
     spari_ends ends;
     spari_pose root, before; /* a driven root at the substep's ends */
     double turn[4], power;
-    double change, leave;    /* of the correction under way: its size, and what may be left of it */
-    int moved, owner_before; /* while it is made: the rank that had it, and what that kept of it */
+    const spari_turning *turning; /* equilibrium in a frame that turns; NULL: at rest */
+    double change, leave;         /* of the correction under way: its size, and what may be left of it */
+    int moved, owner_before;      /* while it is made: the rank that had it, and what that kept of it */
     void *solution_before;
 } spari_limb;
 

@@ -492,9 +492,32 @@ static void rest_frame(spari_limb *p, const double *fluid, int onward) {
     look_at_end_of_step(p);
 }
 
+/* The root turns with the whole, and with it the frame and what rests in that. */
+static void turn_root(spari_limb *p, double factor) {
+    const spar_member *m = p->member;
+    spari_state *to = &p->solver->to;
+    double x[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = m->xr[k] + to->q[k];
+    }
+    spari_turning_rates(p->turning, factor, x, to->v, to->a);
+    look_at_end_of_step(p);
+}
+
 static double balance_frame_at_rest(spari_limb *p, double factor) {
     spari_frame *f = p->frame;
-    double scale = spari_carriage_forces(f, p->member, &f->to, 1, factor, f->r);
+    int turning = p->turning && f->M && (p->member->effects & SPAR_EFFECT_INERTIA);
+    spari_turn part = {{0}, {0}, {0}};
+    if (p->turning) {
+        turn_root(p, factor);
+    }
+    if (turning) {
+        part = spari_turn_part(&p->turning->turn, factor);
+        spari_carriage_turn(f, &f->to, 0);
+    }
+    f->carriage->steady = turning;
+    memcpy(f->carriage->steady_turn, part.w, sizeof part.w);
+    double scale = spari_carriage_forces(f, p->member, &f->to, !turning, factor, f->r);
     show_forces(p, &f->to);
     return scale;
 }
@@ -502,7 +525,9 @@ static double balance_frame_at_rest(spari_limb *p, double factor) {
 static int tangent_of_frame_at_rest(spari_limb *p, double factor) {
     const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     (void)factor; /* that of the forces at rest */
-    return spari_carriage_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
+    int singular = spari_carriage_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
+    p->frame->carriage->steady = 0;
+    return singular;
 }
 
 static void shift_frame(spari_limb *p, double cut) {
@@ -526,11 +551,16 @@ static void keep_places_of_frame(spari_limb *p, int back) {
 static void leave_rest_of_frame(spari_limb *p) {
     copy_to(p->frame);
     p->frame->factored = 0;
+    p->frame->carriage->steady = 0;
 }
 
 static void end_rest_of_frame(spari_limb *p) {
     keep_places_of_frame(p, 1);
+    if (p->turning) {
+        turn_root(p, 1);
+    }
     p->frame->factored = 0;
+    p->frame->carriage->steady = 0;
     p->member->row->publish(p->member);
 }
 

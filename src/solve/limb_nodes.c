@@ -348,10 +348,30 @@ static void rest_nodes(spari_limb *p, const double *fluid, int onward) {
     p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
 }
 
+/* Rates of the places where the nodes are now, as they turn with the whole. */
+static void turn_nodes(spari_limb *p, double f) {
+    const spar_member *m = p->member;
+    spari_state *to = &p->solver->to;
+    for (int i = 0; i < p->solver->n && p->turning; i++) {
+        double x[3];
+        spari_member_arm(m, i, x);
+        for (int k = 0; k < 3; k++) {
+            x[k] += m->xr[k] + to->q[7 * i + k];
+        }
+        spari_turning_rates(p->turning, f, x, to->v + 6 * i, to->a + 6 * i);
+    }
+}
+
+static int turns_with_mass(const spari_limb *p) {
+    return p->turning && p->solver->body->mass && (p->member->effects & SPAR_EFFECT_INERTIA);
+}
+
 static double balance_nodes_at_rest(spari_limb *p, double f) {
     spari_solver *s = p->solver;
     const spari_body body = spari_body_in_part(s->body, f);
-    double scale = spari_body_residual(&body, s->to.q, NULL, NULL, f, s->r, NULL);
+    turn_nodes(p, f);
+    double scale = turns_with_mass(p) ? spari_turn_residual(&body, s->to.q, s->to.v, s->to.a, f, s->r)
+                                      : spari_body_residual(&body, s->to.q, NULL, NULL, f, s->r, NULL);
     for (int k = 0; k < 6 * s->n; k++) {
         s->r[k] -= f * s->steps.load[k];
         scale = fmax(scale, fabs(f * s->steps.load[k]));
@@ -369,8 +389,14 @@ static double balance_nodes_at_rest(spari_limb *p, double f) {
 static int tangent_of_nodes_at_rest(spari_limb *p, double f) {
     spari_solver *s = p->solver;
     const spari_body body = spari_body_in_part(s->body, f), *whole = s->body;
+    int singular;
     s->body = &body;
-    int singular = spari_solver_factor(s, p->member, s->to.q, NULL, NULL, f, 0, 0, NULL);
+    if (turns_with_mass(p)) {
+        const spari_turn turn = spari_turn_part(&p->turning->turn, f);
+        singular = spari_solver_factor_turning(s, p->member, &turn, s->to.q, s->to.v, s->to.a, f, p->turning->mass);
+    } else {
+        singular = spari_solver_factor(s, p->member, s->to.q, NULL, NULL, f, 0, 0, NULL);
+    }
     s->body = whole;
     return singular;
 }
@@ -392,6 +418,7 @@ static void leave_rest_of_nodes(spari_limb *p) {
 
 static void end_rest_of_nodes(spari_limb *p) {
     keep_places_of_nodes(p, 1);
+    turn_nodes(p, 1);
     p->solver->factored = 0;
     p->member->row->publish(p->member);
 }

@@ -2,6 +2,7 @@
 #include "tied.h"
 
 #include "../base/scene.h"
+#include "../math/rotation.h"
 #include "drive.h"
 
 #include <string.h>
@@ -81,5 +82,40 @@ void spari_links_add(spari_assembly *a) {
     }
     for (int i = 0; i < a->limbs; i++) {
         memset(a->limb[i].force, 0, (size_t)spari_member_held(a->limb[i].member) * sizeof(double));
+    }
+}
+
+int spari_link_standing(const spari_link *l) {
+    const spar_joint *j = l->joint;
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        if (!l->limb[side] && !(m && spari_norm(m->after.v + 6 * j->seat[side]) > 0) &&
+            !(m && spari_norm(m->after.v + 6 * j->seat[side] + 3) > 0)) {
+            return side;
+        }
+    }
+    return -1;
+}
+
+void spari_link_turning_dampers(spari_link *l, const double w[3]) {
+    const spar_joint *j = l->joint;
+    int side = spari_link_standing(l), given = spari_joint_given(j);
+    double R[6][12], W[9];
+    if (side < 0 || !j->sprung || spari_joint_is_slack(j, &j->after)) {
+        return;
+    }
+    spari_skew(w, W);
+    spari_tie_rates(&j->tie, &l->place[0], &l->place[1], l->v, R);
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i < 9; i++) {
+            R[k][6 * (1 - side) + i % 3] += l->B[k][6 * (1 - side) + i / 3] * W[i];
+        }
+    }
+    for (int pq = 0; pq < 36; pq++) {
+        int p = pq / 6, q = pq % 6;
+        double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
+        for (int i = 0; i < 144 && d != 0; i++) {
+            l->turning[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
+        }
     }
 }

@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"
+#include "turn.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -126,14 +127,9 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
     }
 }
 
-int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
-                        double factor, double cm, double cv, const double *tinv) {
+/* Factors what has been formed at the state q. */
+static int factor_formed(spari_solver *s, const spar_member *member, const double *q, double cm, double cv) {
     int end = spari_member_held(member);
-    tangent_state t = {
-        .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
-    s->factored = 0;
-    spari_linear_zero(s->linear);
-    spari_body_sweep(s->body, add_tangents, &t);
     if (s->condensed) {
         spari_condensed_take(s->condensed, s->linear, end);
     }
@@ -150,6 +146,34 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
         memcpy(s->kept_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
     }
     return 0;
+}
+
+int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
+                        double factor, double cm, double cv, const double *tinv) {
+    tangent_state t = {
+        .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    spari_body_sweep(s->body, add_tangents, &t);
+    return factor_formed(s, member, q, cm, cv);
+}
+
+int spari_solver_factor_turning(spari_solver *s, const spar_member *member, const spari_turn *turn, const double *q,
+                                const double *v, const double *a, double factor, double *mass) {
+    const spari_body *body = s->body;
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    for (int e = 0; e < body->elements; e++) {
+        spari_turn_tangent(body, turn, e, q, v, a, factor, body->matrix, mass);
+        if (spari_solver_has_applied(s, member)) {
+            spari_applied_tangent(member, e, q, factor, body->matrix);
+        }
+        if (s->arms) {
+            spari_arms_tangent(s->arms, q + 3, body->matrix);
+        }
+        spari_linear_add(s->linear, e, body->matrix);
+    }
+    return factor_formed(s, member, q, 0, 0);
 }
 
 void spari_solver_effort(const spari_solver *s, spari_effort *e) {

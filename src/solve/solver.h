@@ -102,5 +102,9 @@ static inline double spari_solver_most(const spari_solver *solver) {
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
                         const double *a, double factor, double cm, double cv, const double *tinv);
+/* The same of equilibrium in a frame that turns so, with the loads at that factor; `mass`: room for an element's. */
+struct spari_turn;
+int spari_solver_factor_turning(spari_solver *solver, const spar_member *member, const struct spari_turn *turn,
+                                const double *q, const double *v, const double *a, double factor, double *mass);
 
 #endif

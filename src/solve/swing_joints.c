@@ -71,17 +71,20 @@ static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swin
 
 typedef struct swing_joint {
     double K[12][12], C[12][12], B[6][12], f[12];
+    double bound[12][12]; /* of K, what goes with the axes of the joint: not the turning of loads that turn with all */
     int given;
 } swing_joint;
 
-/* K, C += B^T (k B + d R), B^T d B over the motions that are free */
+/* K, C += B^T (k B + d R), B^T d B over the motions that are free; K in `bound` too */
 static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
     for (int pq = 0; pq < 36; pq++) {
         int p = pq / 6, q = pq % 6, off = (of->given >> p & 1) || (of->given >> q & 1);
         double k = off ? 0 : j->stiffness[pq], d = off ? 0 : j->damping[pq];
         for (int i = 0; i < 144 && (k != 0 || d != 0); i++) {
             int r = i / 12, c = i % 12;
-            of->K[r][c] += of->B[p][r] * (k * of->B[q][c] + d * R[q][c]);
+            double spring = of->B[p][r] * (k * of->B[q][c] + d * R[q][c]);
+            of->K[r][c] += spring;
+            of->bound[r][c] += spring;
             of->C[r][c] += d * of->B[p][r] * of->B[q][c];
         }
     }
@@ -91,17 +94,23 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
                                         swing_joint *of) {
     spari_place place[2];
     spari_relative at = j->after;
-    double v[12], V[12][12], R[6][12], turning[12][12] = {{0}};
+    double v[12], V[12][12], R[6][12], stands[6];
     *of = (swing_joint){.given = spari_joint_given(j)};
     spari_joint_places(j, place);
     rates_of_nodes(w, j, side, v, V);
     spari_tie_motion(&j->tie, &place[0], &place[1], at.z, of->B);
     spari_joint_count_turns(j, j->after.z, at.z);
     spari_joint_spring(j, at.z, at.rate, 1, at.load);
-    spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, turning);
+    spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, of->K);
     spari_tie_forces(of->B, at.load, of->f);
+    for (int k = 0; k < 6;
+         k++) { /* what holds and springs give is steady as the motion is; what the host gives stands */
+        stands[k] = of->given >> k & 1 ? 0 : j->given[k] + j->preload[k];
+    }
+    spari_tie_tangent(&j->tie, &place[0], &place[1], stands, of->bound);
     for (int i = 0; i < 144; i++) {
-        of->K[i / 12][i % 12] = -turning[i / 12][i % 12];
+        of->K[i / 12][i % 12] *= -1;
+        of->bound[i / 12][i % 12] *= -1;
     }
     if (j->sprung && !spari_joint_is_slack(j, &at)) {
         spari_tie_rates(&j->tie, &place[0], &place[1], v, R);
@@ -179,7 +188,8 @@ SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, c
         return SPAR_OK;
     }
     held_directions(of, P);
-    double turn = spari_norm(s), of_K = change_by_turning(of->K, s, size), of_C = change_by_turning(of->C, s, size + 1);
+    double turn = spari_norm(s), of_K = change_by_turning(of->bound, s, size),
+           of_C = change_by_turning(of->C, s, size + 1);
     double of_P = change_by_turning(P, s, size + 2);
     const double alike = 1e-6;
     int round = of_K <= alike * turn * size[0] && of_C <= alike * turn * size[1] && of_P <= alike * turn * size[2];
@@ -208,8 +218,10 @@ static void put_joint(spari_swing *w, const swing_side side[2], const swing_join
     for (int n = 0; n < 2; n++) {
         for (int c = 0; c < side[n].count; c++) {
             double *left = w->pencil.left + side[n].column[c], row[6] = {0};
+            int told = side[n].part->member->seen != SPARI_SEEN_LINEAR; /* those do not say their own forces */
             for (int i = 0; i < 6; i++) {
-                *left -= side[n].S[c][i] * of->f[6 * n + i];
+                w->pencil.scale = fmax(w->pencil.scale, fabs(of->f[6 * n + i]));
+                *left -= told ? side[n].S[c][i] * of->f[6 * n + i] : 0;
                 for (int k = 0; k < 6; k++) {
                     row[k] += side[n].S[c][i] * of->B[k][6 * n + i];
                 }
@@ -228,10 +240,11 @@ static void put_joint(spari_swing *w, const swing_side side[2], const swing_join
 
 int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
     swing_side side[2] = {{.part = spari_swing_part(w, j->member[0])}, {.part = spari_swing_part(w, j->member[1])}};
-    int status = SPAR_OK;
     if (!side[0].part && !side[1].part) {
         return SPAR_OK;
     }
+    swing_joint *of = spari_zalloc(1, sizeof *of);
+    int status = of ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int n = 0; n < 2 && status == SPAR_OK; n++) {
         int size = side[n].part ? side[n].part->size : 0;
         side[n].column = spari_zalloc(size, sizeof *side[n].column);
@@ -242,15 +255,15 @@ int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
         }
     }
     if (status == SPAR_OK) {
-        swing_joint of;
-        linearise_joint(w, j, side, &of);
-        status = check_around(w, j, side, &of);
+        linearise_joint(w, j, side, of);
+        status = check_around(w, j, side, of);
         if (status == SPAR_OK) {
-            put_joint(w, side, &of, holds);
+            put_joint(w, side, of, holds);
         }
     } else {
         status = spari_fail(w->session, status, "joint '%s': no memory for eigenvalues", j->name);
     }
+    free(of);
     for (int n = 0; n < 2; n++) {
         free(side[n].column);
         free(side[n].S);

@@ -55,6 +55,9 @@ void spari_tied_keep(spari_assembly *a) {
         spari_link *l = a->link + i;
         memset(l->turning, 0, sizeof l->turning);
         spari_tie_tangent(&l->joint->tie, &l->place[0], &l->place[1], l->joint->after.load, l->turning);
+        if (a->turns) {
+            spari_link_turning_dampers(l, a->turning.turn.w);
+        }
     }
 }
 

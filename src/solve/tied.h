@@ -28,6 +28,8 @@ struct spari_assembly {
     spari_limb *limb;
     spari_link *link; /* on every rank; what follows is the owner's */
     double mass;      /* of the parts */
+    int turns;        /* the equilibrium under way is that of a whole that turns so (turning.h) */
+    spari_turning turning;
     int n;
     int solved;        /* the parts and links stand at the end of a step */
     spari_trace trace; /* of Newton; strict it forgets the rate */
@@ -52,6 +54,10 @@ void spari_link_times(double B[6][12], const double v[12], double rate[6]);
 /* How far a held motion, or its rate, is from where it has to be. */
 double spari_link_gap(const spari_link *l, int k);
 double spari_link_rate_gap(const spari_link *l, int k);
+/* The side that stands: the ground, or a node that is told to; -1: none. */
+int spari_link_standing(const spari_link *l);
+/* What its dampers add to the tangent where the other side turns steadily with w: velocities go with places. */
+void spari_link_turning_dampers(spari_link *l, const double w[3]);
 /* The links' forces, taken from the parts' residuals; fixed unknowns out. */
 void spari_links_add(spari_assembly *a);
 /* Of the system factored last: the smallest pivot by the largest stiffness. */

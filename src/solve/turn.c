@@ -43,6 +43,19 @@ void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double
     }
 }
 
+void spari_turning_rates(const spari_turning *t, double f, const double x[3], double v[6], double a[6]) {
+    const spari_turn part = spari_turn_part(&t->turn, f);
+    const double r[3] = {x[0] - t->centre[0], x[1] - t->centre[1], x[2] - t->centre[2]};
+    spari_cross(part.w, r, v);
+    spari_cross(part.w, v, a);
+    for (int k = 0; k < 3; k++) {
+        v[k] += part.v0[k];
+        a[k] += part.a0[k];
+        v[3 + k] = part.w[k];
+        a[3 + k] = 0;
+    }
+}
+
 double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
                            double *r) {
     spari_body body = *damped;

@@ -22,6 +22,14 @@ int spari_turn_of(const spar_member *member, const double v[6], const double a[6
 spari_turn spari_turn_part(const spari_turn *turn, double f);
 /* Rates v, a [unique][6] of the shape q [unique][7]. */
 void spari_turn_rates(const spar_member *member, const spari_turn *turn, const double *q, double *v, double *a);
+/* What turns as one with others: the turn is that of `centre`, and of every place from there. */
+typedef struct spari_turning {
+    spari_turn turn;
+    double centre[3];
+    double *mass; /* room for the mass matrix of an element of any part */
+} spari_turning;
+/* Rates v, a [6] of what is at x, at load factor f. */
+void spari_turning_rates(const spari_turning *turning, double f, const double x[3], double v[6], double a[6]);
 /* As spari_body_residual, damping left out. */
 double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
                            double *r);

@@ -108,5 +108,55 @@ static void test_shaft(void **state) {
     verified();
 }
 
+/* Three blades welded to a hub that a hinge against the ground drives: the flap of one, thrice; and a rod that its own
+   centrifugal force stretches, x = sin(k s) / (k cos(k L)), k^2 = m W^2 / EA. */
+static void test_rotor(void **state) {
+    (void)state;
+    const double table[2][3] = {{4, 5.5850014209, 24.273349394}, {12, 13.170150488, 37.603112331}};
+    for (int k = 0; k < 2; k++) {
+        const double x[3] = {0}, unit[4] = {1, 0, 0, 0}, c[3] = {0}, J[3] = {1, 1, 1}, third = 2 * acos(-1) / 3;
+        const double rate[6] = {0, 0, 0, 0, 0, table[k][0]}, angle[6] = {0}, EA = 1e3, L = 1;
+        double M[36], K[36], rod_M[36], q[7], s_k = table[k][0] / sqrt(EA);
+        spar_session *s = scene_session();
+        spar_member *hub = NULL, *b[3], *rod = NULL;
+        spar_joint *j = NULL;
+        char what[64];
+        scene_mass(M, 1, c, J);
+        OK(s, spar_rigid_create(s, "hub", x, unit, M, &hub));
+        OK(s, spar_member_set_root(hub, SPAR_ROOT_FREE));
+        OK(s, spar_member_commit(hub));
+        OK(s, spar_joint_create(s, "shaft", hub, 0, NULL, 0, SPAR_FREE_RZ, &j));
+        OK(s, spar_joint_set_driven(j, SPAR_FREE_RZ));
+        OK(s, spar_joint_drive(j, angle, rate, NULL));
+        for (int i = 0; i < 4; i++) {
+            static const char *const name[4] = {"a", "b", "c", "rod"}, *const tie[4] = {"wa", "wb", "wc", "wr"};
+            const double turn[4] = {cos(0.5 * third * i), 0, 0, sin(0.5 * third * i)};
+            scene_diagonal(K, i < 3 ? 1e8 : EA, 1e8, 1e8, 1e3, 1, 1);
+            scene_diagonal(rod_M, 1, 1, 1, 2e-8, 1e-8, 1e-8);
+            spar_member *m = scene_beam(s, name[i], 1, 13, L, K, rod_M);
+            OK(s, spar_member_set_placement(m, x, i < 3 ? turn : unit));
+            OK(s, spar_member_set_root(m, SPAR_ROOT_FREE));
+            OK(s, spar_member_commit(m));
+            OK(s, spar_joint_create(s, tie[i], m, 0, hub, 0, 0, &j));
+            *(i < 3 ? &b[i] : &rod) = m;
+        }
+        OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
+        scene_tip(rod, q);
+        (void)snprintf(what, sizeof what, "W = %g: tip of a rod on the hub", table[k][0]);
+        verify(what, L + q[0], tan(s_k * L) / s_k, 1e-9, "closed form");
+        for (int i = 1; i < 3; i++) {
+            const double shift[2] = {0, table[k][i]};
+            double value[3][2];
+            OK(s, spar_member_solve_eigenvalues(b[0], 3, shift, &value[0][0], NULL, NULL));
+            for (int blade = 0; blade < 3; blade++) {
+                (void)snprintf(what, sizeof what, "rotor, W = %g: flap %d, %d of 3", table[k][0], i, blade + 1);
+                verify(what, value[blade][1], table[k][i], 2e-5 * table[k][i], "Frobenius series");
+            }
+        }
+        spar_session_destroy(&s);
+    }
+    verified();
+}
+
 VERIFICATION_MAIN("Stability by eigenvalues", cmocka_unit_test(test_columns), cmocka_unit_test(test_blade),
-                  cmocka_unit_test(test_shaft))
+                  cmocka_unit_test(test_shaft), cmocka_unit_test(test_rotor))
