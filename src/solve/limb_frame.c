@@ -168,7 +168,6 @@ static double balance_frame(spari_limb *p) {
     spari_alpha_impose_root(p->member, &p->root, &p->ends, p->solver->increment);
     look_at_end_of_step(p);
     double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
-    spari_alpha_operators(p->solver, &p->scheme, &p->ends, p->solver->increment);
     show_forces(p, &f->to);
     return scale;
 }
@@ -194,6 +193,7 @@ static double noise_of_frame(const spari_limb *p) {
 
 static int tangent_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
+    spari_alpha_operators(p->solver, &p->scheme, &p->ends, p->solver->increment);
     return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
 }
 

@@ -138,9 +138,7 @@ static int predict_nodes(spari_limb *p, spari_guess stays) {
 static double balance_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
     spari_alpha_impose_root(p->member, &p->root, &p->ends, s->increment);
-    double scale = spari_alpha_balance(s, p->member, &p->scheme, &p->ends.seen, s->r);
-    spari_alpha_operators(s, &p->scheme, &p->ends, s->increment);
-    return scale;
+    return spari_alpha_balance(s, p->member, &p->scheme, &p->ends.seen, s->r);
 }
 
 static double noise_of_nodes(const spari_limb *p) {
@@ -155,7 +153,9 @@ static double noise_of_nodes(const spari_limb *p) {
 }
 
 static int tangent_of_nodes(spari_limb *p) {
-    return spari_alpha_tangent(p->solver, p->member, &p->scheme, &p->ends.seen);
+    spari_solver *s = p->solver;
+    spari_alpha_operators(s, &p->scheme, &p->ends, s->increment);
+    return spari_alpha_tangent(s, p->member, &p->scheme, &p->ends.seen);
 }
 
 static int nodes_serve(const spari_limb *p) {
