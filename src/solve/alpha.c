@@ -408,6 +408,7 @@ static int kept_serves_alone(const alpha_step *t) {
 static int begin_alone(void *self, int kept) {
     const alpha_step *t = self;
     t->s->factored = kept && kept_serves_alone(t);
+    spari_mixing_begin(t->s->mixing);
     return t->s->factored;
 }
 
@@ -427,15 +428,18 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
             return "found a singular tangent";
         }
         (void)spari_alpha_turn_back(s, q, s->r, s->dx); /* its axes are these */
+        spari_mixing_begin(s->mixing);
     }
     if (spari_linear_solve(s->linear, s->dx)) {
         return "found a singular tangent";
     }
+    spari_mixing_take(s->mixing, s->body->crew ? *s->body->crew : NULL, s->body->lanes, s->body->length, s->dx);
     corrected size =
         correct_turned(s, t->member, t->c, t->e, s->body->linear[0] ? NULL : s->turn, longest, t->x, s->dx);
     s->newton++;
     it->correction = size.by;
     it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);
+    s->mixing->enough = it->tolerance;
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
     return NULL;

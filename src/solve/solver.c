@@ -37,6 +37,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
     ok = ok && (s->most = spari_zalloc((n + SPARI_SPAN - 1) / SPARI_SPAN, sizeof(double)));
+    ok = ok && (s->mixing = spari_mixing_create(n));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {
         spari_solver_free(s);
@@ -78,6 +79,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->turn);
     free(s->best);
     free(s->most);
+    spari_mixing_free(s->mixing);
     spari_linear_free(s->linear);
     spari_condensed_free(s->condensed);
     free(s);

@@ -10,6 +10,7 @@
 #include "arms.h"
 #include "condense.h"
 #include "effort.h"
+#include "mixing.h"
 #include "scheme.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
@@ -36,6 +37,7 @@ struct spari_solver {
     double *best;   /* static: state to go back to */
     double *most;   /* [spans of nodes] the largest of each: spari_solver_most */
     spari_linear *linear;
+    spari_mixing *mixing;       /* of a solution's corrections; nothing of it lasts longer */
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
     /* the factored tangent, kept while it contracts */
     int factored;

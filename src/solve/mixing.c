@@ -1,0 +1,154 @@
+/* Newton's corrections mixed with those before them: see mixing.h. */
+#include "mixing.h"
+
+#include "../base/status.h"
+#include "../math/lanes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Unknowns of four nodes: lanes of every width begin with the same component. */
+enum { STRIPE = 24, SPAN = 256 * 6, VECTORS = 6 };
+
+#define SPARI_KERNELS "../solve/mixing_lanes.h"
+#include "../math/widths.h"
+
+typedef struct mixing_kernels {
+    void (*look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums);
+    void (*mix)(const spari_mixing *m, const double *by, double *x, int64_t from, int64_t to);
+} mixing_kernels;
+
+static const mixing_kernels *mixing_here(int lanes) {
+    static const mixing_kernels plain = {look_plain, mix_plain};
+#ifdef SPARI_X86
+    static const mixing_kernels avx2 = {look_avx2, mix_avx2}, avx512 = {look_avx512, mix_avx512};
+    switch (spari_lanes_here(lanes ? lanes : 8)) {
+    case 8:
+        return &avx512;
+    case 4:
+        return &avx2;
+    default:
+        break;
+    }
+#endif
+    (void)lanes;
+    return &plain;
+}
+
+static int64_t spans_of(int64_t unknowns) {
+    return (unknowns + SPAN - 1) / SPAN;
+}
+
+spari_mixing *spari_mixing_create(int64_t nodes) {
+    spari_mixing *m = spari_zalloc(1, sizeof *m);
+    int64_t n = 6 * nodes;
+    if (!m || !(m->z = spari_zalloc(VECTORS * n + SPARI_MIXED_SUMS * spans_of(n), sizeof *m->z))) {
+        free(m);
+        return NULL;
+    }
+    m->unknowns = n;
+    m->c = m->z + n;
+    m->d[0] = m->c + n, m->d[1] = m->d[0] + n;
+    m->w[0] = m->d[1] + n, m->w[1] = m->w[0] + n;
+    m->sums = m->w[1] + n;
+    return m;
+}
+
+void spari_mixing_free(spari_mixing *m) {
+    if (m) {
+        free(m->z);
+        free(m);
+    }
+}
+
+typedef struct mixing_pass {
+    const spari_mixing *m;
+    const mixing_kernels *kernels;
+    double *x, by[2];
+} mixing_pass;
+
+/* Two corrections were taken as they came, the second of which stands in w[0]: the first pair. */
+static void make_first_pair(const spari_mixing *m, int64_t from, int64_t to) {
+    const double *x = m->w[0];
+    for (int64_t i = from; i < to; i++) {
+        m->d[0][i] = x[i] - m->z[i];
+        m->z[i] = m->c[i] = x[i];
+    }
+}
+
+static void look_at_span(void *context, int64_t from, int64_t to) {
+    const mixing_pass *t = context;
+    if (t->m->seen == 2) {
+        make_first_pair(t->m, from, to);
+    }
+    t->kernels->look(t->m, t->x, from, to, t->m->sums + SPARI_MIXED_SUMS * (from / SPAN));
+}
+
+static void mix_span(void *context, int64_t from, int64_t to) {
+    const mixing_pass *t = context;
+    t->kernels->mix(t->m, t->by, t->x, from, to);
+}
+
+static void exchange(double **a) {
+    double *there = a[0];
+    a[0] = a[1];
+    a[1] = there;
+}
+
+/* The sums over the spans in their order. */
+static void add_up(const spari_mixing *m, double length, double *sums) {
+    double part[SPARI_MIXED_SUMS] = {0}, over = 1 / (length * length);
+    for (int64_t k = 0; k < spans_of(m->unknowns); k++) {
+        for (int i = 0; i < SPARI_MIXED_SUMS; i++) {
+            part[i] += m->sums[SPARI_MIXED_SUMS * k + i];
+        }
+    }
+    for (int i = 0; i < SPARI_MIXED_SUMS / 2; i++) {
+        sums[i] = over * part[2 * i] + part[2 * i + 1];
+    }
+}
+
+/* What is less than this of the change before is left alone: mixing would spare nothing. The first pair knows no more
+   than that: it has the square of a first correction in it, which is large. */
+static const double slow = 0.03, slow_at_first = 0.2;
+
+static int is_within_a_pair(double x) {
+    return fabs(x) <= 1;
+}
+
+/* by: the least |z - by[0] d[0] - by[1] d[1]|. With the newer pair alone where both say the same, or that they would
+   take back more than a pair, which is not what a tangent that contracts asks for; with none where it says so too. */
+static void find_parts(const spari_mixing *m, double length, double by[2]) {
+    double sums[SPARI_MIXED_SUMS / 2];
+    add_up(m, length, sums);
+    double newer = sums[0], both = sums[1], older = sums[2], z_newer = sums[3], z_older = sums[4];
+    double area = newer * older - both * both, least = m->seen == 2 ? slow_at_first : slow;
+    by[0] = by[1] = 0;
+    if (!(sums[5] > least * least * newer) || !isfinite(newer)) {
+        return;
+    }
+    if (area > 1e-8 * newer * older) {
+        by[0] = (older * z_newer - both * z_older) / area;
+        by[1] = (newer * z_older - both * z_newer) / area;
+    }
+    if (!(area > 1e-8 * newer * older) || !is_within_a_pair(by[0]) || !is_within_a_pair(by[1])) {
+        by[0] = fabs(z_newer) < newer ? z_newer / newer : 0;
+        by[1] = 0;
+    }
+}
+
+void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double length, double *x) {
+    if (m->seen < 2) { /* a pair of +-lambda is not seen in one change: two corrections are taken as they come */
+        memcpy(m->seen == 0 ? m->z : m->w[0], x, (size_t)m->unknowns * sizeof *x);
+        m->seen++;
+        return;
+    }
+    mixing_pass t = {.m = m, .kernels = mixing_here(lanes), .x = x};
+    spari_crew_spread(crew, m->unknowns, SPAN, look_at_span, &t);
+    exchange(m->d);
+    exchange(m->w);
+    find_parts(m, length, t.by);
+    spari_crew_spread(crew, m->unknowns, SPAN, mix_span, &t);
+    m->seen++;
+}
