@@ -345,6 +345,7 @@ static void pull_slab(void *context, int64_t slab, int worker) {
     for (int64_t first = from; first < end; first += SPARI_TILE) {
         pull_tile(p, first, &t, &p->least[worker]);
     }
+    spari_tiles_end();
 }
 
 /* All pulls: the nodes of one set at t^n + theta dt. */

@@ -7,9 +7,11 @@
 #if defined(__GNUC__)
 #define SPARI_ALWAYS_INLINE __attribute__((always_inline))
 #define SPARI_UNROLL _Pragma("GCC unroll 9")
+#define SPARI_AHEAD(p) __builtin_prefetch(p)
 #else
 #define SPARI_ALWAYS_INLINE
 #define SPARI_UNROLL
+#define SPARI_AHEAD(p) ((void)(p))
 #endif
 
 /* SPARI_PLAIN_LANES (1, 2, 4, 8) builds the portable kernels alone at a width of choice, so that every width can be

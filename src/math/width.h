@@ -8,6 +8,7 @@
      ROOT(x)     square root, where there is an instruction for it
      MOST(a,b)   the larger, b where one is no number, likewise
      ABOVE(a,b)  some bits where a lane of a is larger, likewise
+     STREAM(p,v) v to p, a multiple of its size, past the caches, likewise
      L           the vector; get and put take it from memory and bring it there
      HERE        how a function begins that is inlined
    and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_X86 alone. No include
@@ -22,6 +23,7 @@
 #undef ROOT
 #undef MOST
 #undef ABOVE
+#undef STREAM
 #undef L
 #undef HERE
 
@@ -46,6 +48,7 @@
 #define ROOT(x) _mm256_sqrt_pd(x)
 #define MOST(a, b) _mm256_max_pd(a, b)
 #define ABOVE(a, b) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ))
+#define STREAM(p, v) _mm256_stream_pd(p, v)
 #elif SPARI_WIDTH == 8
 #define W 8
 #define NAME(x) x##_avx512
@@ -55,6 +58,7 @@
 #define ROOT(x) _mm512_sqrt_pd(x)
 #define MOST(a, b) _mm512_max_pd(a, b)
 #define ABOVE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)
+#define STREAM(p, v) _mm512_stream_pd(p, v)
 #endif
 
 #if SPARI_WIDTH == 1 || SPARI_WIDTH == 2
@@ -69,6 +73,7 @@
 #define ROOT(x) _mm_sqrt_pd(x)
 #define MOST(a, b) _mm_max_pd(a, b)
 #define ABOVE(a, b) _mm_movemask_pd(_mm_cmpgt_pd(a, b))
+#define STREAM(p, v) _mm_stream_pd(p, v)
 #endif
 #endif
 

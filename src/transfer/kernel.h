@@ -104,6 +104,40 @@ TARGET static void NAME(store_triples)(double (*row)[SPARI_ROW], int count, doub
     }
 }
 
+#ifdef STREAM
+HERE void NAME(stream)(int64_t n, const double *from, double *to) {
+    int64_t head = (int64_t)((64 - ((uintptr_t)to & 63)) & 63) / 8, i = head < n ? head : n;
+    memcpy(to, from, (size_t)i * sizeof *to);
+    for (; i + 8 <= n; i += 8) {
+        for (int k = 0; k < 8; k += W) {
+            STREAM(to + i + k, NAME(get)(from + i + k));
+        }
+    }
+    memcpy(to + i, from + i, (size_t)(n - i) * sizeof *to);
+}
+#endif
+
+/* The same past the caches, in whole lines: of an array that is longer than they are nothing is there again when it is
+   read, and a line that is written whole needs not be read before. 0: there are no such stores, or not to there. */
+TARGET static int NAME(stream_triples)(double (*row)[SPARI_ROW], int count, double *out) {
+#ifdef STREAM
+    enum { PART = 128 };
+    double triples[3 * PART];
+    if (((uintptr_t)out & 7) != 0) {
+        return 0;
+    }
+    for (int i = 0; i < count; i += PART) {
+        int n = count - i < PART ? count - i : PART;
+        NAME(store_triples)((double(*)[SPARI_ROW])(row[0] + i), n, triples);
+        NAME(stream)(3 * (int64_t)n, triples, out + 3 * (ptrdiff_t)i);
+    }
+    return 1;
+#else
+    (void)row, (void)count, (void)out;
+    return 0;
+#endif
+}
+
 TARGET static void NAME(load_triples)(const double *in, int count, double (*row)[SPARI_ROW]) {
     int i = 0;
     for (; i + W <= count; i += W) {
@@ -289,13 +323,28 @@ HERE void NAME(fetch)(const double *const *from, const int n, int64_t p, int cou
     }
 }
 
+/* PAIR values of n rows of the nodes' own, which are long: those a tile further on are asked for. Each row is a stream
+   of its own that ends with its page for the processor, and a page is two tiles. */
+HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, const int n, int64_t p, int count,
+                            L (*to)[2]) {
+    if (s->n >= SPARI_FAR && p + SPARI_TILE + PAIR <= s->n) {
+        SPARI_UNROLL
+        for (int f = 0; f < n; f++) {
+            for (int k = 0; k < PAIR; k += 8) {
+                SPARI_AHEAD(from[f] + p + SPARI_TILE + k);
+            }
+        }
+    }
+    NAME(fetch)(from, n, p, count, to);
+}
+
 HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                       const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     L least = SPLAT(&huge), in[4][2];
     for (int i = 0; i < count; i += PAIR) {
-        NAME(fetch)(from, 4, first + i, count - i, in);
+        NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
         least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, buf, at + i));
     }
     return NAME(least)(least);
@@ -380,7 +429,7 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
     NAME(splat)(3, m->accel, accel);
     NAME(splat)(3, m->alpha, alpha);
     for (int at = 0; at < count; at += PAIR) {
-        NAME(fetch)(from, 3, first + at, count - at, c);
+        NAME(fetch_nodes)(s, from, 3, first + at, count - at, c);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
             L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], wr[3], ar[3], wwr[3];
@@ -594,9 +643,15 @@ HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_
 }
 
 /* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
-HERE void NAME(fetch_loads)(double (*f)[SPARI_ROW], const int rows, int at, int count, L (*to)[2]) {
-    const double *from[6] = {f[0], f[1], f[2], f[3], f[4], f[5]};
-    NAME(fetch)(from, rows, at, count, to);
+HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int count, L (*to)[2]) {
+    const double *from[6] = {f->row[0], f->row[1], f->row[2], f->row[3], f->row[4], f->row[5]};
+    if (f->next) {
+        SPARI_UNROLL
+        for (int k = 0; k < 3 * PAIR; k += 8) {
+            SPARI_AHEAD(f->next + (ptrdiff_t)3 * at + k);
+        }
+    }
+    NAME(fetch)(from, rows, f->at + at, count, to);
     if (count < PAIR) {
         double keep[PAIR];
         for (int j = 0; j < PAIR; j++) {
@@ -643,7 +698,7 @@ HERE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, 
 /* The loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T, in which the rotation waits
    until the sum over the tile is done. */
 HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int has_moment,
-                             double (*f)[SPARI_ROW], const int audited, double *modal, double *sums, double *tops) {
+                             const tile_loads *f, const int audited, double *modal, double *sums, double *tops) {
     static const double zero = 0;
     const double *const *from = (const double *const *)s->con;
     const int rows = has_moment ? 6 : 3;
@@ -662,7 +717,7 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
     NAME(splat)(3, m->rate, rate);
     NAME(splat)(3, m->omega, w);
     for (int at = 0; at < count; at += PAIR) {
-        NAME(fetch)(from, 3, first + at, count - at, c);
+        NAME(fetch_nodes)(s, from, 3, first + at, count - at, c);
         NAME(fetch_loads)(f, rows, at, count - at, in);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
@@ -691,8 +746,8 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
 }
 
 HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
-                         const int has_moment, double (*f)[SPARI_ROW], int at, const int audited,
-                         double (*work)[SPARI_ROW], double *modal, double *sums, double *tops) {
+                         const int has_moment, const tile_loads *f, const int audited, double (*work)[SPARI_ROW],
+                         double *modal, double *sums, double *tops) {
     static const double huge = HUGE_VAL, zero = 0;
     double(*g)[SPARI_ROW] = work, (*t)[SPARI_ROW] = work + 4;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
@@ -703,8 +758,8 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
     }
     top[0] = top[1] = top[2] = SPLAT(&zero);
     for (int i = 0; i < count; i += PAIR) {
-        NAME(fetch)(from, 4, first + i, count - i, in);
-        NAME(fetch_loads)(f, rows, at + i, count - i, in + 4);
+        NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
+        NAME(fetch_loads)(f, rows, i, count - i, in + 4);
         least = NAME(less)(
             least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in, t[0] + i, g, i, add, top));
     }
@@ -713,7 +768,7 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
             t[k][i] = 0;
         }
     }
-    NAME(project)(consistent ? 7 : 6, modes, count, t, f, g, at, modal);
+    NAME(project)(consistent ? 7 : 6, modes, count, t, f->row, g, f->at, modal);
     if (audited) {
         NAME(add_audit)(add, top, sums, tops);
     }
@@ -723,9 +778,9 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
 /* One function for each of what is asked, so that none has the room of all on its stack. */
 #define GATHER(name, consistent, moment, audited)                                                                      \
     TARGET SPARI_APART static double NAME(gather_##name)(                                                              \
-        const spari_nodes *s, int64_t first, int count, const double *c, double(*f)[SPARI_ROW], int at,                \
+        const spari_nodes *s, int64_t first, int count, const double *c, const tile_loads *f,                          \
         double(*work)[SPARI_ROW], double *modal, double *sums, double *tops) {                                         \
-        return NAME(gather)(s, first, count, c, consistent, moment, f, at, audited, work, modal, sums, tops);          \
+        return NAME(gather)(s, first, count, c, consistent, moment, f, audited, work, modal, sums, tops);              \
     }
 GATHER(nodal, 0, 0, 0)
 GATHER(consistent, 1, 0, 0)
@@ -739,7 +794,7 @@ GATHER(consistent_moment_audited, 1, 1, 1)
 
 /* A point's or a rigid body's loads. */
 TARGET SPARI_APART static double NAME(loads_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
-                                                     int has_moment, double (*f)[SPARI_ROW], int audited, double *modal,
+                                                     int has_moment, const tile_loads *f, int audited, double *modal,
                                                      double *sums, double *tops) {
     const carrier m = carrier_of(c);
     switch (2 * !!has_moment + !!audited) {
@@ -759,28 +814,28 @@ TARGET SPARI_APART static double NAME(loads_carried)(const spari_nodes *s, int64
 }
 
 TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
-                                 int has_moment, double (*f)[SPARI_ROW], int at, int audited, double (*work)[SPARI_ROW],
+                                 int has_moment, const tile_loads *f, int audited, double (*work)[SPARI_ROW],
                                  double *modal, double *sums, double *tops) {
     if (s->per_element == 1) {
         return NAME(loads_carried)(s, first, count, c, has_moment, f, audited, modal, sums, tops);
     }
     switch (4 * !!has_moment + 2 * !!audited + !!consistent) {
     case 0:
-        return NAME(gather_nodal)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_nodal)(s, first, count, c, f, work, modal, sums, tops);
     case 1:
-        return NAME(gather_consistent)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_consistent)(s, first, count, c, f, work, modal, sums, tops);
     case 2:
-        return NAME(gather_nodal_audited)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_nodal_audited)(s, first, count, c, f, work, modal, sums, tops);
     case 3:
-        return NAME(gather_consistent_audited)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_consistent_audited)(s, first, count, c, f, work, modal, sums, tops);
     case 4:
-        return NAME(gather_nodal_moment)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_nodal_moment)(s, first, count, c, f, work, modal, sums, tops);
     case 5:
-        return NAME(gather_consistent_moment)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_consistent_moment)(s, first, count, c, f, work, modal, sums, tops);
     case 6:
-        return NAME(gather_nodal_moment_audited)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_nodal_moment_audited)(s, first, count, c, f, work, modal, sums, tops);
     default:
-        return NAME(gather_consistent_moment_audited)(s, first, count, c, f, at, work, modal, sums, tops);
+        return NAME(gather_consistent_moment_audited)(s, first, count, c, f, work, modal, sums, tops);
     }
 }
 

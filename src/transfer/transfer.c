@@ -45,6 +45,14 @@ static carrier carrier_of(const double *c) {
     return m;
 }
 
+/* The loads of a tile's nodes, as rows, of which a run of one element begins at `at`. next: the host's forces of the
+   tile's nodes after it, NULL: of no use, or not triples. */
+typedef struct tile_loads {
+    double (*row)[SPARI_ROW];
+    int at;
+    const double *next;
+} tile_loads;
+
 #define SPARI_KERNELS "../transfer/kernel.h"
 #include "../math/widths.h"
 
@@ -53,7 +61,7 @@ typedef struct kernels {
     double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int what,
                      double (*buf)[SPARI_ROW], int at);
     double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
-                    double (*f)[SPARI_ROW], int at, int audited, double (*rows)[SPARI_ROW], double *modal, double *sums,
+                    const tile_loads *f, int audited, double (*rows)[SPARI_ROW], double *modal, double *sums,
                     double *tops);
     int (*bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q, int consistent,
                 int has_moment, double (*f)[SPARI_ROW], int at, double (*rows)[SPARI_ROW], double *least,
@@ -61,22 +69,25 @@ typedef struct kernels {
     void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
     void (*store)(double (*row)[SPARI_ROW], int count, double *out);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
+    int (*stream)(double (*row)[SPARI_ROW], int count, double *out);
 } kernels;
 
 static kernels choose_kernels(const spari_nodes *s) {
 #ifdef SPARI_X86
     switch (spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX)) {
     case 8:
-        return (kernels){motion_avx512,   loads_avx512,         bins_avx512,
-                         carry_to_avx512, store_triples_avx512, load_triples_avx512};
+        return (kernels){motion_avx512,        loads_avx512,        bins_avx512,          carry_to_avx512,
+                         store_triples_avx512, load_triples_avx512, stream_triples_avx512};
     case 4:
-        return (kernels){motion_avx2, loads_avx2, bins_avx2, carry_to_avx2, store_triples_avx2, load_triples_avx2};
+        return (kernels){motion_avx2,        loads_avx2,        bins_avx2,          carry_to_avx2,
+                         store_triples_avx2, load_triples_avx2, stream_triples_avx2};
     default:
         break;
     }
 #endif
     (void)s;
-    return (kernels){motion_plain, loads_plain, bins_plain, carry_to_plain, store_triples_plain, load_triples_plain};
+    return (kernels){motion_plain,        loads_plain,        bins_plain,          carry_to_plain,
+                     store_triples_plain, load_triples_plain, stream_triples_plain};
 }
 
 /* ---- node sets ---- */
@@ -297,54 +308,25 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
     }
 }
 
-#if defined(__GNUC__) && defined(__SSE2__)
-/* Past the caches, in whole lines: of an array that is longer than they are nothing is there again when it is read, and
-   a line that is written whole needs not be read before. */
-static void stream(int64_t n, const double *from, double *to) {
-    int64_t head = (int64_t)((64 - ((uintptr_t)to & 63)) & 63) / 8, i = head < n ? head : n;
-    memcpy(to, from, (size_t)i * sizeof *to);
-    for (; i + 8 <= n; i += 8) {
-        for (int k = 0; k < 8; k += 2) {
-            _mm_stream_pd(to + i + k, _mm_loadu_pd(from + i + k));
-        }
-    }
-    memcpy(to + i, from + i, (size_t)(n - i) * sizeof *to);
-}
-
-static int stream_triples(const spari_nodes *s, int count, double (*row)[SPARI_ROW], double *x) {
-    enum { MANY = 1 << 19, PART = 128 };
-    double triples[3 * PART];
-    if (s->n < MANY || ((uintptr_t)x & 7) != 0) {
-        return 0;
-    }
-    for (int i = 0; i < count; i += PART) {
-        int n = count - i < PART ? count - i : PART;
-        choose_kernels(s).store((double(*)[SPARI_ROW])(row[0] + i), n, triples);
-        stream(3 * (int64_t)n, triples, x + 3 * (int64_t)i);
-    }
-    _mm_sfence(); /* before another thread is told that they are there */
-    return 1;
-}
-#else
-static int stream_triples(const spari_nodes *s, int count, double (*row)[SPARI_ROW], double *x) {
-    (void)s, (void)count, (void)row, (void)x;
-    return 0;
-}
-#endif
-
 void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
     int count = spari_tile_count(s, first);
-    if (!s->place && stream_triples(s, count, row, x + 3 * first)) {
-        return;
-    }
     if (!s->place) {
-        choose_kernels(s).store(row, count, x + 3 * first);
+        const kernels kernel = choose_kernels(s);
+        if (s->n < SPARI_PAST || !kernel.stream(row, count, x + 3 * first)) {
+            kernel.store(row, count, x + 3 * first);
+        }
         return;
     }
     for (int i = 0; i < count; i++) {
         double t[3] = {row[0][i], row[1][i], row[2][i]};
         memcpy(x + 3 * (first + s->place[first + i]), t, sizeof t);
     }
+}
+
+void spari_tiles_end(void) {
+#if defined(__GNUC__) && defined(__x86_64__)
+    _mm_sfence(); /* stores that pass the caches */
+#endif
 }
 
 void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
@@ -432,6 +414,13 @@ static void clear_sums(double *block, int64_t nodes) {
     *sums_at(block, nodes).least = HUGE_VAL;
 }
 
+/* Where a tile further on begins, for those who read ahead of many. */
+static const double *forces_after(const spari_nodes *s, int64_t first, spari_source force) {
+    return s->n >= SPARI_FAR && force.d && !force.layout && first + 2 * SPARI_TILE <= s->n
+               ? force.d + 3 * (first + SPARI_TILE)
+               : NULL;
+}
+
 /* f: rows of work space, of which the first six are for the loads. */
 static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], const load_sums *to) {
     const spari_nodes *s = g->s;
@@ -443,10 +432,12 @@ static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], 
     for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
         f[0][i] = f[1][i] = f[2][i] = 0;
     }
+    const double *next = forces_after(s, first, g->force);
     for (int at = 0; at < count;) {
         int run = run_length(s, first + at, count - at);
         ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-        double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, f, at,
+        const tile_loads loads = {f, at, next ? next + 3 * at : NULL};
+        double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, &loads,
                                    g->audited, f + 6, to->modal + node * 14, to->audit, to->tops);
         *to->least = d < *to->least ? d : *to->least;
         at += run;

@@ -99,6 +99,8 @@ spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element);
 void spari_nodes_free(spari_nodes *nodes);
 /* Stores the feet: element [n] and local xi [n] and con [n][3] by node. */
 void spari_nodes_put(spari_nodes *nodes, const int *element, const double *xi, const double *con, const uint8_t *flags);
+/* More than the second-level cache holds: those ahead are asked for; more than any: what is written goes past them. */
+enum { SPARI_FAR = 1 << 16, SPARI_PAST = 1 << 19 };
 /* The node at a storage place, and its element. */
 static inline int64_t spari_nodes_node(const spari_nodes *s, int64_t p) {
     return s->place ? p - p % SPARI_TILE + s->place[p] : p;
@@ -133,6 +135,8 @@ double spari_carry(const spari_nodes *nodes, const double *c, double *x, double 
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
 void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
 void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], float *x);
+/* Before other threads read what spari_tile_store has stored. */
+void spari_tiles_end(void);
 /* The same to where a layout says, one of the two. */
 void spari_tile_store_at(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
                          double *d, float *f);
