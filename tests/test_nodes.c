@@ -349,10 +349,86 @@ static void plain_show(const double *reference, const spari_pose *root, const sp
     }
 }
 
+/* A root looks at what is seen from outside, and finds its own again; b stays. */
+static void check_look(const spari_root_view *shown, int n, double *first) {
+    double room[25 * MOST], out[19 * MOST], exact[19 * MOST];
+    const spari_state *s = shown->own;
+    spari_state own;
+    random_state(n, &own, room);
+    spari_root_view t = *shown;
+    t.own = &own, t.R = NULL;
+    spari_nodes_look(&t, 0, n);
+    const double *const parts[2][3] = {{own.q, own.v, own.a}, {s->q, s->v, s->a}};
+    for (int k = 0; k < 2; k++) {
+        double *to = k ? exact : out;
+        memcpy(to, parts[k][0], sizeof(double) * (size_t)(7 * n));
+        memcpy(to + 7 * n, parts[k][1], sizeof(double) * (size_t)(6 * n));
+        memcpy(to + 13 * n, parts[k][2], sizeof(double) * (size_t)(6 * n));
+    }
+    assert_near(19 * n, out, exact, 1e-13, "what a root sees"); /* 1e2 of the acceleration goes in and out */
+    assert_alike(19 * n, out, first, t.lanes, "what a root sees");
+    assert_memory_equal(own.b, shown->seen->b, sizeof(double) * (size_t)(6 * n));
+}
+
+/* x + u goes back by what a small rigid motion E takes it, u-dot by what the rates J take it; the turn by exp(-E). */
+static void plain_lose(const spari_root_jump *t, const double *arm, double q[7], double v[6]) {
+    const double less[3] = {-t->place[3], -t->place[4], -t->place[5]};
+    double d[3], way[3], rate[3], turn[4];
+    for (int k = 0; k < 3; k++) {
+        d[k] = arm[k] + q[k];
+    }
+    spari_cross(t->place + 3, d, way);
+    spari_cross(t->velocity + 3, d, rate);
+    for (int k = 0; k < 3; k++) {
+        q[k] -= t->place[k] + way[k];
+        v[k] -= t->velocity[k] + rate[k];
+        v[3 + k] -= t->velocity[3 + k];
+    }
+    spari_quat_exp(less, turn);
+    spari_quat_mul(turn, q + 3, q + 3);
+}
+
+static void check_lose(const spar_member *m, int n) {
+    double room[25 * MOST], first[13 * MOST], before[25 * MOST], less[3];
+    spari_root_jump t = {.member = m};
+    spari_state own;
+    random_state(n, &own, before);
+    t.own = &own;
+    random_numbers(6, 1, t.velocity);
+    random_numbers(6, 0.1, t.place);
+    for (int k = 0; k < 3; k++) {
+        less[k] = -t.place[3 + k];
+    }
+    spari_quat_exp(less, t.back);
+    for (int k = 0; k < WIDTHS; k++) {
+        double exact[13 * MOST], out[13 * MOST];
+        memcpy(room, before, sizeof room);
+        own = (spari_state){room, room + 7 * MOST, room + 13 * MOST, room + 19 * MOST};
+        for (int i = 0; i < n; i++) {
+            double arm[3];
+            spari_member_arm(m, i, arm);
+            memcpy(exact + 7 * i, own.q + 7 * i, 7 * sizeof *exact);
+            memcpy(exact + 7 * n + 6 * i, own.v + 6 * i, 6 * sizeof *exact);
+            if (i > 0) {
+                plain_lose(&t, arm, exact + 7 * i, exact + 7 * n + 6 * i);
+            }
+        }
+        t.lanes = widths[k];
+        spari_nodes_lose(&t, 1, n);
+        memcpy(out, own.q, sizeof(double) * (size_t)(7 * n));
+        memcpy(out + 7 * n, own.v, sizeof(double) * (size_t)(6 * n));
+        assert_near(13 * n, out, exact, 1e-14, "what a jump leaves");
+        assert_alike(13 * n, out, first, widths[k], "what a jump leaves");
+        assert_memory_equal(room + 7 * n, before + 7 * n, sizeof(double) * (size_t)(7 * (MOST - n)));
+        assert_memory_equal(room + 13 * MOST, before + 13 * MOST, sizeof(double) * 12 * MOST);
+    }
+}
+
 /* One element of n nodes, and elements of 3, whose joints the reference has twice. */
 static void check_show(int n, int elements) {
     spar_member m = {.elements = elements, .per_element = (n - 1) / elements + 1};
-    double place[3 * 2 * MOST], room[2][25 * MOST], exact[19 * MOST], first[19 * MOST], R[9], omega[3], alpha[3];
+    double place[3 * 2 * MOST], room[2][25 * MOST], exact[19 * MOST], first[2][19 * MOST], R[9];
+    double omega[3], alpha[3];
     spari_pose root;
     spari_state own, seen;
     m.xr = place;
@@ -384,9 +460,11 @@ static void check_show(int n, int elements) {
         memcpy(out + 7 * n, seen.v, sizeof(double) * (size_t)(6 * n));
         memcpy(out + 13 * n, seen.a, sizeof(double) * (size_t)(6 * n));
         assert_near(19 * n, out, exact, 1e-14, "what is seen");
-        assert_alike(19 * n, out, first, widths[k], "what is seen");
+        assert_alike(19 * n, out, first[0], widths[k], "what is seen");
         assert_memory_equal(seen.b, own.b, sizeof(double) * (size_t)(6 * n));
+        check_look(&t, n, first[1]);
     }
+    check_lose(&m, n);
 }
 
 static void test_show(void **unused) {

@@ -303,14 +303,19 @@ HERE void NAME(add_root_motion)(const L *omega, const L *alpha, const L *d, L *v
     }
 }
 
-HERE void NAME(show_block)(const int whole, const int64_t *at, const spari_root_view *t, int64_t i) {
-    const spari_pose *root = t->root;
+/* From the root of the reference to the nodes from i on. */
+HERE void NAME(arms_of)(const int whole, const int64_t *at, const spar_member *member, int64_t i, L *r) {
     double arm[3 * W];
-    L q[7], v[6], a[6], d[3], r[3], turn[4], out[7], spin[3], grow[3];
     for (int l = 0; l < W; l++) {
-        spari_member_arm(t->member, (int)(i + (whole ? l : at[l])), arm + 3 * l);
+        spari_member_arm(member, (int)(i + (whole ? l : at[l])), arm + 3 * l);
     }
     NAME(pick_rows)(1, at, 3, 3, arm, r);
+}
+
+HERE void NAME(show_block)(const int whole, const int64_t *at, const spari_root_view *t, int64_t i) {
+    const spari_pose *root = t->root;
+    L q[7], v[6], a[6], d[3], r[3], turn[4], out[7], spin[3], grow[3];
+    NAME(arms_of)(whole, at, t->member, i, r);
     NAME(pick_rows)(whole, at, 7, 7, t->own->q + 7 * i, q);
     NAME(pick_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
     NAME(pick_rows)(whole, at, 6, 6, t->own->a + 6 * i, a);
@@ -348,4 +353,97 @@ TARGET static void NAME(show)(const spari_root_view *t, int64_t from, int64_t to
     EACH_BLOCK(from, to, WORK)
 #undef WORK
     memcpy(t->seen->b + 6 * from, t->own->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
+}
+
+/* ---- seen from a root ---- */
+
+/* Rates v and accelerations a of nodes at d from the root, all in its axes: less its own, what it sees. */
+HERE void NAME(less_root_motion)(const L *omega, const L *alpha, const L *d, L *v, L *a) {
+    L c1[3], c2[3], c3[3];
+    NAME(cross)(omega, d, c1);
+    for (int k = 0; k < 3; k++) {
+        v[k] = v[k] - c1[k];
+        c1[k] = c1[k] + 2.0 * v[k];
+    }
+    NAME(cross)(omega, c1, c2);
+    NAME(cross)(alpha, d, c3);
+    NAME(cross)(omega, v + 3, c1);
+    for (int k = 0; k < 3; k++) {
+        a[k] = a[k] - (c2[k] + c3[k]);
+        a[3 + k] = a[3 + k] - c1[k];
+    }
+}
+
+HERE void NAME(look_block)(const int whole, const int64_t *at, const spari_root_view *t, int64_t i) {
+    const spari_pose *root = t->root;
+    L q[7], v[6], a[6], d[3], r[3], turn[4], out[7], spin[3], grow[3];
+    NAME(arms_of)(whole, at, t->member, i, r);
+    NAME(pick_rows)(whole, at, 7, 7, t->seen->q + 7 * i, q);
+    NAME(pick_rows)(whole, at, 6, 6, t->seen->v + 6 * i, v);
+    NAME(pick_rows)(whole, at, 6, 6, t->seen->a + 6 * i, a);
+    NAME(splat3)(t->omega, spin);
+    NAME(splat3)(t->alpha, grow);
+    for (int k = 0; k < 4; k++) {
+        turn[k] = SPLAT(root->q + 3 + k);
+    }
+    for (int k = 0; k < 3; k++) {
+        d[k] = r[k] + q[k] - root->q[k];
+    }
+    for (int k = 0; k < 6; k++) {
+        v[k] = v[k] - root->v[k];
+        a[k] = a[k] - root->a[k];
+    }
+    NAME(rotate_back)(turn, d, d);
+    for (int k = 0; k < 6; k += 3) {
+        NAME(rotate_back)(turn, v + k, v + k);
+        NAME(rotate_back)(turn, a + k, a + k);
+    }
+    const L back[4] = {turn[0], -turn[1], -turn[2], -turn[3]};
+    NAME(quat_mul)(back, q + 3, out + 3);
+    for (int k = 0; k < 3; k++) {
+        out[k] = d[k] - r[k];
+    }
+    NAME(less_root_motion)(spin, grow, d, v, a);
+    NAME(drop_rows)(whole, at, 7, 7, t->own->q + 7 * i, out);
+    NAME(drop_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
+    NAME(drop_rows)(whole, at, 6, 6, t->own->a + 6 * i, a);
+}
+
+TARGET static void NAME(look)(const spari_root_view *t, int64_t from, int64_t to) {
+#define WORK(whole) NAME(look_block)(whole, at, t, i);
+    EACH_BLOCK(from, to, WORK)
+#undef WORK
+    memcpy(t->own->b + 6 * from, t->seen->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
+}
+
+HERE void NAME(lose_block)(const int whole, const int64_t *at, const spari_root_jump *t, int64_t i) {
+    L q[7], v[6], d[3], out[4], back[4], jump[3], gap[3], c1[3], c2[3];
+    NAME(arms_of)(whole, at, t->member, i, d);
+    NAME(pick_rows)(whole, at, 7, 7, t->own->q + 7 * i, q);
+    NAME(pick_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
+    NAME(splat3)(t->velocity + 3, jump);
+    NAME(splat3)(t->place + 3, gap);
+    for (int k = 0; k < 4; k++) {
+        back[k] = SPLAT(t->back + k);
+    }
+    for (int k = 0; k < 3; k++) {
+        d[k] = d[k] + q[k];
+    }
+    NAME(cross)(jump, d, c1);
+    NAME(cross)(gap, d, c2);
+    for (int k = 0; k < 3; k++) {
+        v[k] = v[k] - (t->velocity[k] + c1[k]);
+        v[3 + k] = v[3 + k] - t->velocity[3 + k];
+        q[k] = q[k] - (t->place[k] + c2[k]);
+    }
+    NAME(quat_mul)(back, q + 3, out);
+    NAME(drop_rows)(whole, at, 7, 3, t->own->q + 7 * i, q);
+    NAME(drop_rows)(whole, at, 7, 4, t->own->q + 7 * i + 3, out);
+    NAME(drop_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
+}
+
+TARGET static void NAME(lose)(const spari_root_jump *t, int64_t from, int64_t to) {
+#define WORK(whole) NAME(lose_block)(whole, at, t, i);
+    EACH_BLOCK(from, to, WORK)
+#undef WORK
 }

@@ -38,12 +38,15 @@ typedef struct node_kernels {
     spari_node_size (*sized[SIZED])(const spari_node_work *t, int64_t from, int64_t to);
     void (*correct)(const spari_node_work *t, int64_t from, int64_t to);
     void (*show)(const spari_root_view *t, int64_t from, int64_t to);
+    void (*look)(const spari_root_view *t, int64_t from, int64_t to);
+    void (*lose)(const spari_root_jump *t, int64_t from, int64_t to);
 } node_kernels;
 
 #define NODE_KERNELS(set)                                                                                              \
     {                                                                                                                  \
         (int)(sizeof(lanes_##set) / sizeof(double)), turn_back_##set, turn_forth_##set,                                \
-            {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, correct_##set, show_##set               \
+            {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, correct_##set, show_##set, look_##set,  \
+            lose_##set                                                                                                 \
     }
 static const node_kernels plain_nodes = NODE_KERNELS(plain);
 #ifdef SPARI_X86
@@ -120,5 +123,17 @@ spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t
 void spari_nodes_show(const spari_root_view *t, int64_t from, int64_t to) {
     for (int64_t end; from < to; from = end) {
         kernels_from(t->lanes, from, to, &end)->show(t, from, end);
+    }
+}
+
+void spari_nodes_look(const spari_root_view *t, int64_t from, int64_t to) {
+    for (int64_t end; from < to; from = end) {
+        kernels_from(t->lanes, from, to, &end)->look(t, from, end);
+    }
+}
+
+void spari_nodes_lose(const spari_root_jump *t, int64_t from, int64_t to) {
+    for (int64_t end; from < to; from = end) {
+        kernels_from(t->lanes, from, to, &end)->lose(t, from, end);
     }
 }

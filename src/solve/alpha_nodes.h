@@ -29,6 +29,14 @@ typedef struct spari_root_view {
     const spari_state *own, *seen; /* as it sees them, and from outside */
 } spari_root_view;
 
+/* What nodes lose of a root that jumps, in its axes (drive.h). */
+typedef struct spari_root_jump {
+    int lanes;
+    const spar_member *member;
+    const spari_state *own;
+    double velocity[6], place[6], back[4]; /* back: the turn of the place, undone */
+} spari_root_jump;
+
 /* Of the largest displacement and turn of nodes, the squares. */
 typedef struct spari_node_size {
     double way, turn;
@@ -52,5 +60,9 @@ spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_
 spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t to);
 /* seen := own, seen from outside. */
 void spari_nodes_show(const spari_root_view *t, int64_t from, int64_t to);
+/* own := seen, as the root sees it; b as it is. */
+void spari_nodes_look(const spari_root_view *t, int64_t from, int64_t to);
+/* Of own, places and rates less the jump of the root as it takes a node along. */
+void spari_nodes_lose(const spari_root_jump *t, int64_t from, int64_t to);
 
 #endif
