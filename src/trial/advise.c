@@ -17,6 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double finer_power = 0.7; /* of the steps: finer ones cost less each */
+
 /* ---- the structure ---- */
 
 /* The run that shapes are measured against. */
@@ -58,7 +60,8 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w
         double part, took;
         spari_plan q = *p;
         q.group[g].nodes = middle;
-        SPARI_TRY(spari_plan_distance(d, &q, &w->base, INFINITY, &part, &took));
+        const spari_use use = {INFINITY, part_before + spari_rule.nodes};
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
         if (part <= spari_rule.nodes) {
             enough = middle;
             *cost = took;
@@ -67,7 +70,7 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w
             loss = part - part_before;
         }
     }
-    d->misled = d->misled || (d->cap == most && few == most - 1 && loss > spari_rule.nodes);
+    d->misled = d->misled || (!d->thorough && few == most - 1 && loss > spari_rule.nodes);
     p->group[g].nodes = enough;
     return SPAR_OK;
 }
@@ -102,13 +105,14 @@ static int most_nodes(const spari_advisor *d, const shaping *w, int g, double co
 }
 
 /* So many elements: with the most nodes that are cheaper than what there is; where they will do, the fewest that do. No
-   fewer than half the unknowns there are will. *found: whether it is better so. */
+   fewer than half the unknowns there are will, in more elements, of lower order, not much fewer. *found: whether it is
+   better so. */
 static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w, int elements, double *cost,
                         int *found) {
     const spari_shape now = p->group[g];
     const double before = *cost;
-    int half = (now.elements * (now.nodes - 1) + 2 * elements - 1) / (2 * elements),
-        few = half, /* and one is `half` + 1 */
+    const double unknowns = spari_rule.unknowns[elements > now.elements];
+    int few = (int)ceil(unknowns * now.elements * (now.nodes - 1) / elements - 1e-9), /* one has one node more */
         most = most_nodes(d, w, g, before, &now, elements), enough = most + 1;
     few = few < spari_rule.least_nodes - 1 ? spari_rule.least_nodes - 1 : few;
     *found = 0;
@@ -121,7 +125,8 @@ static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w
             break;
         }
         b->nodes = at;
-        SPARI_TRY(spari_plan_distance(d, &q, &w->base, spari_rule.at_most * *cost, &part, &took));
+        const spari_use use = {spari_rule.at_most * *cost, spari_rule.elements};
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
         if (part <= spari_rule.elements) {
             enough = at;
         } else {
@@ -234,7 +239,8 @@ static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const shaping
         }
         q.group[g].fidelity = fidelities[k].fidelity;
         q.group[g].modes = fidelities[k].modes;
-        SPARI_TRY(spari_plan_distance(d, &q, &w->base, (k == 0 ? looser : spari_rule.at_most) * *cost, &part, &took));
+        const spari_use use = {(k == 0 ? looser : spari_rule.at_most) * *cost, spari_rule.fidelity};
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
         taken[k] = part <= spari_rule.fidelity;
         if (taken[k] && took < spari_rule.worth * *cost) {
             best = q;
@@ -255,7 +261,7 @@ static int choose_points(spari_advisor *d, spari_plan *p, int g, const shaping *
     }
     spari_plan q = *p;
     q.group[g].points = 1;
-    SPARI_TRY(spari_plan_distance(d, &q, &w->base, INFINITY, &part, &took));
+    SPARI_TRY(spari_plan_distance(d, &q, &w->base, (spari_use){INFINITY, spari_rule.points}, &part, &took));
     if (part <= spari_rule.points) {
         *p = q;
         *cost = took;
@@ -275,7 +281,8 @@ static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shap
     q.group[g].nodes = spari_rule.least_nodes;
     if (!d->session->keep_nodes && q.group[g].nodes < own &&
         shape_pays(d, w, *cost, with_nodes(d, w, g, *cost, now, spari_rule.least_nodes))) {
-        SPARI_TRY(spari_plan_distance(d, &q, &w->base, spari_rule.at_most * *cost, &part, &took));
+        const spari_use use = {spari_rule.at_most * *cost, spari_rule.fidelity};
+        SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
     }
     p->group[g].nodes = own < now ? own : now;
     if (part <= spari_rule.fidelity) {
@@ -320,12 +327,12 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
     if (!d->session->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
         spari_plan q = *p;
         q.scheme = SPAR_COUPLING_EXPLICIT;
-        SPARI_TRY(spari_plan_compare(d, &q, &rough->record, INFINITY, base, &away));
+        SPARI_TRY(spari_plan_compare(d, &q, &rough->record, (spari_use){INFINITY, spari_rule.rough}, base, &away));
         if (away <= spari_rule.rough) {
             *p = q;
             return SPAR_OK;
         }
-        if (base->value) {
+        if (base->value && base->off <= 0) {
             spari_outcome o = {.plan = q};
             SPARI_TRY(spari_plan_judge(d, base, &o));
         }
@@ -339,8 +346,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
 static void weigh_base(const spari_advisor *d, const spari_plan *p, shaping *w) {
     double rest = w->base.work, nodes = 0;
     int k = 0;
-    const double power = 0.7; /* finer steps cost less each */
-    w->scale = pow((double)spari_plan_least_steps(d) / (double)p->steps, power);
+    w->scale = pow((double)spari_plan_least_steps(d) / (double)p->steps, finer_power);
     for (const spar_member *m = d->session->members; m; m = m->next, k++) {
         int g = d->group[k];
         double own = g < 0 ? (double)m->nodes : p->group[g].elements * p->group[g].nodes;
@@ -395,7 +401,8 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *
         p.steps = spari_plan_steps(d, at);
         SPARI_TRY(spari_plan_measure(d, &p, spari_rule.at_most * best->cost, &o));
         double ratio = isfinite(o.error) ? o.error / d->tolerance : 4,
-               order = isfinite(o.error) && isfinite(last.error) ? order_of(&last, &o) : 2;
+               order =
+                   isfinite(o.error) && isfinite(last.error) && !o.guessed && !last.guessed ? order_of(&last, &o) : 2;
         int is_good = spari_plan_is_good(d, &o);
         failed += !isfinite(o.error);
         last = o;
@@ -486,17 +493,17 @@ static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, i
    one. */
 static int other_pays(spari_advisor *d, const spari_outcome *best) {
     double least = best->cost / fmax(best->solutions, 1);
-    return !isfinite(best->cost) ||
-           (least < spari_rule.worth * best->cost && spari_plan_pays(d, best->cost, best->cost - least));
+    return !isfinite(best->cost) || (least < spari_rule.worth * best->cost &&
+                                     spari_plan_pays(d, best->cost, spari_rule.hope * (best->cost - least)));
 }
 
 static int try_iterated(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     static const struct {
         int scheme, predictor;
         double rtol;
-    } coupling[] = {{SPAR_COUPLING_FIXED_POINT, 1, 1e-2},
+    } coupling[] = {{SPAR_COUPLING_IQN_ILS, 2, 1e-2},
+                    {SPAR_COUPLING_FIXED_POINT, 1, 1e-2},
                     {SPAR_COUPLING_IQN_ILS, 1, 1e-2},
-                    {SPAR_COUPLING_IQN_ILS, 2, 1e-2},
                     {SPAR_COUPLING_IQN_ILS, 1, 1e-3}};
     enum { SCHEMES = sizeof coupling / sizeof *coupling, TIGHT = SCHEMES - 1 };
     for (int k = 0; k < SCHEMES; k++) {
@@ -513,13 +520,11 @@ static int try_iterated(spari_advisor *d, const spari_plan *structure, spari_out
 /* What explicit coupling costs at best that keeps the tolerance, its error being of that order: a run of finer steps,
    which cost less each. */
 static double explicit_cost(const spari_outcome *o, double order, double goal) {
-    const double power = 0.7;
-    return pow(fmax(1, o->error / goal), power / order) * o->cost;
+    return pow(fmax(1, o->error / goal), finer_power / order) * o->cost;
 }
 
 static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     const spar_session *s = d->session;
-    const double near = 1.5; /* times the error to keep: the next place of the grid may do */
     double goal = spari_rule.good * d->tolerance;
     spari_outcome direct, seen;
     for (int predictor = 1; predictor <= 2 && s->keep_coupling; predictor++) {
@@ -531,13 +536,17 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
     }
     int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = begin_explicit(d, structure, &seen),
         lags = begin > least + 1;
-    SPARI_TRY(try_explicit(d, structure, lags ? least : begin, lags ? 2 : 1, &direct));
-    int far = isfinite(direct.error) && direct.error > near * goal;
+    if (spari_plan_is_good(d, &seen) && begin == spari_plan_grid(d, seen.plan.steps)) {
+        direct = seen; /* with a looser Newton it is not worth a run */
+    } else {
+        SPARI_TRY(try_explicit(d, structure, lags ? least : begin, lags ? 2 : 1, &direct));
+    }
+    int far = isfinite(direct.error) && direct.error > spari_rule.near * goal;
     if (isfinite(direct.error) && !far) {
         SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
     }
     SPARI_TRY(try_iterated(d, structure, best));
-    double order = isfinite(seen.error) ? order_of(&seen, &direct) : 2;
+    double order = isfinite(seen.error) && !direct.guessed ? order_of(&seen, &direct) : 2;
     if (far && seen.error < direct.error) {
         direct = seen;
         direct.plan.newton = structure->newton;
@@ -715,7 +724,7 @@ static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome
             return SPAR_OK;
         }
         double before = d->spent;
-        SPARI_TRY(spari_plan_stays(d, &best->plan, &stays));
+        SPARI_TRY(spari_plan_stays(d, &best->plan, k < spari_rule.trusted, &stays));
         d->shown += d->spent - before;
         if (stays) {
             return SPAR_OK;
@@ -735,10 +744,39 @@ static int judge_present(spari_advisor *d, const spari_plan *present, const spar
     return run->value ? spari_plan_judge(d, run, now) : SPAR_OK;
 }
 
+/* The cheapest of what is known to keep the tolerance: among it are runs that were made for the structure. */
+static void take_known(const spari_advisor *d, spari_outcome *best) {
+    for (int k = 0; k < d->known_count; k++) {
+        const spari_outcome *o = &d->known[k];
+        *best = spari_plan_is_good(d, o) && o->cost < best->cost ? *o : *best;
+    }
+}
+
+/* What the structure costs at least in any steps and coupling that keep the tolerance, as its own runs show: with
+   explicit coupling, and as few steps as a tight one needs; 0: they show nothing. */
+static double least_in_time(const spari_advisor *d, const spari_plan *structure) {
+    double least = 0, steps = (double)spari_plan_least_steps(d);
+    for (int k = 0; k < d->known_count; k++) {
+        const spari_outcome *o = &d->known[k];
+        if (isfinite(o->error) && o->plan.scheme == SPAR_COUPLING_EXPLICIT && o->plan.substeps == structure->substeps &&
+            memcmp(o->plan.group, structure->group, sizeof structure->group) == 0) {
+            double cost = o->cost * pow(steps / (double)o->plan.steps, finer_power);
+            least = least > 0 ? fmin(least, cost) : cost;
+        }
+    }
+    return least;
+}
+
 /* Coupling and dt, with a Newton that is looser first. Where the shares of the structure left nothing the reference's
    settings are tried as they are. */
 static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan *finest, spari_outcome *best) {
     static const double newton[] = {1e-3, 1e-6};
+    spari_outcome have = *best;
+    take_known(d, &have);
+    if (least_in_time(d, &structure) > spari_rule.worth * have.cost) {
+        *best = have;
+        return SPAR_OK;
+    }
     for (size_t k = 0; k < sizeof newton / sizeof *newton && !isfinite(best->cost); k++) {
         structure.newton = newton[k];
         SPARI_TRY(choose_time(d, &structure, best));
@@ -746,10 +784,7 @@ static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan 
     if (!isfinite(best->cost)) {
         SPARI_TRY(choose_time(d, finest, best));
     }
-    for (int k = 0; k < d->known_count; k++) { /* among them runs that were made for the structure */
-        const spari_outcome *o = &d->known[k];
-        *best = spari_plan_is_good(d, o) && o->cost < best->cost ? *o : *best;
-    }
+    take_known(d, best);
     return SPAR_OK;
 }
 
@@ -776,11 +811,12 @@ static int search_structure(spari_advisor *d, const spari_plan *present, const s
         take_stock(d, now);
         spari_plan_begin(d, SPARI_STAGE_SHAPES);
         SPARI_TRY(choose_structure(d, finest, structure));
-        if (!d->misled || twice) {
+        if (!d->misled) {
             break;
         }
         spari_plan_forget(d);
-        d->known_count = d->cap = 0;
+        d->known_count = d->cap = d->misled = 0;
+        d->thorough = 1;
     }
     return SPAR_OK;
 }

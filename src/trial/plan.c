@@ -174,6 +174,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
             r->points = g->points;
         }
     }
+    run.beside = d->beside, run.off = d->off;
     run.steps = longer * p->steps;
     run.dt = d->run.dt * (double)d->run.steps / (double)p->steps;
     int status = spari_trial_run(s, &run, &wish, record);
@@ -276,6 +277,15 @@ int spari_plan_judge_levels(spari_advisor *d) {
     return SPAR_OK;
 }
 
+/* A run that ends where it is further from another than is of use. */
+static int run_beside(spari_advisor *d, const spari_plan *p, const spari_record *other, spari_use use,
+                      spari_record *r) {
+    d->beside = isfinite(use.share) ? other : NULL, d->off = use.share * d->tolerance;
+    int status = spari_plan_run(d, p, 1, use.cost, r);
+    d->beside = NULL;
+    return status;
+}
+
 int spari_plan_measure(spari_advisor *d, const spari_plan *p, double most, spari_outcome *out) {
     for (int k = 0; k < d->known_count; k++) {
         if (memcmp(&d->known[k].plan, p, sizeof *p) == 0) {
@@ -288,11 +298,16 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, double most, spari
     if (!resolves(d, p)) {
         return SPAR_OK; /* never advised, whatever a trial would say */
     }
-    int status = spari_plan_run(d, p, 1, most, &r);
+    double off = spari_rule.near * spari_rule.good * d->tolerance - d->reference_error;
+    int status = run_beside(d, p, &d->reference, (spari_use){most, off / d->tolerance}, &r);
     if (status == SPAR_OK) {
         status = spari_plan_judge(d, &r, out);
     } else if (spari_plan_fails(status)) {
-        out->cost = r.dear ? fmax(most, spari_plan_cost(d, &r)) : INFINITY;
+        out->guessed = r.off > 0;
+        out->error = out->guessed ? r.off + d->reference_error : INFINITY;
+        out->cost = out->guessed ? spari_plan_cost(d, &r) * (double)p->steps / (double)r.taken
+                    : r.dear     ? fmax(most, spari_plan_cost(d, &r))
+                                 : INFINITY;
         remember(d, out);
         tell_plan(d, p, INFINITY, 0);
         status = SPAR_OK;
@@ -305,23 +320,23 @@ int spari_plan_is_good(const spari_advisor *d, const spari_outcome *o) {
     return o->error <= spari_rule.good * d->tolerance;
 }
 
-int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record *base, double most, spari_record *r,
+int spari_plan_compare(spari_advisor *d, const spari_plan *p, const spari_record *base, spari_use use, spari_record *r,
                        double *part) {
-    int status = spari_plan_run(d, p, 1, most, r);
-    *part = INFINITY;
+    int status = run_beside(d, p, base, use, r);
+    *part = r->off > 0 ? r->off / d->tolerance : INFINITY;
     if (status == SPAR_OK) {
         status = compare_runs(d, r, base, d->longer, part);
         *part /= d->tolerance;
     }
-    tell_plan(d, p, *part * d->tolerance, spari_plan_cost(d, r));
+    tell_plan(d, p, status == SPAR_OK ? *part * d->tolerance : INFINITY, spari_plan_cost(d, r));
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
-int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, double most, double *part,
+int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_record *base, spari_use use, double *part,
                         double *cost) {
     spari_record r;
-    int status = spari_plan_compare(d, p, base, most, &r, part);
-    if (status == SPAR_OK && isfinite(*part) && d->reference.value) {
+    int status = spari_plan_compare(d, p, base, use, &r, part);
+    if (status == SPAR_OK && isfinite(*part) && r.off <= 0 && d->reference.value) {
         spari_outcome o = {.plan = *p};
         status = judge_silently(d, &r, &o);
     }
@@ -332,6 +347,7 @@ int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_recor
 
 /* ---- the reference ---- */
 
+static const spari_use whole = {INFINITY, INFINITY};
 enum { MOST_MORE = 10 }; /* nodes that the reference has beyond those there are */
 
 /* What a solution of the fluid counts for, by the first run that comes to its end. */
@@ -406,11 +422,16 @@ static double most_of_level(const spari_advisor *d, const spari_plan *p) {
     return d->now > 0 && p->steps < d->run.steps ? spari_rule.coarse_most * d->now : INFINITY;
 }
 
+/* A level of it need not be. */
+static double most_of_finer(const spari_advisor *d, const spari_plan *p) {
+    return spari_rule.level_most / spari_rule.coarse_most * most_of_level(d, p);
+}
+
 /* Runs it as the next level, which stays empty where it fails. */
 static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
     spari_level *l = &d->level[d->levels];
     l->plan = *p;
-    int status = spari_plan_run(d, p, 1, most_of_level(d, p), &l->record);
+    int status = spari_plan_run(d, p, 1, most_of_finer(d, p), &l->record);
     *made = status == SPAR_OK;
     if (*made) {
         d->levels++;
@@ -444,7 +465,7 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
     spari_plan p = rough_plan(d, present, *level, more);
     for (; (status = spari_plan_run(d, &p, 1, most_of_level(d, &p), run)) != SPAR_OK;
          p = rough_plan(d, present, ++*level, more)) {
-        d->dear_steps = p.steps;
+        d->dear_steps = run->dear ? d->dear_steps : p.steps;
         spari_record_free(run);
         tell_plan(d, &p, INFINITY, 0);
         SPARI_TRY(spari_plan_fails(status) ? SPAR_OK : status);
@@ -455,68 +476,101 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
     return SPAR_OK;
 }
 
-/* The fewest nodes that change little against `many`, and one more: finer dt need no more of the line than that. */
-static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, int level, int more,
-                                 const spari_record *many, double *left) {
-    int few = spari_rule.least_nodes - 1, enough = few;
+/* Whether a finer dt is to be tried since nodes change not much less where there are more of them: it is the dt, a
+   finer one shows what nodes do. */
+static int is_dt(const spari_advisor *d, int level, double part, double before) {
+    return part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
+}
+
+/* Fewer nodes than a run with `most` has, and one more than those that change little: finer dt need no more of the line
+   than that. *shown: the least change that fewer make; where that is little the run has enough. *finer: see above. */
+static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, int level, const spari_record *base,
+                                 double *shown, double *two, int *finer) {
+    int few = spari_rule.least_nodes - 1, most = few;
     for (int g = 0; g < d->groups; g++) {
-        int nodes = rough_plan(d, present, level, more).group[g].nodes;
-        enough = nodes > enough ? nodes : enough;
+        int nodes = rough_plan(d, present, level, 0).group[g].nodes;
+        most = nodes > most ? nodes : most;
     }
-    int most = enough;
-    while (enough - few > 1) {
+    int enough = most;
+    double before = INFINITY;
+    few = d->few > few && d->few < most ? d->few : few;
+    while (enough - few > 2 || (enough == most && enough - few > 1 && *shown > spari_rule.reference_nodes)) {
         double part, cost;
-        d->cap = (few + enough) / 2;
-        const spari_plan p = rough_plan(d, present, level, more);
-        SPARI_TRY(spari_plan_distance(d, &p, many, most_of_level(d, &p), &part, &cost));
+        d->cap = enough - few > 2 ? (few + enough) / 2 : few + 1;
+        const spari_plan p = rough_plan(d, present, level, 0);
+        SPARI_TRY(spari_plan_distance(d, &p, base, (spari_use){most_of_level(d, &p), 1}, &part, &cost));
         if (part <= spari_rule.reference_fewer) {
             enough = d->cap;
-            *left = fmax(*left, part * d->tolerance);
+        } else if (is_dt(d, level, part, 0.9 * before)) {
+            *finer = 1;
+            break;
         } else {
             few = d->cap;
+            before = part;
             d->few = part > 1 ? few : d->few;
         }
+        *two = d->cap == most - 2 ? part : *two;
+        *shown = fmin(*shown, part);
     }
-    d->cap = enough + 1 < most ? enough + 1 : 0;
+    d->cap = few + 2 < most ? few + 2 : 0;
     return SPAR_OK;
 }
 
-/* How many nodes the reference has: more until two more change little; *left: so much; fewer where they are not
-   needed. The coarsest dt, coupling and Newton will do for that. */
-static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
-    spari_record few = {0}, many = {0};
-    double part = INFINITY, before = INFINITY;
-    const spar_session *s = d->session;
-    const int begun = *more;
-    *left = 0;
-    int status = run_coarsest(d, present, level, *more, &few);
-    spari_plan p = rough_plan(d, present, *level, *more);
+/* More nodes than a run has until two more change little; *shown: how much fewer have changed, and then the last two.
+ */
+static int more_reference_nodes(spari_advisor *d, const spari_plan *present, int level, int *more, spari_record *few,
+                                double before, double *shown, int *finer) {
+    spari_record many = {0};
+    double part = *shown;
+    int status = SPAR_OK;
+    spari_plan p = rough_plan(d, present, level, *more);
     while (status == SPAR_OK && *more < MOST_MORE && part > spari_rule.reference_nodes) {
-        const spari_plan q = rough_plan(d, present, *level, *more + 2);
+        const spari_plan q = rough_plan(d, present, level, *more + 2);
         if (memcmp(&q, &p, sizeof p) == 0) {
             break; /* there are no more */
         }
         p = q;
-        status = spari_plan_compare(d, &p, &few, INFINITY, &many, &part);
-        if (part > 0.5 * before && isfinite(part) && *level < SPARI_FINEST && !s->keep_dt) {
-            spari_record_free(&few); /* more nodes do not help: it is the dt, a finer one shows what nodes do */
-            spari_record_free(&many);
-            *more = begun;
-            ++*level;
-            return reference_nodes(d, present, level, more, left);
+        status = spari_plan_compare(d, &p, few, whole, &many, &part);
+        if (is_dt(d, level, part, 0.5 * before)) {
+            *finer = 1;
+            break;
         }
         before = part;
-        *left = isfinite(part) ? part * d->tolerance : 0;
         *more += part > spari_rule.reference_nodes && isfinite(part) ? 2 : 0;
-        spari_record_free(&few);
-        few = many;
+        spari_record_free(few);
+        *few = many;
         many = (spari_record){0};
         part = isfinite(part) ? part : 0;
     }
-    if (status == SPAR_OK && few.value && !s->keep_dt && !s->keep_nodes && !d->misled) {
-        status = fewer_reference_nodes(d, present, *level, *more, &few, left);
-    }
-    spari_record_free(&few);
+    spari_record_free(&many);
+    *shown = part;
+    return status;
+}
+
+/* How many nodes the reference has: as many as there are, fewer where these are not needed, or more until two more
+   change little; *left: about so much is left. The coarsest dt, coupling and Newton will do for that. */
+static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
+    const double spectral = 0.25; /* of the error, at most, stays with two nodes more */
+    const spar_session *s = d->session;
+    const int begun = d->thorough || s->keep_dt ? 2 : 0;
+    int status, finer;
+    do {
+        spari_record base = {0};
+        double shown = INFINITY, two = INFINITY; /* changes by fewer nodes: the least, and by two */
+        finer = 0;
+        *more = begun;
+        status = run_coarsest(d, present, level, begun, &base);
+        if (status == SPAR_OK && begun == 0 && !s->keep_nodes) {
+            status = fewer_reference_nodes(d, present, *level, &base, &shown, &two, &finer);
+        }
+        *left = spectral * shown * d->tolerance;
+        if (status == SPAR_OK && shown > spari_rule.reference_nodes && !finer) {
+            status = more_reference_nodes(d, present, *level, more, &base, two, &shown, &finer);
+            *left = isfinite(shown) ? shown * d->tolerance : 0;
+        }
+        spari_record_free(&base);
+        *level += finer;
+    } while (status == SPAR_OK && finer);
     return status;
 }
 
@@ -569,6 +623,7 @@ static int copy_reference(spari_advisor *d) {
 
 void spari_plan_forget(spari_advisor *d) {
     spari_record_free(&d->reference);
+    spari_record_free(&d->calm);
     for (int k = 0; k < d->levels; k++) {
         spari_record_free(&d->level[k].record);
     }
@@ -635,7 +690,7 @@ static int check_reference(spari_advisor *d) {
 }
 
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
-    int level = first_level(d), more = 2;
+    int level = first_level(d), more;
     double nodes;
     SPARI_TRY(reference_nodes(d, present, &level, &more, &nodes));
     SPARI_TRY(refine(d, present, level, more, nodes));
@@ -691,26 +746,47 @@ static int seesaws(const spari_advisor *d, const spari_record *r, const spari_re
     return grows > spari_rule.grows && r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
 }
 
-/* Beside a run with half the dt and a tight coupling; errors of phase may have grown as the time has. */
-static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const spari_record *run, int *stays) {
+/* What settings that are looked at are compared with: a tight coupling, and half the dt where theirs is tight already.
+ */
+static spari_plan calm_plan(const spari_advisor *d, const spari_plan *p) {
     spari_plan q = *p;
-    spari_record finer;
-    double error = INFINITY;
-    q.steps = 2 * p->steps;
+    int keeps = d->session->keep_coupling;
     q.predictor = 1;
-    q.newton = fmin(q.newton, spari_rule.stays_newton);
+    q.newton = fmin(q.newton, fmax(spari_rule.stays_newton, spari_rule.rough_newton * d->tolerance));
     q.strict = 1;
-    if (!d->session->keep_coupling) {
-        q.scheme = SPAR_COUPLING_IQN_ILS;
-        q.rtol = spari_rule.stays_rtol;
+    q.steps = keeps || spari_coupling_scheme_of(p->scheme)->iterates ? 2 * p->steps : p->steps;
+    q.scheme = keeps ? p->scheme : SPAR_COUPLING_IQN_ILS;
+    q.rtol = keeps ? p->rtol : fmax(spari_rule.stays_rtol, spari_rule.rough_rtol * d->tolerance);
+    return q;
+}
+
+/* Runs that, unless the last look was compared with the same. */
+static int run_calm(spari_advisor *d, const spari_plan *q, int longer, const spari_record *run, double limit) {
+    int status = SPAR_OK;
+    if (!d->calm.value || d->calm_longer != longer || memcmp(&d->calm_plan, q, sizeof *q) != 0) {
+        spari_record_free(&d->calm);
+        d->calm_plan = *q, d->calm_longer = longer;
+        d->beside = run, d->off = limit; /* about: that is relative to this one */
+        status = spari_plan_run(d, q, longer, INFINITY, &d->calm);
+        d->beside = NULL;
     }
-    int status = spari_plan_run(d, &q, longer, INFINITY, &finer);
+    return status;
+}
+
+/* Errors of phase may have grown as the time has. */
+static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const spari_record *run, int *stays) {
+    const spari_plan q = calm_plan(d, p);
+    const double limit = longer * d->tolerance;
+    double error = INFINITY;
+    int status = run_calm(d, &q, longer, run, limit);
     if (status == SPAR_OK) {
-        status = compare_runs(d, run, &finer, 1, &error);
+        status = compare_runs(d, run, &d->calm, 1, &error);
     }
-    *stays = status == SPAR_OK && error <= longer * d->tolerance && !seesaws(d, run, &finer, longer);
-    tell_plan(d, &q, error, spari_plan_cost(d, &finer));
-    spari_record_free(&finer);
+    *stays = status == SPAR_OK && error <= limit && !seesaws(d, run, &d->calm, longer);
+    tell_plan(d, &q, error, spari_plan_cost(d, &d->calm));
+    if (status != SPAR_OK) {
+        spari_record_free(&d->calm);
+    }
     return spari_plan_fails(status) ? SPAR_OK : status;
 }
 
@@ -720,10 +796,22 @@ int spari_plan_look(const spari_advisor *d, const spari_plan *p) {
     return (int)fmin(longer, ceil(d->longer)); /* what comes after the host's run is nobody's concern */
 }
 
-int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
+/* What the look shows: nothing; what may be so, and is to be seen beside another run; or what is evident, a saw-tooth
+   in the loads that grows and counts already, while the motion does not. */
+enum { LOOKS_FINE, LOOKS_DOUBTFUL, LOOKS_UNSTABLE };
+
+static int verdict_of(const spari_advisor *d, const spari_record *run, int longer) {
+    double limit = spari_rule.seesaw * d->tolerance;
+    int away = spari_record_reach(run) > spari_rule.looks_away * spari_record_reach(&d->reference),
+        turns = seesaws(d, run, &d->reference, longer),
+        counts = run->alternating[1] > spari_rule.evident * limit * limit;
+    return turns && counts && !away ? LOOKS_UNSTABLE : turns || away ? LOOKS_DOUBTFUL : LOOKS_FINE;
+}
+
+int spari_plan_stays(spari_advisor *d, const spari_plan *p, int trusts, int *stays) {
     int longer = spari_plan_look(d, p);
     spari_record run;
-    double far[2] = {0, 0};
+    double seen[2] = {0, 0};
     *stays = 1;
     if (longer == 1) {
         return SPAR_OK;
@@ -731,15 +819,12 @@ int spari_plan_stays(spari_advisor *d, const spari_plan *p, int *stays) {
     int status = spari_plan_run(d, p, longer, INFINITY, &run);
     *stays = 0;
     if (status == SPAR_OK) {
-        far[0] = seesaws(d, &run, &d->reference, longer) ||
-                         spari_record_reach(&run) > spari_rule.looks_away * spari_record_reach(&d->reference)
-                     ? 1
-                     : 0;
-        status = spari_comm_sum(d->session->comm, far, 1, SPAR_OK, d->session->message, sizeof d->session->message);
-        *stays = status == SPAR_OK && far[0] == 0;
+        seen[0] = verdict_of(d, &run, longer);
+        status = spari_comm_sum(d->session->comm, seen, 1, SPAR_OK, d->session->message, sizeof d->session->message);
+        *stays = status == SPAR_OK && seen[0] == LOOKS_FINE;
     }
-    tell_plan(d, p, status == SPAR_OK ? far[0] : INFINITY, spari_plan_cost(d, &run));
-    if (status == SPAR_OK && !*stays) {
+    tell_plan(d, p, status == SPAR_OK ? seen[0] : INFINITY, spari_plan_cost(d, &run));
+    if (status == SPAR_OK && !*stays && !(trusts && seen[0] == LOOKS_UNSTABLE)) {
         status = stays_beside(d, p, longer, &run, stays);
     }
     spari_record_free(&run);

@@ -36,6 +36,7 @@ typedef struct spari_outcome {
     spari_plan plan;
     double error, cost; /* INFINITY: it fails; a run that was ended for its cost has that */
     double solutions;   /* of the fluid, in a step */
+    int guessed;        /* the run was ended for its error: both are what they would have come to, about */
 } spari_outcome;
 
 /* A run of those that lead to the reference. */
@@ -55,10 +56,17 @@ typedef struct spari_advisor {
     int groups, *group; /* [members] of which group; -1: as it is */
     spari_level *level; /* [SPARI_LEVELS] */
     int levels;
-    int cap, few, misled;   /* nodes that the reference has at most, 0: any; so many are clearly too few for all beams
-                               at once; 1: a coarse dt had asked for too few */
+    int cap, few;           /* nodes that the reference has at most, 0: any; so many are clearly too few for all beams
+                               at once */
+    int misled, thorough;   /* 1: a coarse dt had asked for too few; 1: no more is it asked */
     spari_record reference; /* what they lead to: errors are taken against it */
     double reference_error;
+    const spari_record
+        *beside; /* the run that is made ends where it is further `off` from this one; NULL: it does not */
+    double off;
+    spari_record calm; /* what the last look was compared with: how it was made, */
+    spari_plan calm_plan;
+    int calm_longer;   /* over so many times the trials */
     double shortest;   /* period that steps have to resolve, as a part of the trials' time; 0: any will do */
     double fluid;      /* what a solution of the fluid counts for, */
     int weighed;       /* known once a run has come to its end */
@@ -104,7 +112,8 @@ int spari_plan_pays(spari_advisor *advisor, double trial, double saving);
 /* All below are collective. A run over `longer` times what the host asked for; the record is to be freed also after a
    failure. most: where it comes to cost more it ends, as one that fails; INFINITY: whatever it costs. */
 int spari_plan_run(spari_advisor *advisor, const spari_plan *plan, int longer, double most, spari_record *record);
-/* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. */
+/* Error against the reference and cost; INFINITY if the settings fail. What is known is not run again. A run ends
+   where its error is far beyond the tolerance. */
 int spari_plan_measure(spari_advisor *advisor, const spari_plan *plan, double most, spari_outcome *out);
 /* The same of a run that has been made. */
 int spari_plan_judge(spari_advisor *advisor, const spari_record *record, spari_outcome *out);
@@ -112,12 +121,16 @@ int spari_plan_judge(spari_advisor *advisor, const spari_record *record, spari_o
 int spari_plan_judge_levels(spari_advisor *advisor);
 /* Whether it keeps the tolerance; a tenth of that stays for what an estimate does not see. */
 int spari_plan_is_good(const spari_advisor *advisor, const spari_outcome *outcome);
+/* Where a run is of no use any more, and ends: at a cost, beyond a share of the tolerance; INFINITY: nowhere. */
+typedef struct spari_use {
+    double cost, share;
+} spari_use;
 /* Change of the motion that the plan makes against a run of `base`, relative to the tolerance; INFINITY: it fails. Once
    there is a reference it is known like what is measured. */
-int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double most,
+int spari_plan_distance(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, spari_use use,
                         double *part, double *cost);
 /* The same, keeping the run, which is to be freed; it is empty where it fails. */
-int spari_plan_compare(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, double most,
+int spari_plan_compare(spari_advisor *advisor, const spari_plan *plan, const spari_record *base, spari_use use,
                        spari_record *record, double *part);
 /* What the run has cost, the fluid's solutions among it. */
 double spari_plan_cost(const spari_advisor *advisor, const spari_record *record);
@@ -136,7 +149,7 @@ const spari_level *spari_plan_good_level(const spari_advisor *advisor);
 /* So many times the trials' time that takes. Local. */
 int spari_plan_look(const spari_advisor *advisor, const spari_plan *plan);
 /* Whether the settings stay where they are for longer than the trials were: what grows slowly enough to pass a trial is
-   found here; where it may be so, beside a run with half the dt and a tight coupling. */
-int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int *stays);
+   found here; where it may be so, beside a run with a tight coupling. trusts: what looks unstable is. */
+int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int trusts, int *stays);
 
 #endif

@@ -314,16 +314,17 @@ static double relative(double difference, double scale) {
     return difference == 0 ? 0 : scale > 0 ? sqrt(difference / scale) : 1;
 }
 
-static double distance_of(const spari_record *a, const spari_record *b, part_of which) {
-    double difference = 0, scale = 0;
+/* a has come to so many samples: what differs after them is left out, and not what that is relative to. */
+static double distance_of(const spari_record *a, const spari_record *b, part_of which, int samples) {
+    double difference = 0, scale = 0, later = 0;
     for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
-        add_squares(a, b, which, k, &difference, &scale);
+        add_squares(a, b, which, k, k < samples ? &difference : &later, &scale);
     }
     return relative(difference, scale);
 }
 
 double spari_record_distance(const spari_record *a, const spari_record *b, int block) {
-    return distance_of(a, b, whole_of(b, block));
+    return distance_of(a, b, whole_of(b, block), SPARI_SAMPLES);
 }
 
 double spari_record_load(const spari_record *a, const spari_record *b) {
@@ -363,26 +364,36 @@ static double error_growth(const spari_record *a, const spari_record *b, part_of
     return seen > 0 ? fmax(line_mean(level, slope, longer) / seen, 1) : 1;
 }
 
-static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer) {
-    double e = distance_of(a, b, which);
+static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer, int samples) {
+    double e = distance_of(a, b, which, samples);
     return longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, which, longer) - 1)) : e;
 }
 
 /* Reactions are of roots and of joints; numbers stand for themselves. */
-double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
+static double error_of_goals(const spari_record *a, const spari_record *b, int goals, double longer, int samples) {
     double most = 0;
     for (int block = 0; block <= SPARI_OF_LOAD; block++) {
         if (goals & SPARI_GOAL(block)) {
-            most = fmax(most, error_of_part(a, b, whole_of(b, block), longer));
+            most = fmax(most, error_of_part(a, b, whole_of(b, block), longer, samples));
         }
     }
     if (goals & SPARI_GOAL(SPARI_OF_REACTION)) {
-        most = fmax(most, error_of_part(a, b, whole_of(b, SPARI_OF_JOINT), longer));
+        most = fmax(most, error_of_part(a, b, whole_of(b, SPARI_OF_JOINT), longer, samples));
     }
     for (int64_t i = 0; i < SPARI_MOST_NUMBERS && goals & SPARI_GOAL(SPARI_OF_NUMBERS); i++) {
-        most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer));
+        most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer, samples));
     }
     return most;
+}
+
+double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
+    return error_of_goals(a, b, goals, longer, SPARI_SAMPLES);
+}
+
+/* Samples are there up to the step before the last one. */
+double spari_record_least_error(const spari_record *a, const spari_record *b, int goals, int64_t i) {
+    int samples = i < 3 ? 0 : (int)((i - 1) * SPARI_SAMPLES / a->steps);
+    return error_of_goals(a, b, goals, 1, samples);
 }
 
 void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part) {

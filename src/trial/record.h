@@ -39,7 +39,8 @@ struct spari_record {
     double work;           /* what the steps cost without the fluid, and what a solution of the fluid may cost by its */
     double fluid;          /* nodes, counted (cost.h); all ranks */
     int64_t solutions;     /* calls of the fluid solver */
-    int dear;              /* the run has ended because of what it cost */
+    int dear;              /* the run has ended because of what it cost, */
+    double off;            /* or of its error, which would have come to about so much; 0: it has not */
     double *member_work;   /* [members] of the work, what solving for each took; this rank's, then all ranks' */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
@@ -64,6 +65,8 @@ double spari_record_load(const spari_record *a, const spari_record *b);
 /* The largest of those of the goals, over a run that is `longer` times theirs, if they go on growing as they
    do from the second third of it to the last. */
 double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer);
+/* What the error of a run that has come to step i will be at least, whatever follows. */
+double spari_record_least_error(const spari_record *a, const spari_record *b, int goals, int64_t i);
 /* The finer run goes on towards where the two of them point: by so much of their difference. */
 void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part);
 /* Numbers that its samples are. */

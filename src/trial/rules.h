@@ -46,27 +46,33 @@ typedef struct spari_rules {
     double resolves;        /* steps in the shortest period of what moves by more than the tolerance, at least */
     double fidelity, nodes; /* shares that a lower fidelity and fewer nodes may take, */
     double elements;        /* other elements in place of those, with nodes of their own, */
+    double unknowns[2];     /* and so much of the unknowns at least, in fewer elements and in more, */
     double points, newton;  /* fewer quadrature points, a looser Newton */
     double loosest_newton;  /* its tolerance goes no further */
     double good;            /* share that the error of good settings is below: the rest is for what no trial shows */
+    double near;            /* times that: a finer dt is near that will do; beyond it a run ends */
     double worth;           /* a change has to bring the cost below this part of it */
+    double hope;            /* of what another coupling could save at best this part is expected */
     double heavy;           /* added mass over mass from which on neither explicit nor fixed-point coupling is tried */
     double worth_asking;    /* moves are tried as long as asking has cost less than this part of what has been saved, */
     double least_runs;      /* in a run of so many times the trials at least; no trial is made that cannot save as much
                                there as it costs */
     double at_most;         /* what is tried because it may be cheaper ends at so many times the cost to beat */
-    double coarse_most;     /* the coarse dt of the reference are left out from so many trials as the session is on */
+    double coarse_most;     /* the coarse dt of the reference are left out from so many trials as the session is on, */
+    double level_most;      /* where they show how many nodes it has; and else from so many on */
     double looks_away;      /* motion that in the longer look is more than so many times what the reference has is
                                looked at beside a finer run */
     int least_nodes;        /* of an element; 2 lock */
     int most_substeps;      /* in a step */
     int modes;              /* that a beam's first modal try has */
-    int tried, doubted;     /* settings measured before moves end, and whose stability is looked at, at most */
+    int tried, doubted;     /* settings measured before moves end, and whose stability is looked at, at most; */
+    int trusted;            /* so many are passed over where a look alone finds them unstable */
     int longer, least_steps; /* that is looked at in a run so many times as long, and of so many steps at least, */
     double stays_newton;     /* against one of half the dt: with what that is solved, */
     double stays_rtol;       /* and coupled */
     double seesaw, grows;    /* loads that turn round with every step: the share of the tolerance that counts, and their
                                 growth, squared, from the second quarter of the longer look to the last */
+    double evident;          /* part of its square from which on the saw-tooth is beyond doubt */
     double asks;        /* what asking comes to, by the root of the tolerance, in trials with the session as it is, */
     double asks_runs;   /* and in runs where that fails: medians of benchmarks/kept */
     double comes_to[5]; /* the part of it that is spent by the end of each stage (SPARI_STAGE_*), as there */

@@ -265,19 +265,26 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     return status;
 }
 
-enum { LOOKS_AT_COST = 16 }; /* in a run that must not come to more than so much */
+enum { LOOKS = 32 }; /* at what a run has come to, where that must not be more than so much */
 
-/* Collective where there is a limit. */
-static int check_cost(spar_session *s, const spari_run *run, int64_t i, spari_record *r) {
-    if (run->most <= 0 || i == run->steps || i * LOOKS_AT_COST / run->steps == (i - 1) * LOOKS_AT_COST / run->steps) {
+/* Collective where there is a limit. What an error comes to is guessed as if it grew with the time. */
+static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_record *r) {
+    if ((run->most <= 0 && !run->beside) || i == run->steps || i * LOOKS / run->steps == (i - 1) * LOOKS / run->steps) {
         return SPAR_OK;
     }
-    double cost[2] = {r->work + spari_cost_members(s, NULL), 0}, part = (double)i / (double)run->steps;
-    SPARI_TRY(spari_comm_sum(s->comm, cost, 1, SPAR_OK, s->message, sizeof s->message));
-    double so_far = cost[0] + run->fluid * (double)r->solutions;
-    r->dear = so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most);
+    double found[3] = {r->work + spari_cost_members(s, NULL)}, part = (double)i / (double)run->steps;
+    if (run->beside && spari_comm_rank(s->comm) == 0) {
+        found[1] = spari_record_least_error(r, run->beside, run->goals, i);
+    }
+    SPARI_TRY(spari_comm_sum(s->comm, found, 2, SPAR_OK, s->message, sizeof s->message));
+    double so_far = found[0] + run->fluid * (double)r->solutions;
+    r->dear = run->most > 0 &&
+              (so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most));
     SPARI_REQUIRE(s, !r->dear, SPAR_ERR_NUMERIC, "it costs more than it could save, and ends after %lld of %lld steps",
                   (long long)i, (long long)run->steps);
+    r->off = run->beside && found[1] > run->off ? found[1] / part : 0;
+    SPARI_REQUIRE(s, r->off <= 0, SPAR_ERR_NUMERIC, "its error is beyond %.3g, and it ends after %lld of %lld steps",
+                  run->off, (long long)i, (long long)run->steps);
     return SPAR_OK;
 }
 
@@ -289,7 +296,7 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
         SPARI_TRY(spari_record_look(r, s, i));
-        SPARI_TRY(check_cost(s, run, i, r));
+        SPARI_TRY(check_use(s, run, i, r));
     }
     for (int k = 0; k < 2; k++) {
         r->alternating[k] = size[1] + size[3] > 0 ? r->alternating[k] / (size[1] + size[3]) : 0;

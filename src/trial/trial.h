@@ -32,6 +32,9 @@ typedef struct spari_run {
     int goals;          /* what the record has beside the motion (record.h) */
     double most, fluid; /* a run that comes to cost more is of no use and ends, SPAR_ERR_NUMERIC; 0: no such limit.
                            With what a solution of the fluid counts for */
+    const spari_record *beside; /* nor is one that is further `off` from this one (spari_record_error), and ends
+                                   likewise; NULL: none */
+    double off;
     spari_progress *progress; /* who hears of each run ahead of it, of calls that make many; else NULL */
 } spari_run;
 
