@@ -253,7 +253,9 @@ static void test_other_elements(void **state) {
         assert_int_equal(b.joint[0]->node[1], node == 5 ? 11 : 12);
         OK(a.session, spar_member_get_motion(a.member[1], x[0], NULL, NULL));
         OK(b.session, spar_member_get_motion(b.member[1], x[1], NULL, NULL));
-        assert_memory_equal(x[0], x[1], sizeof x[0]);
+        for (int k = 0; k < 7; k++) { /* quaternions are brought to length 1 again */
+            NEAR(x[1][k], x[0][k], 1e-15);
+        }
         run(&a, 10);
         run(&b, 10);
         double turn = turn_of_hinge(&a);

@@ -409,13 +409,16 @@ static int begin_alone(void *self, int kept) {
     const alpha_step *t = self;
     t->s->factored = kept && kept_serves_alone(t);
     spari_mixing_begin(t->s->mixing);
+    spari_alpha_impose_root(t->member, t->root, t->e, t->x); /* no correction moves it */
     return t->s->factored;
 }
 
 static const char *iterate_alone(void *self, double longest, spari_iterate *it) {
     const alpha_step *t = self;
     spari_solver *s = t->s;
-    spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    if (t->c->still) { /* places come with rates of their own */
+        spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    }
     const double *q = t->e->seen.q;
     double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
     double noise = spari_alpha_turn_back(s, q, s->r, s->dx);

@@ -10,11 +10,12 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Columns of a dense matrix are solved for so many at a time. */
-enum { SPARI_CORNER = 8 };
+enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 
 #define SPARI_KERNELS "../solve/linear_lanes.h"
 #include "../math/widths.h"
@@ -40,8 +41,9 @@ struct spari_linear {
     gsl_matrix *A;   /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
     int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
     int *order;      /* dense: where row i came from by all of these */
-    double *corners; /* dense: [n / 8, rounded up][2][8][8] inverses of the corners of the triangles, by columns */
+    double *corners; /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
     double *y;       /* dense: [n, rounded up to eights] room */
+    double *room;    /* of the last two */
     gsl_vector_uint *band_swap; /* banded */
     gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
     spari_linear *far, *joint;  /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
@@ -56,15 +58,34 @@ struct spari_linear {
     spari_crew *const *crew; /* spari_linear_share; NULL: nobody */
 };
 
+/* Doubles from x on to where a cache line of eight begins: vectors that lie across two take twice as long. */
+static size_t to_alignment(const double *x) {
+    size_t off = (uintptr_t)x % 64;
+    return off == 0 ? 0 : (64 - off) / sizeof *x;
+}
+
+/* Columns of n that begin with a cache line, `step` apart. */
+static gsl_matrix *make_aligned(size_t n, size_t step) {
+    gsl_block *block = gsl_block_calloc(n * step + SPARI_CORNER);
+    gsl_matrix *m = block ? gsl_matrix_alloc_from_block(block, to_alignment(block->data), n, n, step) : NULL;
+    if (!m) {
+        gsl_block_free(block);
+        return NULL;
+    }
+    m->owner = 1;
+    return m;
+}
+
 /* Room for the matrix, whose size is known. */
 static spari_linear *with_room(spari_linear *s, int dense) {
     if (dense) {
         int64_t n = (int64_t)s->n, eights = (n + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
-        s->A = gsl_matrix_calloc(s->n, s->n);
+        s->A = make_aligned(s->n, (size_t)eights);
         s->swap = spari_zalloc(2 * n, sizeof *s->swap);
         s->order = s->swap ? s->swap + n : NULL;
-        s->corners = spari_zalloc((2 * SPARI_CORNER + 1) * eights, sizeof *s->corners);
-        s->y = s->corners ? s->corners + 2 * SPARI_CORNER * eights : NULL;
+        s->room = spari_zalloc((SPARI_CORNERS * SPARI_CORNER + 1) * eights + SPARI_CORNER, sizeof *s->room);
+        s->corners = s->room ? s->room + to_alignment(s->room) : NULL;
+        s->y = s->room ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
     } else {
         s->A = gsl_matrix_calloc(s->size, 3 * s->band + 1);
         s->band_swap = gsl_vector_uint_alloc(s->size);
@@ -163,7 +184,7 @@ void spari_linear_free(spari_linear *s) {
         free(s->bad);
         gsl_matrix_free(s->A);
         free(s->swap);
-        free(s->corners);
+        free(s->room);
         gsl_vector_uint_free(s->band_swap);
         spari_linear_unwatch(s);
         free(s);
@@ -331,11 +352,11 @@ void spari_linear_fix(spari_linear *s, int i) {
 }
 
 typedef struct linear_kernels {
-    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap);
+    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap, double *corners);
     int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
                        unsigned *swap);
-    void (*corner)(int64_t n, int64_t j, const double *A, double *corner);
-    void (*dense)(int64_t n, const double *A, const double *corners, double *y);
+    void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
+    int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
     void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
@@ -369,8 +390,8 @@ static const linear_kernels *kernels_here(void) {
     return &plain_linear;
 }
 
-/* What a dense solution takes beyond the factors. */
-static void ready_dense(spari_linear *s) {
+/* What a dense solution takes beyond the factors; loaded: these were not found here, with a part of it. */
+static void ready_dense(spari_linear *s, int loaded) {
     double *corner = s->corners;
     for (size_t i = 0; i < s->n; i++) {
         s->order[i] = (int)i;
@@ -380,8 +401,8 @@ static void ready_dense(spari_linear *s) {
         s->order[s->swap[i] - 1] = s->order[i];
         s->order[i] = there;
     }
-    for (size_t j = 0; j < s->n; j += SPARI_CORNER, corner += 2 * SPARI_CORNER * SPARI_CORNER) {
-        kernels_here()->corner((int64_t)s->n, (int64_t)j, s->A->data, corner);
+    for (size_t j = 0; j < s->n; j += SPARI_CORNER, corner += SPARI_CORNERS * SPARI_CORNER * SPARI_CORNER) {
+        kernels_here()->corner((int64_t)s->n, (int64_t)j, loaded, s->A->data, (int64_t)s->A->tda, corner);
     }
 }
 
@@ -393,7 +414,8 @@ static int factor_part(spari_linear *s) {
     int bad = 0;
     double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
     if (s->swap) {
-        bad = kernels_here()->factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, s->swap);
+        bad = kernels_here()->factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, (int64_t)s->A->tda, s->swap,
+                                           s->corners);
     } else {
         bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
                                           (int64_t)s->A->tda, s->band_swap->data);
@@ -408,7 +430,7 @@ static int factor_part(spari_linear *s) {
         }
     }
     if (s->swap) {
-        ready_dense(s);
+        ready_dense(s, 0);
     }
     return 0;
 }
@@ -438,7 +460,7 @@ static int factor_element(const spari_linear *s, size_t e) {
     size_t m = (size_t)s->block;
     double *A = s->parts + m * m * e;
     if (spari_first_nonfinite(A, (int64_t)(m * m)) >= 0 ||
-        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, 1, A, s->part_swap + s->own * e)) {
+        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, 1, A, (int64_t)m, s->part_swap + s->own * e, NULL)) {
         return 1;
     }
     for (size_t i = 0; i < s->own; i++) {
@@ -715,12 +737,12 @@ int spari_linear_solve(spari_linear *s, double *x) {
         for (int64_t i = 0; i < n; i++) {
             s->y[i] = x[s->order[i]];
         }
-        kernels_here()->dense(n, s->A->data, s->corners, s->y);
+        int bad = kernels_here()->dense(n, s->A->data, (int64_t)s->A->tda, s->corners, s->y);
         memcpy(x, s->y, s->n * sizeof *x);
-    } else {
-        forth_part(s, x);
-        back_part(s, x);
+        return bad;
     }
+    forth_part(s, x);
+    back_part(s, x);
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }
 
@@ -829,7 +851,7 @@ void spari_linear_load(spari_linear *s, const double *state) {
         }
     }
     if (s->swap) {
-        ready_dense(s);
+        ready_dense(s, 1);
     }
     if (s->far) {
         spari_linear_load(s->far, state + s->inner);

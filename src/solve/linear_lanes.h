@@ -96,78 +96,182 @@ HERE void NAME(less_eight)(int64_t n, const double *columns, int64_t step, const
     }
 }
 
-/* The inverses of the triangles that begin at column j of A [n][n], eight columns or what is left: Z L = 1 and Z U = 1,
-   column by column, one of which is a vector. */
-HERE void NAME(invert_lower)(int64_t n, const int m, const double *at, double *Z) {
-    enum { VECTORS = (SPARI_CORNER + W - 1) / W };
-    memset(Z, 0, SPARI_CORNER * SPARI_CORNER * sizeof *Z);
-    for (int c = m - 1; c >= 0; c--) {
-        double *z = Z + SPARI_CORNER * c;
-        z[c] = 1;
-        for (int v = 0; v < VECTORS; v++) {
-            L sum = NAME(get)(z + W * v);
-            for (int k = m - 1; k > c; k--) {
-                sum = sum - SPLAT(at + n * c + k) * NAME(get)(Z + SPARI_CORNER * k + W * v);
-            }
-            NAME(put)(z + W * v, sum);
+/* The inverses of the triangles of m columns: Z L = 1 and Z U = 1, column by column, one of which is a vector. Eight of
+   them stay in registers, and each waits for the one before it alone. */
+enum { NAME(VECTORS) = (SPARI_CORNER + W - 1) / W };
+
+HERE void NAME(begin_inverse)(L (*z)[NAME(VECTORS)]) {
+    static const double one[2 * SPARI_CORNER] = {[SPARI_CORNER] = 1};
+    SPARI_UNROLL
+    for (int c = 0; c < SPARI_CORNER; c++) {
+        SPARI_UNROLL
+        for (int v = 0; v < NAME(VECTORS); v++) {
+            z[c][v] = NAME(get)(one + SPARI_CORNER - c + W * v);
         }
     }
+}
+
+HERE void NAME(put_inverse)(const int m, const L (*z)[NAME(VECTORS)], double *Z) {
+    memset(Z, 0, SPARI_CORNER * SPARI_CORNER * sizeof *Z);
+    SPARI_UNROLL
+    for (int c = 0; c < m; c++) {
+        SPARI_UNROLL
+        for (int v = 0; v < NAME(VECTORS); v++) {
+            NAME(put)(Z + SPARI_CORNER * c + W * v, z[c][v]);
+        }
+    }
+}
+
+HERE void NAME(invert_lower)(int64_t n, const int m, const double *at, double *Z) {
+    L z[SPARI_CORNER][NAME(VECTORS)];
+    NAME(begin_inverse)(z);
+    SPARI_UNROLL
+    for (int c = m - 1; c >= 0; c--) {
+        SPARI_UNROLL
+        for (int k = m - 1; k > c; k--) {
+            L by = SPLAT(at + n * c + k);
+            SPARI_UNROLL
+            for (int v = 0; v < NAME(VECTORS); v++) {
+                z[c][v] = z[c][v] - by * z[k][v];
+            }
+        }
+    }
+    NAME(put_inverse)(m, (const L(*)[NAME(VECTORS)])z, Z);
 }
 
 HERE void NAME(invert_upper)(int64_t n, const int m, const double *at, double *Z) {
-    enum { VECTORS = (SPARI_CORNER + W - 1) / W };
-    memset(Z, 0, SPARI_CORNER * SPARI_CORNER * sizeof *Z);
+    L z[SPARI_CORNER][NAME(VECTORS)];
+    NAME(begin_inverse)(z);
+    SPARI_UNROLL
     for (int c = 0; c < m; c++) {
-        double *z = Z + SPARI_CORNER * c, over = 1 / at[(n + 1) * c];
-        z[c] = 1;
-        for (int v = 0; v < VECTORS; v++) {
-            L sum = NAME(get)(z + W * v);
-            for (int k = 0; k < c; k++) {
-                sum = sum - SPLAT(at + n * c + k) * NAME(get)(Z + SPARI_CORNER * k + W * v);
+        double over = 1 / at[(n + 1) * c];
+        SPARI_UNROLL
+        for (int k = 0; k < c; k++) {
+            L by = SPLAT(at + n * c + k);
+            SPARI_UNROLL
+            for (int v = 0; v < NAME(VECTORS); v++) {
+                z[c][v] = z[c][v] - by * z[k][v];
             }
-            NAME(put)(z + W * v, over * sum);
+        }
+        SPARI_UNROLL
+        for (int v = 0; v < NAME(VECTORS); v++) {
+            z[c][v] = over * z[c][v];
         }
     }
+    NAME(put_inverse)(m, (const L(*)[NAME(VECTORS)])z, Z);
 }
 
-TARGET static void NAME(invert_corner)(int64_t n, int64_t j, const double *A, double *corner) {
-    const double *at = A + (n + 1) * j;
-    if (n - j >= SPARI_CORNER) {
-        NAME(invert_lower)(n, SPARI_CORNER, at, corner);
-        NAME(invert_upper)(n, SPARI_CORNER, at, corner + SPARI_CORNER * SPARI_CORNER);
-    } else {
-        NAME(invert_lower)(n, (int)(n - j), at, corner);
-        NAME(invert_upper)(n, (int)(n - j), at, corner + SPARI_CORNER * SPARI_CORNER);
+/* B := M times the block A [8][8] whose columns lie n apart. */
+HERE void NAME(times_block)(const double *M, int64_t n, const double *A, double *B) {
+    for (int c = 0; c < SPARI_CORNER; c++) {
+        memcpy(B + SPARI_CORNER * c, A + n * c, SPARI_CORNER * sizeof *B);
+        NAME(times_corner)(M, B + SPARI_CORNER * c);
     }
 }
 
-/* y := A^-1 y with the triangles of A [n][n] below a diagonal of ones and above, eight columns at a time by the
-   inverses of their corners [2][8][8], the lower one's and the upper one's, with zeros beyond the last column. y has
-   room for whole eights. */
-TARGET static void NAME(solve_dense)(int64_t n, const double *A, const double *corners, double *y) {
+/* What a solution takes beyond the triangles of the columns from j on of A [n][step], as solve_dense has it; of a whole
+   eight taking out has left the first, unless they are loaded. */
+TARGET static void NAME(invert_corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step,
+                                       double *corner) {
     enum { SIZE = SPARI_CORNER * SPARI_CORNER };
+    const double *at = A + (step + 1) * j;
+    if (n - j < SPARI_CORNER) {
+        NAME(invert_lower)(step, (int)(n - j), at, corner);
+        NAME(invert_upper)(step, (int)(n - j), at, corner + SIZE);
+        return;
+    }
+    if (loaded) {
+        NAME(invert_lower)(step, SPARI_CORNER, at, corner);
+    }
+    NAME(invert_upper)(step, SPARI_CORNER, at, corner + SIZE);
+    if (j > 0) {
+        NAME(times_block)(corner, step, at - step * SPARI_CORNER, corner + 2 * SIZE);
+        NAME(times_block)(corner - (SPARI_CORNERS - 1) * SIZE, step, at - SPARI_CORNER, corner + 3 * SIZE);
+    }
+}
+
+/* y := M y - B x, eight of each: four sums side by side. */
+HERE void NAME(next_corner)(const double *M, const double *B, const double *x, double *y) {
+    enum { HALF = SPARI_CORNER / 2 };
+    L sum[4][NAME(VECTORS)];
+    SPARI_UNROLL
+    for (int v = 0; v < NAME(VECTORS); v++) {
+        sum[0][v] = SPLAT(y) * NAME(get)(M + W * v);
+        sum[1][v] = SPLAT(y + HALF) * NAME(get)(M + SPARI_CORNER * HALF + W * v);
+        sum[2][v] = SPLAT(x) * NAME(get)(B + W * v);
+        sum[3][v] = SPLAT(x + HALF) * NAME(get)(B + SPARI_CORNER * HALF + W * v);
+    }
+    SPARI_UNROLL
+    for (int k = 1; k < HALF; k++) {
+        SPARI_UNROLL
+        for (int v = 0; v < NAME(VECTORS); v++) {
+            const double *m = M + SPARI_CORNER * k + W * v, *b = B + SPARI_CORNER * k + W * v;
+            sum[0][v] = MADD(SPLAT(y + k), NAME(get)(m), sum[0][v]);
+            sum[1][v] = MADD(SPLAT(y + HALF + k), NAME(get)(m + SPARI_CORNER * HALF), sum[1][v]);
+            sum[2][v] = MADD(SPLAT(x + k), NAME(get)(b), sum[2][v]);
+            sum[3][v] = MADD(SPLAT(x + HALF + k), NAME(get)(b + SPARI_CORNER * HALF), sum[3][v]);
+        }
+    }
+    SPARI_UNROLL
+    for (int v = 0; v < NAME(VECTORS); v++) {
+        NAME(put)(y + W * v, (sum[0][v] + sum[1][v]) - (sum[2][v] + sum[3][v]));
+    }
+}
+
+/* 0 x is 0 of every finite x. */
+HERE int NAME(is_finite)(int64_t n, const double *x) {
+    L poison = {0};
+    double lanes[W], rest = 0;
+    int64_t i = 0;
+    for (; i + W <= n; i += W) {
+        poison = poison + 0.0 * NAME(get)(x + i);
+    }
+    for (; i < n; i++) {
+        rest += 0.0 * x[i];
+    }
+    NAME(put)(lanes, poison);
+    for (int l = 0; l < W; l++) {
+        rest += lanes[l];
+    }
+    return rest == 0;
+}
+
+/* y := A^-1 y with the triangles of A [n][step] below a diagonal of ones and above, eight columns at a time. Of each
+   eight there are [4][8][8] beyond them: the inverses of its corners, the lower and the upper one's, with zeros beyond
+   the last column; and of a whole one the lower inverse times what is left of it, and the upper inverse of the eight
+   before times what is above. With these the next eight wait for one product alone, what comes from further off being
+   there by then. y has room for whole eights. */
+TARGET static int NAME(solve_dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y) {
+    enum { SIZE = SPARI_CORNER * SPARI_CORNER, NEXT = SPARI_CORNERS * SIZE, TWO = 2 * SPARI_CORNER };
     int64_t rest = n % SPARI_CORNER, whole = n - rest, j = 0;
-    for (; j < whole; j += SPARI_CORNER, corners += 2 * SIZE) {
-        NAME(times_corner)(corners, y + j);
-        NAME(less_eight)(n - j - SPARI_CORNER, A + (n + 1) * j + SPARI_CORNER, n, y + j, y + j + SPARI_CORNER);
+    if (whole > 0) {
+        NAME(times_corner)(corners, y);
+    }
+    for (; j + SPARI_CORNER < whole; j += SPARI_CORNER) {
+        corners += NEXT;
+        NAME(next_corner)(corners, corners + 2 * SIZE, y + j, y + j + SPARI_CORNER);
+        NAME(less_eight)(n - j - TWO, A + (step + 1) * j + TWO, step, y + j, y + j + TWO);
+    }
+    if (whole > 0) {
+        NAME(less_eight)(rest, A + (step + 1) * j + SPARI_CORNER, step, y + j, y + whole);
     }
     if (rest > 0) {
-        int64_t k = 0;
+        const double *last = corners + (whole > 0 ? NEXT : 0);
         memset(y + n, 0, (size_t)(SPARI_CORNER - rest) * sizeof *y);
-        NAME(times_corner)(corners, y + whole);
-        NAME(times_corner)(corners + SIZE, y + whole);
-        for (; k + 4 <= rest; k += 4) {
-            NAME(less_columns)(4, whole, A + n * (whole + k), n, y + whole + k, y);
-        }
-        for (; k < rest; k++) {
-            NAME(less_columns)(1, whole, A + n * (whole + k), n, y + whole + k, y);
+        NAME(times_corner)(last, y + whole);
+        NAME(times_corner)(last + SIZE, y + whole);
+        for (int64_t k = 0; k < rest; k++) {
+            NAME(less_columns)(1, whole, A + step * (whole + k), step, y + whole + k, y);
         }
     }
-    while (j > 0) {
-        j -= SPARI_CORNER, corners -= 2 * SIZE;
+    if (whole > 0) {
         NAME(times_corner)(corners + SIZE, y + j);
-        NAME(less_eight)(j, A + n * j, n, y + j, y);
     }
+    for (; j > 0; j -= SPARI_CORNER, corners -= NEXT) {
+        NAME(next_corner)(corners - NEXT + SIZE, corners + 3 * SIZE, y + j, y + j - SPARI_CORNER);
+        NAME(less_eight)(j - SPARI_CORNER, A + step * j, step, y + j, y);
+    }
+    return !NAME(is_finite)(n, y);
 }
 
 /* Where the columns from `inner` on have not been taken out: x is left with what the others leave of them; and the
@@ -333,15 +437,15 @@ HERE void NAME(less_block)(int64_t n, const double *columns, int64_t step, doubl
 }
 
 /* Takes eight columns from j on, whose triangles are there, out of those after them, four by four. Those
-   that they do not meet cost nothing. */
-TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A) {
-    double inverse[SPARI_CORNER * SPARI_CORNER], by[4][SPARI_CORNER], *x[4];
+   that they do not meet cost nothing. inverse [8][8]: of the lower triangle. */
+TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A, int64_t step, double *inverse) {
+    double by[4][SPARI_CORNER], *x[4];
     int64_t below = n - j - SPARI_CORNER;
-    const double *corner = A + (n + 1) * j, *columns = corner + SPARI_CORNER;
+    const double *corner = A + (step + 1) * j, *columns = corner + SPARI_CORNER;
     int held = 0;
-    NAME(invert_lower)(n, SPARI_CORNER, corner, inverse);
+    NAME(invert_lower)(step, SPARI_CORNER, corner, inverse);
     for (int64_t c = j + SPARI_CORNER; c < n; c++) {
-        double *top = A + n * c + j;
+        double *top = A + step * c + j;
         if (NAME(are_zero)(top) && NAME(are_zero)(top + 4)) {
             continue;
         }
@@ -349,45 +453,48 @@ TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A) {
         memcpy(by[held], top, sizeof by[held]);
         x[held++] = top + SPARI_CORNER;
         if (held == 4) {
-            NAME(less_block)(below, columns, n, by, x);
+            NAME(less_block)(below, columns, step, by, x);
             held = 0;
         }
     }
     for (int c = 0; c < held; c++) {
-        NAME(less_columns)(4, below, columns, n, by[c], x[c]);
-        NAME(less_columns)(4, below, columns + 4 * n, n, by[c] + 4, x[c]);
+        NAME(less_columns)(4, below, columns, step, by[c], x[c]);
+        NAME(less_columns)(4, below, columns + 4 * step, step, by[c] + 4, x[c]);
     }
 }
 
 /* One column against those from `first` to `end` before it, whose triangles are there. Those that it does not meet,
    four by four, cost nothing. */
-HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A, double *x) {
+HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A, int64_t step, double *x) {
     int64_t k = first;
     for (; k + 4 <= end; k += 4) {
-        const double *at = A + (n + 1) * k;
+        const double *at = A + (step + 1) * k;
         if (!NAME(are_zero)(x + k)) {
-            NAME(lower_corner)(4, n, at, x + k);
-            NAME(less_columns)(4, n - k - 4, at + 4, n, x + k, x + k + 4);
+            NAME(lower_corner)(4, step, at, x + k);
+            NAME(less_columns)(4, n - k - 4, at + 4, step, x + k, x + k + 4);
         }
     }
     for (; k < end; k++) {
         if (x[k] != 0) {
-            NAME(less_columns)(1, n - k - 1, A + (n + 1) * k + 1, n, x + k, x + k + 1);
+            NAME(less_columns)(1, n - k - 1, A + (step + 1) * k + 1, step, x + k, x + k + 1);
         }
     }
 }
 
-/* A := its triangles, eight columns at a time: one against those before it, then all that follow against the eight.
-   Whole rows are exchanged among the first `inner`, which are taken out; the corner of the others is left with what it
-   has beyond them. Row j with row swap[j] - 1, unless the diagonal has as much as `least` of the largest entry. Columns
-   that others do not meet cost nothing: with unknowns in the order in which a tree of parts is taken apart these are
-   most, and the fewer rows are exchanged, the more. 0, or 1 where a pivot is 0 or none at all. */
-TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int *swap) {
+/* A [n][step] := its triangles, eight columns at a time: one against those before it, then all that follow against the
+   eight. Whole rows are exchanged among the first `inner`, which are taken out; the corner of the others is left with
+   what it has beyond them. Row j with row swap[j] - 1, unless the diagonal has as much as `least` of the largest entry.
+   Columns that others do not meet cost nothing: with unknowns in the order in which a tree of parts is taken apart
+   these are most, and the fewer rows are exchanged, the more. corners: as solve_dense wants them, gets the lower ones
+   of whole eights; or NULL. 0, or 1 where a pivot is 0 or none at all. */
+TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap,
+                                     double *corners) {
+    double inverse[SPARI_CORNER * SPARI_CORNER];
     for (int64_t j = 0; j < inner; j++) {
-        double *x = A + n * j;
+        double *x = A + step * j;
         int64_t p = j + NAME(pivot_of)(inner - j, least, x + j), first = j - j % SPARI_CORNER, c = j + 1;
         swap[j] = (int)p + 1;
-        for (double *row = A; p != j && row < A + n * n; row += n) {
+        for (double *row = A; p != j && row < A + step * n; row += step) {
             double there = row[p];
             row[p] = row[j];
             row[j] = there;
@@ -397,16 +504,16 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
         }
         NAME(scale)(n - j - 1, 1 / x[j], x + j + 1);
         for (; c < first + SPARI_CORNER && c < inner; c++) {
-            if (A[n * c + j] != 0) {
-                NAME(less_columns)(1, n - j - 1, x + j + 1, n, A + n * c + j, A + n * c + j + 1);
+            if (A[step * c + j] != 0) {
+                NAME(less_columns)(1, n - j - 1, x + j + 1, step, A + step * c + j, A + step * c + j + 1);
             }
         }
         if (c == first + SPARI_CORNER && c == j + 1) {
-            NAME(take_out)(n, first, A);
+            NAME(take_out)(n, first, A, step, corners ? corners + SPARI_CORNERS * SPARI_CORNER * first : inverse);
         }
     }
     for (int64_t j = inner; j < n; j++) {
-        NAME(take_from)(n, inner - inner % SPARI_CORNER, inner, A, A + n * j);
+        NAME(take_from)(n, inner - inner % SPARI_CORNER, inner, A, step, A + step * j);
     }
     return 0;
 }
