@@ -310,6 +310,65 @@ static void test_past_caches(void **state) {
     free(room);
 }
 
+/* Single precision: the doubles, rounded, wherever the host's array begins; its forces come in as the same
+   doubles do, to the last bit. */
+static void test_singles_past_caches(void **state) {
+    (void)state;
+    enum { ALL = (1 << 19) + 77, LINE = 5 };
+    double K[36], M[36], audit[2][SPAR_AUDIT_COUNT];
+    double *x = malloc(3 * ALL * sizeof *x), *v = malloc(3 * ALL * sizeof *v);
+    char *room = malloc(2 * (3 * ALL + 32) * sizeof(float));
+    assert_true(x && v && room);
+    scene_box(K, M);
+    for (int64_t i = 0; i < 3 * ALL; i++) {
+        x[i] = 2 * weight_of(7 * i);
+    }
+    spar_session *s = scene_session();
+    spar_fluid *f = NULL;
+    spar_member *b = scene_beam(s, "b", 1, LINE, 2, K, M);
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_set_load(b, 4, SPAR_LOAD_DEAD, (const double[6]){0, 30, 100, 0, 0, 5}));
+    OK(s, spar_fluid_create(b, "all", &f));
+    OK(s, spar_fluid_set_motion_nodes(f, ALL, x));
+    OK(s, spar_fluid_set_force_nodes(f, ALL, x));
+    OK(s, spar_fluid_map(f));
+    scene_run(s, 0.01, 3);
+    OK(s, spar_fluid_pull_motion(f, 1, x, v));
+    const int at[] = {0, 4, 16, 61};
+    for (int i = 0; i < 4; i++) {
+        memset(room, 0xff, 2 * (3 * ALL + 32) * sizeof(float));
+        char *place = room + at[i], *rate = place + (3 * ALL + 1) * sizeof(float);
+        OK(s, spar_fluid_pull_motion_f32(f, 1, (float *)(void *)place, (float *)(void *)rate));
+        for (int64_t k = 0; k < 3 * ALL; k++) {
+            float got[2];
+            memcpy(got, place + k * (int64_t)sizeof *got, sizeof *got);
+            memcpy(got + 1, rate + k * (int64_t)sizeof *got, sizeof *got);
+            assert_true(got[0] == (float)x[k] && got[1] == (float)v[k]);
+        }
+        assert_int_equal((unsigned char)place[3 * ALL * sizeof(float)], 0xff); /* and nothing between and beyond */
+        assert_int_equal((unsigned char)rate[3 * ALL * sizeof(float)], 0xff);
+    }
+    OK(s, spar_step_begin(s, 0.01));
+    OK(s, spar_step_solve(s));
+    for (int single = 0; single < 2; single++) {
+        char *force = room + 61;
+        for (int64_t k = 0; k < 3 * ALL; k++) {
+            float value = (float)(1e-4 * weight_of(3 * k));
+            memcpy(force + k * (int64_t)sizeof value, &value, sizeof value);
+            v[k] = value;
+        }
+        OK(s, single ? spar_fluid_push_forces_f32(f, (const float *)(const void *)force, NULL)
+                     : spar_fluid_push_forces(f, v, NULL));
+        OK(s, spar_fluid_get_audit(f, SPAR_AUDIT_COUNT, audit[single]));
+    }
+    assert_memory_equal(audit[0], audit[1], sizeof audit[0]);
+    assert_true(audit[0][SPAR_AUDIT_FORCE] > 1);
+    spar_session_destroy(&s);
+    free(x);
+    free(v);
+    free(room);
+}
+
 /* ---- failures ---- */
 
 /* Two of five bodies are given loads beyond the numbers: the message is that of the first, no log hears of the other,
@@ -396,13 +455,10 @@ static void test_number(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_number),
-        cmocka_unit_test(test_same_feet),
-        cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_past_caches),
-        cmocka_unit_test(test_long_beam),
-        cmocka_unit_test(test_rounding_of_the_host),
+        cmocka_unit_test(test_number),      cmocka_unit_test(test_same_feet),
+        cmocka_unit_test(test_failures),    cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_past_caches), cmocka_unit_test(test_singles_past_caches),
+        cmocka_unit_test(test_long_beam),   cmocka_unit_test(test_rounding_of_the_host),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

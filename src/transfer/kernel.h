@@ -104,40 +104,6 @@ TARGET static void NAME(store_triples)(double (*row)[SPARI_ROW], int count, doub
     }
 }
 
-#ifdef STREAM
-HERE void NAME(stream)(int64_t n, const double *from, double *to) {
-    int64_t head = (int64_t)((64 - ((uintptr_t)to & 63)) & 63) / 8, i = head < n ? head : n;
-    memcpy(to, from, (size_t)i * sizeof *to);
-    for (; i + 8 <= n; i += 8) {
-        for (int k = 0; k < 8; k += W) {
-            STREAM(to + i + k, NAME(get)(from + i + k));
-        }
-    }
-    memcpy(to + i, from + i, (size_t)(n - i) * sizeof *to);
-}
-#endif
-
-/* The same past the caches, in whole lines: of an array that is longer than they are nothing is there again when it is
-   read, and a line that is written whole needs not be read before. 0: there are no such stores, or not to there. */
-TARGET static int NAME(stream_triples)(double (*row)[SPARI_ROW], int count, double *out) {
-#ifdef STREAM
-    enum { PART = 128 };
-    double triples[3 * PART];
-    if (((uintptr_t)out & 7) != 0) {
-        return 0;
-    }
-    for (int i = 0; i < count; i += PART) {
-        int n = count - i < PART ? count - i : PART;
-        NAME(store_triples)((double(*)[SPARI_ROW])(row[0] + i), n, triples);
-        NAME(stream)(3 * (int64_t)n, triples, out + 3 * (ptrdiff_t)i);
-    }
-    return 1;
-#else
-    (void)row, (void)count, (void)out;
-    return 0;
-#endif
-}
-
 TARGET static void NAME(load_triples)(const double *in, int count, double (*row)[SPARI_ROW]) {
     int i = 0;
     for (; i + W <= count; i += W) {
@@ -151,6 +117,73 @@ TARGET static void NAME(load_triples)(const double *in, int count, double (*row)
         double t[3];
         memcpy(t, in + 3 * (ptrdiff_t)i, sizeof t);
         row[0][i] = t[0], row[1][i] = t[1], row[2][i] = t[2];
+    }
+}
+
+/* To the host's array, which may lie anywhere. past: past the caches, in whole lines, where there are such stores: of
+   an array that is longer than they are nothing is there again when it is read, and a line that is written whole needs
+   not be read before. */
+HERE void NAME(copy)(const void *from, size_t bytes, void *to, const int past) {
+    size_t i = 0;
+#ifdef STREAM
+    if (past) {
+        const size_t head = (64 - ((uintptr_t)to & 63)) & 63;
+        i = head < bytes ? head : bytes;
+        memcpy(to, from, i);
+        for (; i + 64 <= bytes; i += 64) {
+            const double *line = (const void *)((const char *)from + i);
+            double *there = (void *)((char *)to + i);
+            SPARI_UNROLL
+            for (int k = 0; k < 8; k += W) {
+                STREAM(there + k, NAME(get)(line + k));
+            }
+        }
+    }
+#else
+    (void)past;
+#endif
+    memcpy((char *)to + i, (const char *)from + i, bytes - i);
+}
+
+enum { NAME(PART) = 128 }; /* nodes that are put together before they are copied */
+
+TARGET static void NAME(give_triples)(double (*row)[SPARI_ROW], int count, double *out, int past) {
+    double triples[3 * NAME(PART)];
+    if (!past) {
+        NAME(store_triples)(row, count, out);
+        return;
+    }
+    for (int i = 0; i < count; i += NAME(PART)) {
+        int n = count - i < NAME(PART) ? count - i : NAME(PART);
+        NAME(store_triples)((double(*)[SPARI_ROW])(row[0] + i), n, triples);
+        NAME(copy)(triples, 3 * (size_t)n * sizeof *out, out + 3 * (ptrdiff_t)i, past);
+    }
+}
+
+/* In single precision the host's numbers are doubles within: only what is copied is converted. */
+TARGET static void NAME(give_singles)(double (*row)[SPARI_ROW], int count, float *out, int past) {
+    double triples[3 * NAME(PART)];
+    float singles[3 * NAME(PART)];
+    for (int i = 0; i < count; i += NAME(PART)) {
+        int n = count - i < NAME(PART) ? count - i : NAME(PART);
+        NAME(store_triples)((double(*)[SPARI_ROW])(row[0] + i), n, triples);
+        for (int k = 0; k < 3 * n; k++) {
+            singles[k] = (float)triples[k];
+        }
+        NAME(copy)(singles, 3 * (size_t)n * sizeof *out, out + 3 * (ptrdiff_t)i, past);
+    }
+}
+
+TARGET static void NAME(load_singles)(const float *in, int count, double (*row)[SPARI_ROW]) {
+    double triples[3 * NAME(PART)];
+    float singles[3 * NAME(PART)];
+    for (int i = 0; i < count; i += NAME(PART)) {
+        int n = count - i < NAME(PART) ? count - i : NAME(PART);
+        memcpy(singles, in + 3 * (ptrdiff_t)i, 3 * (size_t)n * sizeof *in);
+        for (int k = 0; k < 3 * n; k++) {
+            triples[k] = singles[k];
+        }
+        NAME(load_triples)(triples, n, (double(*)[SPARI_ROW])(row[0] + i));
     }
 }
 
@@ -647,8 +680,8 @@ HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int cou
     const double *from[6] = {f->row[0], f->row[1], f->row[2], f->row[3], f->row[4], f->row[5]};
     if (f->next) {
         SPARI_UNROLL
-        for (int k = 0; k < 3 * PAIR; k += 8) {
-            SPARI_AHEAD(f->next + (ptrdiff_t)3 * at + k);
+        for (int k = 0; k < 3 * PAIR * f->size; k += 64) {
+            SPARI_AHEAD(f->next + (ptrdiff_t)3 * (f->at + at) * f->size + k);
         }
     }
     NAME(fetch)(from, rows, f->at + at, count, to);

@@ -46,11 +46,11 @@ static carrier carrier_of(const double *c) {
 }
 
 /* The loads of a tile's nodes, as rows, of which a run of one element begins at `at`. next: the host's forces of the
-   tile's nodes after it, NULL: of no use, or not triples. */
+   tile's nodes after it, numbers of `size` bytes; NULL: of no use, or not triples. */
 typedef struct tile_loads {
     double (*row)[SPARI_ROW];
-    int at;
-    const double *next;
+    int at, size;
+    const char *next;
 } tile_loads;
 
 #define SPARI_KERNELS "../transfer/kernel.h"
@@ -67,27 +67,28 @@ typedef struct kernels {
                 int has_moment, double (*f)[SPARI_ROW], int at, double (*rows)[SPARI_ROW], double *least,
                 spari_bin_cut *cut, spari_bins *load);
     void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
-    void (*store)(double (*row)[SPARI_ROW], int count, double *out);
+    void (*give)(double (*row)[SPARI_ROW], int count, double *out, int past);
+    void (*give_singles)(double (*row)[SPARI_ROW], int count, float *out, int past);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
-    int (*stream)(double (*row)[SPARI_ROW], int count, double *out);
+    void (*load_singles)(const float *in, int count, double (*row)[SPARI_ROW]);
 } kernels;
 
 static kernels choose_kernels(const spari_nodes *s) {
 #ifdef SPARI_X86
     switch (spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX)) {
     case 8:
-        return (kernels){motion_avx512,        loads_avx512,        bins_avx512,          carry_to_avx512,
-                         store_triples_avx512, load_triples_avx512, stream_triples_avx512};
+        return (kernels){motion_avx512,       loads_avx512,        bins_avx512,         carry_to_avx512,
+                         give_triples_avx512, give_singles_avx512, load_triples_avx512, load_singles_avx512};
     case 4:
-        return (kernels){motion_avx2,        loads_avx2,        bins_avx2,          carry_to_avx2,
-                         store_triples_avx2, load_triples_avx2, stream_triples_avx2};
+        return (kernels){motion_avx2,       loads_avx2,        bins_avx2,         carry_to_avx2,
+                         give_triples_avx2, give_singles_avx2, load_triples_avx2, load_singles_avx2};
     default:
         break;
     }
 #endif
     (void)s;
-    return (kernels){motion_plain,        loads_plain,        bins_plain,          carry_to_plain,
-                     store_triples_plain, load_triples_plain, stream_triples_plain};
+    return (kernels){motion_plain,       loads_plain,        bins_plain,         carry_to_plain,
+                     give_triples_plain, give_singles_plain, load_triples_plain, load_singles_plain};
 }
 
 /* ---- node sets ---- */
@@ -283,19 +284,10 @@ static void fetch_at(const spari_nodes *s, int64_t first, int count, spari_sourc
     }
 }
 
-/* Triples of the host's as rows in storage order, and back. */
-static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
-                       double (*f)[SPARI_ROW]) {
-    if (x.layout) {
-        fetch_at(s, first, count, x, f);
-        return;
-    }
-    if (x.d && !s->place) {
-        kernel->load(x.d + 3 * first, count, f);
-        return;
-    }
+/* The same of triples of nodes that are not stored as they come. */
+static void fetch_placed(const spari_nodes *s, int64_t first, int count, spari_source x, double (*f)[SPARI_ROW]) {
     for (int i = 0; i < count; i++) {
-        int64_t node = spari_nodes_node(s, first + i);
+        int64_t node = first + s->place[first + i];
         double t[3];
         if (x.d) {
             memcpy(t, x.d + 3 * node, sizeof t); /* the host's array may lie anywhere */
@@ -308,13 +300,24 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
     }
 }
 
+/* Triples of the host's as rows in storage order, and back. */
+static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
+                       double (*f)[SPARI_ROW]) {
+    if (x.layout) {
+        fetch_at(s, first, count, x, f);
+    } else if (s->place) {
+        fetch_placed(s, first, count, x, f);
+    } else if (x.d) {
+        kernel->load(x.d + 3 * first, count, f);
+    } else {
+        kernel->load_singles(x.f + 3 * first, count, f);
+    }
+}
+
 void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
     int count = spari_tile_count(s, first);
     if (!s->place) {
-        const kernels kernel = choose_kernels(s);
-        if (s->n < SPARI_PAST || !kernel.stream(row, count, x + 3 * first)) {
-            kernel.store(row, count, x + 3 * first);
-        }
+        choose_kernels(s).give(row, count, x + 3 * first, s->n >= SPARI_PAST);
         return;
     }
     for (int i = 0; i < count; i++) {
@@ -323,18 +326,22 @@ void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_R
     }
 }
 
+void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
+    int count = spari_tile_count(s, first);
+    if (!s->place) {
+        choose_kernels(s).give_singles(row, count, x + 3 * first, s->n >= SPARI_PAST);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        float t[3] = {(float)row[0][i], (float)row[1][i], (float)row[2][i]};
+        memcpy(x + 3 * (first + s->place[first + i]), t, sizeof t);
+    }
+}
+
 void spari_tiles_end(void) {
 #if defined(__GNUC__) && defined(__x86_64__)
     _mm_sfence(); /* stores that pass the caches */
 #endif
-}
-
-void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
-    int count = spari_tile_count(s, first);
-    for (int i = 0; i < count; i++) {
-        float t[3] = {(float)row[0][i], (float)row[1][i], (float)row[2][i]};
-        memcpy(x + 3 * spari_nodes_node(s, first + i), t, sizeof t);
-    }
 }
 
 void spari_tile_store_at(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], const spari_layout *layout,
@@ -414,11 +421,13 @@ static void clear_sums(double *block, int64_t nodes) {
     *sums_at(block, nodes).least = HUGE_VAL;
 }
 
-/* Where a tile further on begins, for those who read ahead of many. */
-static const double *forces_after(const spari_nodes *s, int64_t first, spari_source force) {
-    return s->n >= SPARI_FAR && force.d && !force.layout && first + 2 * SPARI_TILE <= s->n
-               ? force.d + 3 * (first + SPARI_TILE)
-               : NULL;
+/* The rows f, and where the host's forces after them are, for those who read ahead of many. */
+static tile_loads rows_before(const spari_nodes *s, int64_t first, spari_source force, double (*f)[SPARI_ROW]) {
+    tile_loads t = {f, 0, force.d ? sizeof *force.d : sizeof *force.f, NULL};
+    if (s->n >= SPARI_FAR && !force.layout && first + 2 * SPARI_TILE <= s->n) {
+        t.next = (force.d ? (const char *)force.d : (const char *)force.f) + 3 * (first + SPARI_TILE) * t.size;
+    }
+    return t;
 }
 
 /* f: rows of work space, of which the first six are for the loads. */
@@ -432,15 +441,15 @@ static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], 
     for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
         f[0][i] = f[1][i] = f[2][i] = 0;
     }
-    const double *next = forces_after(s, first, g->force);
-    for (int at = 0; at < count;) {
+    tile_loads loads = rows_before(s, first, g->force, f);
+    while (loads.at < count) {
+        const int at = loads.at;
         int run = run_length(s, first + at, count - at);
         ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-        const tile_loads loads = {f, at, next ? next + 3 * at : NULL};
         double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, &loads,
                                    g->audited, f + 6, to->modal + node * 14, to->audit, to->tops);
         *to->least = d < *to->least ? d : *to->least;
-        at += run;
+        loads.at += run;
     }
 }
 
