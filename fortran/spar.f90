@@ -228,6 +228,13 @@ module spar
         session_solve_eigenvalues_64_single_1, session_solve_eigenvalues_64_single_2, &
         session_solve_eigenvalues_64_single_3, session_solve_eigenvalues_32_single_1, &
         session_solve_eigenvalues_32_single_2, session_solve_eigenvalues_32_single_3
+    procedure, private :: session_solve_floquet_64, session_solve_floquet_32
+    procedure, private :: session_solve_floquet_64_single_1, session_solve_floquet_64_single_2, &
+        session_solve_floquet_64_single_3, session_solve_floquet_32_single_1, session_solve_floquet_32_single_2, &
+        session_solve_floquet_32_single_3
+    generic :: solve_floquet => session_solve_floquet_64, session_solve_floquet_32, &
+        session_solve_floquet_64_single_1, session_solve_floquet_64_single_2, session_solve_floquet_64_single_3, &
+        session_solve_floquet_32_single_1, session_solve_floquet_32_single_2, session_solve_floquet_32_single_3
     procedure, private :: session_advise_64, session_advise_32
     procedure, private :: session_advise_64_single_1, session_advise_64_single_2, session_advise_64_single_3, &
         session_advise_32_single_1, session_advise_32_single_2, session_advise_32_single_3
@@ -1211,6 +1218,53 @@ contains
     call self%solve_eigenvalues(dt, int(memory, c_int64_t), int(modes, c_int64_t), shift, eigenvalue, amplitude, before, &
         solve, context, shapes, frame, stat, errmsg)
   end subroutine session_solve_eigenvalues_32
+
+  ! eigenvalue(2,n): growth rate and angular frequency
+  subroutine session_solve_floquet_64(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps, modes
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(step_record), target :: record
+    type(c_funptr) :: to_solver, to_before
+    character(:), allocatable :: fault
+    integer(c_int64_t) :: n
+    real(c_double) :: size_of_motion
+
+    size_of_motion = 0
+    if (present(amplitude)) size_of_motion = amplitude
+    n = size(eigenvalue, 2, kind=c_int64_t)
+    call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('session%solve_floquet', fault, stat, errmsg)
+      return
+    end if
+    call fill_record(self, record, to_solver, to_before, solve, before, context)
+    call finish(spar_session_solve_floquet(self%handle, dt, steps, size_of_motion, to_before, to_solver, c_loc(record), &
+        modes, n, eigenvalue), self%handle, stat, errmsg)
+  end subroutine session_solve_floquet_64
+
+  subroutine session_solve_floquet_32(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps, modes
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%solve_floquet(dt, int(steps, c_int64_t), int(modes, c_int64_t), eigenvalue, amplitude, before, solve, &
+        context, stat, errmsg)
+  end subroutine session_solve_floquet_32
 
   subroutine session_advise_64(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
     class(spar_session), intent(inout), target :: self
@@ -4640,6 +4694,134 @@ contains
     call take(c_shapes, shapes)
     call take(c_frame, frame)
   end subroutine session_solve_eigenvalues_32_single_3
+
+  subroutine session_solve_floquet_64_single_1(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    integer(c_int64_t), intent(in) :: modes
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_amplitude
+
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_floquet_64(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=eigenvalue, &
+        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_solve_floquet_64_single_1
+
+  subroutine session_solve_floquet_64_single_2(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    integer(c_int64_t), intent(in) :: modes
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    call session_solve_floquet_64(self, dt=dt, steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
+        amplitude=amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+  end subroutine session_solve_floquet_64_single_2
+
+  subroutine session_solve_floquet_64_single_3(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    integer(c_int64_t), intent(in) :: modes
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_amplitude
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_floquet_64(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
+        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+  end subroutine session_solve_floquet_64_single_3
+
+  subroutine session_solve_floquet_32_single_1(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    integer(c_int), intent(in) :: modes
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_amplitude
+
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_floquet_32(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=eigenvalue, &
+        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+  end subroutine session_solve_floquet_32_single_1
+
+  subroutine session_solve_floquet_32_single_2(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    integer(c_int), intent(in) :: modes
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_double), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    call session_solve_floquet_32(self, dt=dt, steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
+        amplitude=amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+  end subroutine session_solve_floquet_32_single_2
+
+  subroutine session_solve_floquet_32_single_3(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
+      stat, errmsg)
+    class(spar_session), intent(inout), target :: self
+    real(c_float), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    integer(c_int), intent(in) :: modes
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(in), optional :: amplitude
+    procedure(spar_before_step), optional :: before
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), intent(inout), target, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_amplitude
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
+    call session_solve_floquet_32(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
+        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+  end subroutine session_solve_floquet_32_single_3
 
   subroutine session_advise_64_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
       errmsg)

@@ -1335,6 +1335,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_solve_eigenvalues
 
+    function spar_session_solve_floquet(session, dt, steps, amplitude, before, solve, context, modes, n, eigenvalue) &
+        bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: steps
+      real(c_double), value :: amplitude
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      integer(c_int64_t), value :: modes, n
+      real(c_double), intent(inout), optional :: eigenvalue(*)
+      integer(c_int) :: status
+    end function spar_session_solve_floquet
+
     function spar_effect_name(row) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: row

@@ -150,12 +150,12 @@ static int fill_swing(spari_swing *w) {
         const swing_part *p = w->part + i;
         int64_t first = w->pencil.entries;
         w->pencil.base = p->at;
-        int status = p->member->row->linearise(p->member, w->w, &w->pencil);
+        int status = p->member->row->linearise(p->member, w->loose ? p->own : w->w, &w->pencil);
         SPARI_REQUIRE(s, status != SPAR_ERR_UNSUPPORTED, status,
                       "'%s' is linear in the frame of its root, which turns otherwise than what it is tied to",
                       p->member->name);
         SPARI_REQUIRE(s, status == SPAR_OK, status, "'%s': no memory for eigenvalues", p->member->name);
-        SPARI_TRY(check_alike(w, p, first));
+        SPARI_TRY(w->loose ? SPAR_OK : check_alike(w, p, first));
     }
     for (const spar_joint *j = s->joints; j; j = j->next) {
         SPARI_TRY(spari_swing_add_joint(w, j, &holds));
@@ -216,6 +216,12 @@ int spari_swing_create(spari_swing *w, spar_session *s, const spar_member *first
     }
     SPARI_TRY(find_frame(w));
     return check_swing(w);
+}
+
+int spari_swing_create_loose(spari_swing *w, spar_session *s) {
+    *w = (spari_swing){.session = s, .loose = 1};
+    SPARI_TRY(gather_swing(w, NULL));
+    return w->parts > 0 ? fill_swing(w) : SPAR_OK;
 }
 
 /* ---- answers ---- */

@@ -17,6 +17,7 @@ typedef struct spari_swing {
     swing_part *part; /* in the order of creation, so that the answer is the same whichever member is asked */
     int parts, size;
     double w[3]; /* the frame's angular velocity */
+    int loose;   /* for shapes alone: each part is seen from a frame of its own, whatever changes with time */
     spari_pencil pencil;
     double *room; /* of a shape */
 } spari_swing;
@@ -24,6 +25,8 @@ typedef struct spari_swing {
 /* The parts: of a member, and all that joints tie to it; first NULL: all that spar solves for. Then their equations, in
    the frame where these do not change with time. A status and a message; free it whatever that is. */
 int spari_swing_create(spari_swing *swing, spar_session *session, const spar_member *first);
+/* The same of all that spar solves for, for shapes alone: in any state, also one that does not stay. */
+int spari_swing_create_loose(spari_swing *swing, spar_session *session);
 void spari_swing_free(spari_swing *swing);
 /* The part that a member is, or NULL. */
 static inline const swing_part *spari_swing_part(const spari_swing *swing, const spar_member *member) {

@@ -256,7 +256,7 @@ int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
     }
     if (status == SPAR_OK) {
         linearise_joint(w, j, side, of);
-        status = check_around(w, j, side, of);
+        status = w->loose ? SPAR_OK : check_around(w, j, side, of);
         if (status == SPAR_OK) {
             put_joint(w, side, of, holds);
         }

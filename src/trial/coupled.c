@@ -2,6 +2,7 @@
    spar_member_solve_eigenvalues takes, in some of its modes; the fluid's answer to motion in these comes from trials.
  */
 #include "reduced.h"
+#include "shapes.h"
 
 #include "../base/quiet.h"
 #include "../comm/enter.h"
@@ -26,152 +27,14 @@ typedef struct coupled_ask {
     double *eigenvalue, *shapes; /* the host's */
 } coupled_ask;
 
-/* ---- shapes ---- */
-
-/* K, C or M (kind 0, 1, 2) times x. */
-static void pencil_times(const spari_pencil *p, int kind, const double *x, double *y) {
-    memset(y, 0, (size_t)p->n * sizeof *y);
-    spari_pencil_times(p, 0, kind == 0, kind == 1, kind == 2, x, y);
-}
-
-static double shapes_product(int n, const double *a, const double *b) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-/* The undamped, symmetric part, whose eigenvectors are the shapes; with so much of M in K, which changes none of them.
- */
-static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) {
-    if (spari_pencil_create(to, p->n) != SPAR_OK) {
-        return SPAR_ERR_MEMORY;
-    }
-    to->holds = p->holds;
-    for (int64_t i = 0; i < p->entries; i++) {
-        const spari_pencil_entry *e = p->entry + i;
-        double k = 0.5 * (e->k + more * e->m), m = 0.5 * e->m;
-        spari_pencil_put(to, (spari_pencil_entry){e->row, e->column, k, 0, m});
-        spari_pencil_put(to, (spari_pencil_entry){e->column, e->row, k, 0, m});
-    }
-    for (int64_t i = 0; i < p->ties; i++) {
-        spari_pencil_hold_at(to, p->tie[i]);
-    }
-    return to->full ? SPAR_ERR_MEMORY : SPAR_OK;
-}
-
-/* x, or its imaginary part, without what is along the `count` shapes there are; kept behind them if anything of it is
-   left. room [2 n] */
-static int add_shape(const spari_pencil *p, const double complex *x, int imaginary, int count, double *shape,
-                     double *room) {
-    int n = p->n;
-    double *at = shape + (int64_t)n * count, *Mx = room;
-    for (int i = 0; i < n; i++) {
-        at[i] = imaginary ? cimag(x[i]) : creal(x[i]);
-    }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int k = 0; k < count; k++) {
-            const double *other = shape + (int64_t)n * k;
-            pencil_times(p, 2, other, Mx);
-            double along = shapes_product(n, Mx, at);
-            for (int i = 0; i < n; i++) {
-                at[i] -= along * other[i];
-            }
-        }
-        pencil_times(p, 2, at, Mx);
-        double square = shapes_product(n, at, Mx);
-        if (!(square > (pass == 0 ? 1e-8 : 0))) {
-            return 0;
-        }
-        for (int i = 0; i < n; i++) {
-            at[i] /= sqrt(square);
-        }
-    }
-    return 1;
-}
-
-/* A little stiffness, by mass, for where there are motions without any; more than rounding makes of it. */
-static double some_stiffness(const spari_pencil *p, double *diagonal) {
-    double most = 0;
-    memset(diagonal, 0, 2 * (size_t)p->n * sizeof *diagonal);
-    for (int64_t i = 0; i < p->entries; i++) {
-        const spari_pencil_entry *e = p->entry + i;
-        diagonal[e->row] += e->row == e->column ? e->k : 0;
-        diagonal[p->n + e->row] += e->row == e->column ? e->m : 0;
-    }
-    for (int i = 0; i < p->n; i++) {
-        most = fmax(most, diagonal[p->n + i] > 0 ? fabs(diagonal[i]) / diagonal[p->n + i] : 0);
-    }
-    return most > 0 ? 1e-12 * most : 1;
-}
-
-/* `modes` shapes of unit mass [modes][size] and their rates; *count: how many there are. */
-static int search_shapes(const spari_swing *w, int modes, double more, double complex *value, double *shape,
-                         double *rate, double *room, int *count) {
-    spari_pencil part = {0};
-    int n = w->size, found = 0, status = symmetric_part(&w->pencil, more, &part);
-    double complex *x = value + modes;
-
-    *count = 0;
-    if (status == SPAR_OK) {
-        status = spari_spectrum(&part, modes, 0, SPARI_SPECTRUM_CHOICE, &found, value, x);
-    }
-    for (int k = 0; k < 2 * found && *count < modes && status == SPAR_OK; k++) {
-        if (add_shape(&w->pencil, x + (int64_t)n * (k / 2), k % 2, *count, shape, room)) {
-            double square = fabs(creal(value[k / 2] * value[k / 2]) + more);
-            rate[(*count)++] = square > 1e-3 * more ? sqrt(square) : 0;
-        }
-    }
-    spari_pencil_free(&part);
-    return status;
-}
-
-static int find_shapes(spari_swing *w, int modes, double *shape, double *rate) {
-    int64_t n = w->size;
-    int count = 0;
-    double complex *value = spari_zalloc(modes * (n + 1), sizeof *value);
-    double *room = spari_zalloc(2 * n, sizeof *room), most = 0;
-    int status = value && room ? SPAR_OK : SPAR_ERR_MEMORY;
-    for (int pass = 0; pass < 2 && count < modes && status != SPAR_ERR_MEMORY; pass++) {
-        double more = pass ? some_stiffness(&w->pencil, room) : 0;
-        status = search_shapes(w, modes, more, value, shape, rate, room, &count);
-    }
-    for (int k = 0; k < count; k++) {
-        most = fmax(most, rate[k]);
-    }
-    for (int k = 0; k < count; k++) {
-        rate[k] = fmax(rate[k], most > 0 ? 0.01 * most : 1);
-    }
-    free(value);
-    free(room);
-    SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", modes);
-    SPARI_REQUIRE(w->session, status == SPAR_OK && count == modes, SPAR_ERR_NUMERIC,
-                  "%d of %d modes; the others have no mass, or have not converged: ask for fewer", count, modes);
-    return SPAR_OK;
-}
-
-/* As motion of the nodes of all members [modes][nodes][6]; what spar does not solve for stands still. */
-static void show_shapes(const spari_swing *w, int modes, const double *shape, double *nodes) {
-    for (int k = 0; k < modes; k++, shape += w->size) {
-        for (const spar_member *m = w->session->members; m; m = m->next) {
-            const swing_part *part = spari_swing_part(w, m);
-            if (part) {
-                m->row->shape(m, shape + part->at, w->room, nodes);
-            }
-            nodes += 6 * m->nodes;
-        }
-    }
-}
-
 /* M, C, K of the shapes. room [size] */
 static void reduce_structure(const spari_swing *w, const double *shape, double *room, spari_reduced *r) {
     double *to[3] = {r->K, r->C, r->M};
     for (int kind = 0; kind < 3; kind++) {
         for (int j = 0; j < r->n; j++) {
-            pencil_times(&w->pencil, kind, shape + (int64_t)w->size * j, room);
+            spari_shapes_times(&w->pencil, kind, shape + (int64_t)w->size * j, room);
             for (int i = 0; i < r->n; i++) {
-                to[kind][r->n * i + j] = shapes_product(w->size, shape + (int64_t)w->size * i, room);
+                to[kind][r->n * i + j] = spari_shapes_product(w->size, shape + (int64_t)w->size * i, room);
             }
         }
     }
@@ -211,11 +74,11 @@ static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     c->room = c->shape + modes * c->swing.size;
     c->rate = c->room + c->swing.size;
     c->x = c->value + n;
-    SPARI_TRY(find_shapes(&c->swing, (int)modes, c->shape, c->rate));
+    SPARI_TRY(spari_shapes_find(&c->swing, (int)modes, c->shape, c->rate));
     for (int k = 0; k < modes; k++) {
         c->reduced.fastest = fmax(c->reduced.fastest, c->rate[k]);
     }
-    show_shapes(&c->swing, (int)modes, c->shape, c->nodes);
+    spari_shapes_show(&c->swing, (int)modes, c->shape, c->nodes);
     reduce_structure(&c->swing, c->shape, c->room, &c->reduced);
     return SPAR_OK;
 }

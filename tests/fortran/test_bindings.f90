@@ -188,6 +188,8 @@ program test_bindings
       'spar_session_try')
   call refused(spar_session_solve_eigenvalues(none, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
       c_null_funptr, none, 1_c_int64_t, 0_c_int64_t, nodes=0_c_int64_t), 'spar_session_solve_eigenvalues')
+  call refused(spar_session_solve_floquet(none, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
+      c_null_funptr, none, 1_c_int64_t, 0_c_int64_t), 'spar_session_solve_floquet')
   call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
       0_c_int64_t, 0_c_int64_t), &
       'spar_session_report_effects')

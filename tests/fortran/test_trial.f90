@@ -30,7 +30,7 @@ contains
     integer(c_int), intent(inout) :: stat
     real(c_double) :: x(3,1)
 
-    if (.not. session%exists() .or. t < 0 .or. dt <= 0 .or. iteration < 0) stat = 4
+    if (.not. session%exists() .or. t < 0 .or. dt < 0 .or. iteration < 0) stat = 4 ! 0 where a run of solve_floquet starts
     select type (context)
     type is (spring)
       call context%fluid%pull_motion(1.0_c_double, x)
@@ -260,6 +260,12 @@ contains
     call session%solve_eigenvalues(dt, 0, 6, at, eigenvalue, shapes=shapes(:,:,:,:2), solve=solve, context=context, &
         stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'shapes') > 0, 'shapes of too few: ' // trim(errmsg))
+    call session%set_integrator(1.0_c_double, 1)
+    call session%solve_floquet(0.001_c_double, 1000, 6, few, before=count_step, solve=solve, context=context)
+    call check(abs(few(2,1) - 2) < 1e-4_c_double .and. abs(few(1,1)) < 1e-4_c_double, 'a multiplier')
+    call session%solve_floquet(0.001_c_double, 0_c_int64_t, 6_c_int64_t, few, solve=solve, context=context, stat=stat, &
+        errmsg=errmsg)
+    call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, '0 steps') > 0, 'a period of no steps: ' // trim(errmsg))
   end subroutine eigenvalues
 
   ! Where trials vary the nodes, shapes follow: a beam whose solver asks for the basis of its fluid.

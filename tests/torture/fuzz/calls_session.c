@@ -581,6 +581,19 @@ void do_spar_session_solve_eigenvalues(call *c) {
                                           NULL, frame));
 }
 
+void do_spar_session_solve_floquet(call *c) {
+    live_session *l = arg_session(c);
+    double dt = arg_dt(c);
+    int64_t steps = arg_count(c, 0, 6);
+    double amplitude = arg_real(c, 0, 0.05);
+    spar_fluid_solver solve;
+    spar_before_step before;
+    host *h = arg_host(c, &solve, &before);
+    int64_t modes = arg_count(c, 1, 3), n = arg_count(c, 0, 3), room = length(n);
+    double *eigenvalue = OUT(c, 2 * room);
+    RUN(c, spar_session_solve_floquet(l->s, dt, steps, amplitude, before, solve, h, modes, n, eigenvalue));
+}
+
 void do_spar_session_advise(call *c) {
     live_session *l = arg_session(c);
     double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 1e-3, 0.02);

@@ -206,6 +206,7 @@ enum {
     CALL(spar_session_load, 20, FUZZ_CHANGES)                                                                          \
     CALL(spar_session_try, 14, FUZZ_TRIAL)                                                                             \
     CALL(spar_session_solve_eigenvalues, 5, FUZZ_TRIAL)                                                                \
+    CALL(spar_session_solve_floquet, 3, FUZZ_TRIAL)                                                                    \
     CALL(spar_session_report_effects, 5, FUZZ_TRIAL)                                                                   \
     CALL(spar_session_advise, 1, FUZZ_TRIAL)                                                                           \
     CALL(spar_session_apply_advice, 10, FUZZ_CHANGES)                                                                  \

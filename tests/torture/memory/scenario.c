@@ -811,6 +811,8 @@ static void act_flutter(void) {
              &value[0][0], 0, NULL, frame);
         note(value, sizeof value);
     }
+    CALL(spar_session_solve_floquet, s, 0.02, 8, 0, before_step, solve_flutter, &h, 2, 2, &value[0][0]);
+    note(value, sizeof value);
     end_session(&h.session);
 }
 

@@ -291,6 +291,11 @@ static int make_eigenvalues(scene *c, const arguments *a) {
                                                 a->no_out ? NULL : out, 0, NULL, NULL);
     return status == SPAR_ERR_STATE && strstr(spar_session_message(c->session), "equilibrium") ? SPAR_OK : status;
 }
+static int make_floquet(scene *c, const arguments *a) {
+    int status =
+        spar_session_solve_floquet(c->session, a->dt, 2, 0, a->before, a->solve, c, 1, 1, a->no_out ? NULL : out);
+    return status == SPAR_ERR_STATE && strstr(spar_session_message(c->session), "not periodic") ? SPAR_OK : status;
+}
 static int make_apply(scene *c, const arguments *a) {
     double advised;
     return spar_session_apply_advice(c->session, a->no_out ? NULL : &advised);
@@ -361,6 +366,7 @@ static const struct call {
     {"spar_session_sum", make_sum, IDLE, OUT | SETTINGS},
     {"spar_session_get_balance", make_balance, IDLE, OUT},
     {"spar_session_solve_eigenvalues", make_eigenvalues, IDLE, DT | CALLBACKS | OUT | SETTINGS | NEEDS_SOLVE},
+    {"spar_session_solve_floquet", make_floquet, IDLE, DT | CALLBACKS | OUT | SETTINGS},
 };
 enum {
     CREATE = 0,

@@ -1,0 +1,380 @@
+/* Stability of a state that is periodic in time: the map of small motions over one period, found by trials of the
+   host's own steps, and its eigenvalues (Floquet's multipliers). Beyond the periodic state every member is moved along
+   a shape, or given its velocity, to and fro, and runs through the period; half the difference of both ends is a
+   column. */
+#include "shapes.h"
+#include "trial.h"
+
+#include "../base/blas.h"
+#include "../base/quiet.h"
+#include "../comm/enter.h"
+#include "../math/rotation.h"
+#include "../session/exchange.h"
+#include "../session/lend.h"
+#include "../solve/assembly.h"
+#include "../solve/life.h"
+
+#include <complex.h>
+#include <gsl/gsl_complex_math.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double usual_amplitude = 1e-4, largest_amplitude = 0.1;
+enum { MOST_SHAPES = 200, NODE = 13 };
+/* How far the state may be from itself after a period: displacement by the member's length, turn, and both by the
+   velocities times a radian of the period. */
+static const double periodic = 1e-3;
+
+typedef struct floquet {
+    const char *call;
+    spari_run run; /* dt, before, solve, context, progress */
+    int64_t steps; /* of the period */
+    int64_t nodes; /* of all members */
+    int modes;
+    double amplitude;
+    spari_swing swing;   /* whose parts have shapes */
+    double *shape;       /* [modes][nodes][6] */
+    double *rate, *unit; /* [modes]: 1/s; of a shape that moves its nodes by one length of their member or one radian */
+    double *base;        /* [nodes][13]: motion at the beginning of the period */
+    gsl_matrix *gram;    /* products of shapes, factored */
+    gsl_matrix *Y[2];    /* [2 modes][2 modes] the state at both ends of the period, columns by what was moved */
+    gsl_matrix *change;  /* [2][2 modes] of a run, at both ends */
+    int mode, kind;      /* of the run under way; mode -1: nothing is moved */
+    double size, drift;  /* with its sign; out: how far from the beginning it ends */
+} floquet;
+
+static void floquet_free(floquet *f) {
+    spari_swing_free(&f->swing);
+    free(f->shape);
+    gsl_matrix_free(f->gram);
+    gsl_matrix_free(f->Y[0]);
+    gsl_matrix_free(f->Y[1]);
+    gsl_matrix_free(f->change);
+}
+
+/* ---- states ---- */
+
+static void keep_motion(const spar_session *s, double *base) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++, base += NODE) {
+            memcpy(base, m->now.q + 7 * i, 7 * sizeof *base);
+            memcpy(base + 7, m->now.v + 6 * i, 6 * sizeof *base);
+        }
+    }
+}
+
+/* All parts by so much of the shape away, and faster by so much of it, as seen from axes that turn with each. */
+static void displace(spar_session *s, const floquet *f, double way, double speed) {
+    const double *shape = f->shape + 6 * f->nodes * f->mode, *base = f->base;
+    for (spar_member *m = s->members; m; m = m->next) {
+        const double *own = base + 10;
+        for (int64_t i = 0; i < m->nodes; i++, shape += 6, base += NODE) {
+            double turn[3], p[4], along[3], *q = m->now.q + 7 * i, *v = m->now.v + 6 * i;
+            for (int k = 0; k < 3; k++) {
+                turn[k] = way * shape[3 + k];
+                along[k] = way * shape[k];
+                q[k] += along[k];
+                v[3 + k] += speed * shape[3 + k];
+            }
+            spari_quat_exp(turn, p);
+            spari_quat_mul(p, q + 3, q + 3);
+            spari_cross(own, along, turn);
+            for (int k = 0; k < 3; k++) {
+                v[k] += speed * shape[k] + turn[k];
+            }
+        }
+        if (spari_swing_part(&f->swing, m)) {
+            spari_member_restart(m);
+        }
+    }
+}
+
+/* How a node has moved against where it was at the beginning: way, turn, and both of the velocities, seen as above. */
+static void look_at_change(const double *base, const double own[3], const double *q, const double *v, double x[12]) {
+    double back[4], turn[4], carried[3];
+    spari_quat_conj(base + 3, back);
+    spari_quat_mul(q + 3, back, turn);
+    spari_quat_log(turn, x + 3);
+    for (int k = 0; k < 3; k++) {
+        x[k] = q[k] - base[k];
+    }
+    spari_cross(own, x, carried);
+    for (int k = 0; k < 6; k++) {
+        x[6 + k] = v[k] - base[7 + k] - (k < 3 ? carried[k] : 0);
+    }
+}
+
+/* Turns count by the member's length. */
+static double product_at(double length, const double *a, const double *b) {
+    return spari_dot(a, b) + length * length * spari_dot(a + 3, b + 3);
+}
+
+/* The state against the beginning, in shapes, into a row; and how far it is away. */
+static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
+    int n = f->modes;
+    double radian = f->run.dt * (double)f->steps / (2 * acos(-1));
+    const double *base = f->base;
+    int64_t at = 0;
+    gsl_vector_set_zero(row);
+    f->drift = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        const double *own = base + 10, length = spari_member_length(m);
+        for (int64_t i = 0; i < m->nodes; i++, base += NODE, at += 6) {
+            double x[12];
+            look_at_change(base, own, m->now.q + 7 * i, m->now.v + 6 * i, x);
+            for (int k = 0; k < n; k++) {
+                const double *shape = f->shape + 6 * f->nodes * k + at;
+                *gsl_vector_ptr(row, (size_t)k) += product_at(length, shape, x);
+                *gsl_vector_ptr(row, (size_t)(n + k)) += product_at(length, shape, x + 6);
+            }
+            if (spari_swing_part(&f->swing, m)) {
+                f->drift = fmax(f->drift, fmax(spari_norm(x) / length, spari_norm(x + 3)));
+                f->drift = fmax(f->drift, radian * fmax(spari_norm(x + 6) / length, spari_norm(x + 9)));
+            }
+        }
+    }
+    for (int half = 0; half < 2; half++) {
+        gsl_vector_view part = gsl_vector_subvector(row, (size_t)(half * n), (size_t)n);
+        SPARI_BLAS((void)gsl_linalg_cholesky_svx(f->gram, &part.vector));
+    }
+}
+
+/* The trial: through one period, from a start at which accelerations and loads belong to what was moved. */
+static int run_period(spar_session *s, void *self) {
+    floquet *f = self;
+    const spari_run *run = &f->run;
+    int iterations;
+    s->newton_strict = 1;
+    if (f->mode >= 0) {
+        displace(s, f, f->kind == 0 ? f->size : 0, f->kind == 1 ? f->size * f->rate[f->mode] : 0);
+    }
+    s->step = 0;
+    s->started = 0;
+    SPARI_TRY(spar_session_start(s, run->dt, run->solve, run->context, &iterations));
+    gsl_vector_view first = gsl_matrix_row(f->change, 0), last = gsl_matrix_row(f->change, 1);
+    look_at_state(s, f, &first.vector);
+    for (int64_t i = 0; i < f->steps; i++) {
+        SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
+        SPARI_TRY(spar_step(s, run->dt, run->solve, run->context, &iterations));
+    }
+    look_at_state(s, f, &last.vector);
+    return SPAR_OK;
+}
+
+/* ---- all trials ---- */
+
+static int try_period(spar_session *s, floquet *f, const spari_wish *wish, int done) {
+    spari_record none;
+    spari_run run = f->run;
+    run.instead = run_period;
+    run.of = f;
+    SPARI_TRY(spari_progress_tell(s, run.progress, done, 4 * f->modes + 1));
+    (void)spari_trial_run(s, &run, wish, &none);
+    return none.own;
+}
+
+static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wish) {
+    int n = f->modes, done = 0;
+    f->mode = -1;
+    SPARI_TRY(try_period(s, f, wish, done++));
+    SPARI_REQUIRE(s, f->drift <= periodic, SPAR_ERR_STATE,
+                  "the state is not periodic with %lld steps of %g s: after them it is %.2g of a member's length, or "
+                  "rad, from where it was; let the run go on until it repeats, or give the whole of its period",
+                  (long long)f->steps, f->run.dt, f->drift);
+    for (int column = 0; column < 2 * n; column++) {
+        f->mode = column % n;
+        f->kind = column / n;
+        for (int side = 0; side < 2; side++) {
+            f->size = (side ? -1 : 1) * f->amplitude * f->unit[f->mode];
+            SPARI_TRY(try_period(s, f, wish, done++));
+            for (int end = 0; end < 2; end++) {
+                for (int i = 0; i < 2 * n; i++) {
+                    *gsl_matrix_ptr(f->Y[end], (size_t)i, (size_t)column) +=
+                        gsl_matrix_get(f->change, (size_t)end, (size_t)i) / (2 * f->size);
+                }
+            }
+        }
+    }
+    return SPAR_OK;
+}
+
+/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are those. 0, or 1. */
+static int form_map(floquet *f) {
+    size_t n = 2 * (size_t)f->modes;
+    int sign, wrong;
+    gsl_permutation *p = gsl_permutation_alloc(n);
+    if (!p) {
+        return 1;
+    }
+    gsl_matrix_transpose(f->Y[0]);
+    gsl_matrix_transpose(f->Y[1]);
+    SPARI_BLAS(wrong = gsl_linalg_LU_decomp(f->Y[0], p, &sign));
+    for (size_t k = 0; k < n && !wrong; k++) {
+        gsl_vector_view column = gsl_matrix_column(f->Y[1], k);
+        SPARI_BLAS(wrong = gsl_linalg_LU_svx(f->Y[0], p, &column.vector));
+    }
+    gsl_permutation_free(p);
+    return wrong != 0;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = cabs(*(const double complex *)a), y = cabs(*(const double complex *)b);
+    return x < y ? 1 : x > y ? -1 : 0;
+}
+
+/* Multipliers, the largest first, one of each conjugate pair; how many, or -1. */
+static int solve_map(floquet *f, double complex *z) {
+    size_t n = 2 * (size_t)f->modes;
+    gsl_vector_complex *value = gsl_vector_complex_alloc(n);
+    gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(n);
+    int count = 0, wrong = !value || !work || form_map(f);
+    if (!wrong) {
+        gsl_eigen_nonsymm_params(0, 1, work);
+        SPARI_BLAS(wrong = gsl_eigen_nonsymm(f->Y[1], value, work));
+    }
+    for (size_t k = 0; k < n && !wrong; k++) {
+        gsl_complex x = gsl_vector_complex_get(value, k);
+        if (GSL_IMAG(x) >= 0) {
+            z[count++] = CMPLX(GSL_REAL(x), GSL_IMAG(x));
+        }
+    }
+    gsl_vector_complex_free(value);
+    gsl_eigen_nonsymm_free(work);
+    qsort(z, (size_t)count, sizeof *z, by_size);
+    return wrong ? -1 : count;
+}
+
+/* ---- the call ---- */
+
+/* Shapes on every rank by itself. */
+static int find_shapes_of_period(spar_session *s, floquet *f) {
+    int n = f->modes;
+    SPARI_TRY(spari_joints_place(s));
+    SPARI_TRY(spari_swing_create_loose(&f->swing, s));
+    SPARI_REQUIRE(s, f->swing.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
+    SPARI_REQUIRE(s, n <= f->swing.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->swing.size);
+    size_t N = (size_t)n;
+    f->shape = spari_zalloc(6 * n * f->nodes + 2 * n + NODE * f->nodes + (int64_t)n * f->swing.size, sizeof *f->shape);
+    f->gram = gsl_matrix_calloc(N, N), f->change = gsl_matrix_calloc(2, 2 * N);
+    f->Y[0] = gsl_matrix_calloc(2 * N, 2 * N), f->Y[1] = gsl_matrix_calloc(2 * N, 2 * N);
+    SPARI_REQUIRE(s, f->shape && f->gram && f->change && f->Y[0] && f->Y[1], SPAR_ERR_MEMORY, "no memory for %d modes",
+                  n);
+    f->rate = f->shape + 6 * n * f->nodes, f->unit = f->rate + n, f->base = f->unit + n;
+    double *x = f->base + NODE * f->nodes;
+    SPARI_TRY(spari_shapes_find(&f->swing, n, x, f->rate));
+    spari_shapes_show(&f->swing, n, x, f->shape);
+    keep_motion(s, f->base);
+    return SPAR_OK;
+}
+
+/* Products of shapes, and how much of each is a motion of the size of one. */
+static int weigh_shapes(spar_session *s, floquet *f) {
+    int singular;
+    for (int i = 0; i < f->modes; i++) {
+        const double *a = f->shape + 6 * f->nodes * i;
+        double most = 0;
+        for (const spar_member *m = s->members; m; m = m->next) {
+            double length = spari_member_length(m);
+            for (int64_t k = 0; k < m->nodes; k++, a += 6) {
+                most = fmax(most, fmax(spari_norm(a) / length, spari_norm(a + 3)));
+                for (int j = 0; j <= i; j++) {
+                    const double *b = a + 6 * f->nodes * (j - i);
+                    double sum = gsl_matrix_get(f->gram, (size_t)i, (size_t)j) + product_at(length, a, b);
+                    gsl_matrix_set(f->gram, (size_t)i, (size_t)j, sum);
+                    gsl_matrix_set(f->gram, (size_t)j, (size_t)i, sum);
+                }
+            }
+        }
+        f->unit[i] = most > 0 ? 1 / most : 1;
+    }
+    SPARI_BLAS(singular = gsl_linalg_cholesky_decomp1(f->gram));
+    SPARI_REQUIRE(s, !singular, SPAR_ERR_NUMERIC, "the shapes cannot be told from each other; ask for fewer modes");
+    return SPAR_OK;
+}
+
+static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eigenvalue) {
+    double complex *z = spari_zalloc(2 * (int64_t)f->modes, sizeof *z);
+    int count = z ? solve_map(f, z) : -1;
+    double period = f->run.dt * (double)f->steps;
+    for (int64_t k = 0; k < n && k < count; k++) {
+        eigenvalue[2 * k] = log(cabs(z[k])) / period;
+        eigenvalue[2 * k + 1] = carg(z[k]) / period;
+    }
+    free(z);
+    SPARI_REQUIRE(s, z, SPAR_ERR_MEMORY, "no memory for %d modes", f->modes);
+    SPARI_REQUIRE(s, count >= n, SPAR_ERR_NUMERIC,
+                  "%d of %lld multipliers; of conjugate pairs one counts: ask for fewer, or give more modes",
+                  count < 0 ? 0 : count, (long long)n);
+    return SPAR_OK;
+}
+
+static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenvalue) {
+    int status = find_shapes_of_period(s, f);
+    status = status == SPAR_OK ? weigh_shapes(s, f) : status;
+    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    spari_wish wish = {.member = NULL};
+    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    if (status == SPAR_OK) {
+        status = find_columns_of_map(s, f, &wish);
+        spari_wish_free(&wish);
+    }
+    if (status == SPAR_OK) {
+        status = find_multipliers(s, f, n, eigenvalue);
+        status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    }
+    return status;
+}
+
+static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64_t n, const double *eigenvalue) {
+    const char *call = f->call;
+    SPARI_TRY(spari_trial_check(s, call, &f->run));
+    SPARI_TRY(s->started ? SPAR_OK : spari_session_pushes(s, call));
+    SPARI_REQUIRE(s, f->steps >= 1 && isfinite(f->run.dt * (double)f->steps), SPAR_ERR_ARGUMENT,
+                  "%s: %lld steps; give as many as a period has", call, (long long)f->steps);
+    SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= largest_amplitude, SPAR_ERR_ARGUMENT,
+                  "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, largest_amplitude,
+                  usual_amplitude);
+    SPARI_REQUIRE(s, modes >= 1 && modes <= MOST_SHAPES, SPAR_ERR_ARGUMENT, "%s: %lld modes; give 1 to %d", call,
+                  (long long)modes, MOST_SHAPES);
+    SPARI_REQUIRE(s, n >= 0 && n <= 2 * modes, SPAR_ERR_ARGUMENT,
+                  "%s: %lld multipliers of %lld modes; give 0 to twice as many", call, (long long)n, (long long)modes);
+    SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
+    return SPAR_OK;
+}
+
+int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, double amplitude,
+                               spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
+                               int64_t n, double *eigenvalue) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    spar_session *s = session;
+    spari_progress progress = spari_progress_of(s, __func__);
+    floquet f = {.call = __func__, .steps = steps, .modes = (int)(modes >= 1 && modes <= MOST_SHAPES ? modes : 0)};
+    f.run = (spari_run){.dt = dt, .steps = SPARI_MULTIPLE, .before = before, .solve = solve, .context = context};
+    f.run.progress = &progress;
+    f.amplitude = amplitude == 0 ? usual_amplitude : amplitude;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        f.nodes += m->committed ? m->nodes : 0;
+    }
+    const spari_alike alike[] = {spari_real("dt", dt),
+                                 spari_whole("steps", steps),
+                                 spari_real("amplitude", amplitude),
+                                 spari_given("before", before != NULL),
+                                 spari_given("solve", solve != NULL),
+                                 spari_given("progress call", progress.tell != NULL),
+                                 spari_whole("modes", modes),
+                                 spari_whole("n", n)};
+    int status = check_floquet(s, &f, modes, n, eigenvalue);
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, sizeof alike / sizeof *alike, status));
+    char message[SPARI_MESSAGE_SIZE];
+    memcpy(message, s->message, sizeof message);
+    status = solve_floquet(s, &f, n, eigenvalue);
+    floquet_free(&f);
+    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, status)));
+    memcpy(s->message, message, sizeof message);
+    return SPAR_OK;
+}
