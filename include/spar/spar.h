@@ -1423,8 +1423,8 @@ SPAR_API int spar_session_solve_eigenvalues(spar_session *session, double dt, in
    motions have coefficients that change with the angle. The eigenvalues of the map of small motions over one period
    (Floquet's multipliers mu), found by trials: beyond the present state, which has to repeat, all that spar solves for is
    moved along each of its lowest undamped modes, and given the velocity of it, to and fro, and the session goes through
-   the period with the host's own steps and fluid; 4 modes + 1 runs of a period, after each of which it goes back, to the
-   last bit. Run until the state repeats, then call. Newton is strict in them.
+   the period with the host's own steps and fluid; 4 modes + 1 runs of a period and a step, after each of which it goes
+   back, to the last bit. Run until the state repeats, then call. Newton is strict in them.
      dt: in, s, of the steps, as the run is stepped: multipliers are those of the steps, right to dt^2
      steps: in, of the period, >= 1: a turn of the rotor, or so many that all is where it was
      amplitude: in, of what is moved: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-4.

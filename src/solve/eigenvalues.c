@@ -134,10 +134,12 @@ static int check_alike(const spari_swing *w, const swing_part *p, int64_t first)
         alike = change <= 1e-6 * spari_norm(s) * size;
     }
     free(x);
-    SPARI_REQUIRE(w->session, alike, SPAR_ERR_UNSUPPORTED,
-                  "'%s' turns otherwise than what it is tied to, and is not alike all around its axis: the equations "
-                  "of small motions change with time, and have no eigenvalues",
-                  p->member->name);
+    SPARI_REQUIRE(
+        w->session, alike, SPAR_ERR_UNSUPPORTED,
+        "'%s' turns otherwise than what it is tied to, and is not alike all around its axis: the equations "
+        "of small motions change with time, and have no eigenvalues; of a periodic state there are multipliers "
+        "(spar_session_solve_floquet)",
+        p->member->name);
     return SPAR_OK;
 }
 

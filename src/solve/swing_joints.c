@@ -195,7 +195,8 @@ SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, c
     int round = of_K <= alike * turn * size[0] && of_C <= alike * turn * size[1] && of_P <= alike * turn * size[2];
     SPARI_REQUIRE(w->session, round, SPAR_ERR_UNSUPPORTED,
                   "joint '%s' is not alike all around the axis about which its sides turn: the equations of small "
-                  "motions change with time, and have no eigenvalues",
+                  "motions change with time, and have no eigenvalues; of a periodic state there are multipliers "
+                  "(spar_session_solve_floquet)",
                   j->name);
     return SPAR_OK;
 }

@@ -39,7 +39,7 @@ typedef struct floquet {
     spari_swing swing;   /* whose parts have shapes */
     double *shape;       /* [modes][nodes][6] */
     double *rate, *unit; /* [modes]: 1/s; of a shape that moves its nodes by one length of their member or one radian */
-    double *base;        /* [nodes][13]: motion at the beginning of the period */
+    double *base;        /* [nodes][13]: motion at the beginning of the period, one step from here */
     gsl_matrix *gram;    /* products of shapes, factored */
     gsl_matrix *Y[2];    /* [2 modes][2 modes] the state at both ends of the period, columns by what was moved */
     gsl_matrix *change;  /* [2][2 modes] of a run, at both ends */
@@ -143,7 +143,8 @@ static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
     }
 }
 
-/* The trial: through one period, from a start at which accelerations and loads belong to what was moved. */
+/* The trial: one step from a start at which accelerations and loads belong to what was moved, which brings velocities
+   onto what joints hold, and a period from there. */
 static int run_period(spar_session *s, void *self) {
     floquet *f = self;
     const spari_run *run = &f->run;
@@ -155,13 +156,17 @@ static int run_period(spar_session *s, void *self) {
     s->step = 0;
     s->started = 0;
     SPARI_TRY(spar_session_start(s, run->dt, run->solve, run->context, &iterations));
-    gsl_vector_view first = gsl_matrix_row(f->change, 0), last = gsl_matrix_row(f->change, 1);
-    look_at_state(s, f, &first.vector);
-    for (int64_t i = 0; i < f->steps; i++) {
+    for (int64_t i = 0; i <= f->steps; i++) {
         SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
         SPARI_TRY(spar_step(s, run->dt, run->solve, run->context, &iterations));
+        if (i == 0 && f->mode < 0) {
+            keep_motion(s, f->base);
+        }
+        if (i == 0 || i == f->steps) {
+            gsl_vector_view row = gsl_matrix_row(f->change, i > 0);
+            look_at_state(s, f, &row.vector);
+        }
     }
-    look_at_state(s, f, &last.vector);
     return SPAR_OK;
 }
 
