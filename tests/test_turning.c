@@ -197,6 +197,84 @@ static void test_unbalance(void **state) {
     }
 }
 
+/* Air that brakes both tips of a rotor of two blades by c v and pulls them along the axis, as places and velocities
+ * are. */
+typedef struct air {
+    spar_fluid *fluid[2];
+    double c, thrust;
+    double moment; /* about the axis, of the last call */
+} air;
+
+static int blow(spar_session *s, double t, double dt, int iteration, void *context) {
+    air *a = context;
+    (void)t, (void)dt, (void)iteration;
+    a->moment = 0;
+    for (int i = 0; i < 2; i++) {
+        double x[3], v[3];
+        const double m[3] = {0};
+        OK(s, spar_fluid_pull_motion(a->fluid[i], 1, x, v));
+        const double f[3] = {-a->c * v[0], -a->c * v[1], a->thrust - a->c * v[2]};
+        a->moment += x[0] * f[1] - x[1] * f[0];
+        OK(s, spar_fluid_push_forces(a->fluid[i], f, m));
+    }
+    return SPAR_OK;
+}
+
+/* With a fluid that is steady as seen from the rotor: velocities that it pulls are those of the turn, so that the hub
+   is given the moment that the air takes and carries the thrust; and steps with the same fluid stay there to dt^2. */
+static void test_fluid(void **state) {
+    (void)state;
+    enum { N = 9 };
+    const double W[3] = {0, 0, 4}, tip[2][3] = {{10.5, 0, 0}, {-10.5, 0, 0}};
+    double wander[2] = {0};
+    for (int fine = 0; fine < 2; fine++) {
+        double load[6], x[2][3 * N], dt = fine ? 2e-3 : 4e-3, far = 0;
+        air a = {.c = 0.05, .thrust = 3};
+        spar_member *b[2];
+        spar_session *s = scene_session();
+        spar_member *hub = driven_hub(s, W);
+        double K[36], M[36];
+        scene_diagonal(K, 1e6, 1e6, 1e6, 1e4, 4e3, 8e3);
+        scene_diagonal(M, 0.2, 0.2, 0.2, 2e-3, 1e-3, 1e-3);
+        for (int i = 0; i < 2; i++) {
+            b[i] = scene_beam(s, i ? "b" : "a", 1, N, 10, K, M);
+            welded(s, b[i], i ? "weld b" : "weld a", hub, 0.5, i * acos(-1), NULL);
+            OK(s, spar_beam_set_damping(b[i], (const double[6]){0.02, 0.02, 0.02, 0.02, 0.02, 0.02}));
+            OK(s, spar_member_set_initial_velocity(b[i], NULL, NULL, W));
+            OK(s, spar_member_commit(b[i]));
+            OK(s, spar_fluid_create(b[i], "air", &a.fluid[i]));
+            OK(s, spar_fluid_set_motion_nodes(a.fluid[i], 1, tip[i]));
+            OK(s, spar_fluid_set_force_nodes(a.fluid[i], 1, tip[i]));
+            OK(s, spar_fluid_map(a.fluid[i]));
+        }
+        OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-13, 1e-11, 50));
+        OK(s, spar_session_set_integrator(s, 0.8, 1));
+        OK(s, spar_session_solve_static(s, 2, blow, &a, NULL));
+        places(b[0], N, 0, x[0]);
+        for (int k = 0; k < 3; k++) {
+            far += x[0][3 * N - 3 + k] * x[0][3 * N - 3 + k] * (k < 2);
+        }
+        assert_true(x[0][3 * N - 1] > 0.1);          /* it is bent */
+        NEAR(a.moment, -2 * a.c * W[2] * far, 1e-8); /* c v r, v = W r */
+        OK(s, spar_member_get_reaction(hub, load));
+        NEAR(load[5], -a.moment, 1e-7);
+        NEAR(load[2], -2 * a.thrust, 1e-7);
+        for (int i = 1; i <= (fine ? 200 : 100); i++) {
+            const double angle = W[2] * dt * i, rate[6] = {0, 0, 0, 0, 0, W[2]};
+            const double q[7] = {0, 0, 0, cos(0.5 * angle), 0, 0, sin(0.5 * angle)};
+            OK(s, spar_member_drive_root(hub, q, rate, NULL));
+            OK(s, spar_step(s, dt, blow, &a, NULL));
+            places(b[0], N, angle, x[1]);
+            for (int k = 3 * N - 3; k < 3 * N; k++) {
+                wander[fine] = fmax(wander[fine], fabs(x[1][k] - x[0][k]));
+            }
+        }
+        spar_session_destroy(&s);
+    }
+    assert_true(wander[0] < 1e-3);
+    NEAR(wander[0] / wander[1], 4, 0.6);
+}
+
 /* ---- in time ---- */
 
 static void step_hub(spar_session *s, spar_member *hub, double W, double dt, int from, int n) {
@@ -390,7 +468,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rod),          cmocka_unit_test(test_ring),  cmocka_unit_test(test_unbalance),
         cmocka_unit_test(test_steps_stay),   cmocka_unit_test(test_rotor), cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_refused_ties),
+        cmocka_unit_test(test_refused_ties), cmocka_unit_test(test_fluid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
