@@ -158,10 +158,6 @@ void spari_band_free(spari_band *b) {
     }
 }
 
-int spari_band_width(const spari_band *b) {
-    return b->width;
-}
-
 void spari_band_zero(spari_band *b) {
     memset(b->A, 0, (size_t)b->n * (3 * (size_t)b->width + 1) * sizeof *b->A);
 }

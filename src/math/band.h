@@ -18,6 +18,5 @@ void spari_band_add(spari_band *band, int row, int column, double complex x);
 int spari_band_factor(spari_band *band);
 /* x [n] := A^-1 x */
 void spari_band_solve(spari_band *band, double complex *x);
-int spari_band_width(const spari_band *band);
 
 #endif

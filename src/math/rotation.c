@@ -93,15 +93,6 @@ void spari_tangent_inverse(const double psi[3], double t[9]) {
     spin_polynomial(psi, -0.5, inverse_of_second_order(psi), t);
 }
 
-void spari_tangent_inverse_times(const double psi[3], const double x[3], double y[3]) {
-    double b = inverse_of_second_order(psi), once[3], twice[3];
-    spari_cross(psi, x, once);
-    spari_cross(psi, once, twice);
-    for (int i = 0; i < 3; i++) {
-        y[i] = x[i] - 0.5 * once[i] + b * twice[i];
-    }
-}
-
 static int is_negative(const double q[4]) {
     for (int i = 0; i < 4; i++) {
         if (q[i] != 0) {

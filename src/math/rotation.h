@@ -98,8 +98,6 @@ void spari_quat_log(const double q[4], double psi[3]);
  * inverse */
 void spari_tangent(const double psi[3], double t[9]);
 void spari_tangent_inverse(const double psi[3], double t[9]);
-/* y = T^-1 x; y may be x */
-void spari_tangent_inverse_times(const double psi[3], const double x[3], double y[3]);
 
 /* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
    not depend on the signs that came in: the first node's leading component is made positive, each other follows its

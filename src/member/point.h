@@ -8,16 +8,7 @@
 #include "../math/rotation.h"
 #include "body.h"
 
-#include <string.h>
-
 /* ---- small algebra ---- */
-
-/* The 3x4 matrix of x -> Im(q* x), row-major. */
-static inline void body_spin(const double q[4], double *l) {
-    double w = q[0], x = q[1], y = q[2], z = q[3];
-    double m[3][4] = {{-x, w, z, -y}, {-y, -z, w, x}, {-z, y, -x, w}};
-    memcpy(l, m, sizeof m);
-}
 
 /* quaternion product of q and the pure quaternion s */
 static inline void quat_vec(const double q[4], const double s[3], double c[4]) {
