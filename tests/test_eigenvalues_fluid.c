@@ -106,8 +106,8 @@ static double complex nearest(spar_session *s, section *c, double dt, int64_t me
     return value[0] + value[1] * I;
 }
 
-/* Quasi-steady loads with added mass, on a body that nothing else holds, 6 modes without stiffness: eigenvalues of the
-   reference (cases.md 3.5, 8 digits), and those of the closed form to 1e-8, also where the fluid is taken for one that
+/* Quasi-steady loads with added mass, on a body that nothing else holds, 6 modes without stiffness: eigenvalues of a
+   separate computation (8 digits), and those of the closed form to 1e-8, also where the fluid is taken for one that
    remembers, by pulses. 6 calls a mode. */
 static void test_section(void **state) {
     (void)state;

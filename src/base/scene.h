@@ -7,7 +7,7 @@
 #include "room.h"
 
 typedef struct spari_comm spari_comm; /* comm/comm.h */
-typedef struct spari_own spari_own;   /* session/session.h */
+typedef struct spari_own spari_own;   /* session/own.h */
 
 /* Where a step stands. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
@@ -106,7 +106,7 @@ struct spar_session {
     int aside;  /* and this one solves nothing: of members it knows what `away` of each leaves */
     int parted; /* the ranks were found to be at different things: nothing more is to be agreed on */
 
-    spari_own *own; /* what is the session's alone (session.h) */
+    spari_own *own; /* what is the session's alone (session/own.h) */
 };
 
 /* What it is set to. */

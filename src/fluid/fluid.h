@@ -5,7 +5,7 @@
 #include "../math/bins.h"
 #include "../member/structure.h"
 
-/* What the session asks of a fluid; the public calls are in fluid.c. */
+/* What the session asks of a fluid; the public calls are in nodes.c, map.c, push.c, pull.c and others of this room. */
 
 /* Doubles of work space that each thread takes for it (base/room.h, base/crew.h). */
 int64_t spari_fluid_room(const spar_fluid *fluid);
