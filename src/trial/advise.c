@@ -933,6 +933,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
         .run = {.dt = dt, .length = length, .steps = steps, .before = before, .solve = solve, .context = context},
         .tolerance = tolerance,
         .limit = INFINITY,
+        .stalled = INFINITY,
         .progress = spari_progress_of(s, SPARI_ADVISE)};
     d.run.progress = &d.progress;
     spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};

@@ -477,9 +477,15 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
 }
 
 /* Whether a finer dt is to be tried since nodes change not much less where there are more of them: it is the dt, a
-   finer one shows what nodes do. */
-static int is_dt(const spari_advisor *d, int level, double part, double before) {
-    return part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
+   finer one shows what nodes do. Where that has shown the same twice it is the nodes, from then on. */
+static int is_dt(spari_advisor *d, int level, double part, double before) {
+    const double same = 0.8;
+    int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
+    if (stalls && d->stalls <= 2) {
+        d->stalls = part > same * d->stalled ? d->stalls + 1 : 1;
+        d->stalled = part;
+    }
+    return stalls && d->stalls <= 2;
 }
 
 /* Fewer nodes than a run with `most` has, and one more than those that change little: finer dt need no more of the line
@@ -493,8 +499,10 @@ static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, in
     }
     int enough = most;
     double before = INFINITY;
+    const double near = 5; /* times what it is to be: one node more may do */
     few = d->few > few && d->few < most ? d->few : few;
-    while (enough - few > 2 || (enough == most && enough - few > 1 && *shown > spari_rule.reference_nodes)) {
+    while (enough - few > 2 || (enough == most && enough - few > 1 && *shown > spari_rule.reference_nodes &&
+                                before < near * spari_rule.reference_nodes)) {
         double part, cost;
         d->cap = enough - few > 2 ? (few + enough) / 2 : few + 1;
         const spari_plan p = rough_plan(d, present, level, 0);
@@ -610,7 +618,8 @@ static int copy_reference(spari_advisor *d) {
     d->reference = l->record;
     d->reference.value = spari_copy(l->record.value, spari_record_size(&l->record));
     d->reference.recent = spari_copy(l->record.recent, spari_record_size(&l->record) / SPARI_SAMPLES * 4);
-    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = d->reference.member_work = NULL;
+    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = NULL;
+    d->reference.basis = d->reference.member_work = NULL;
     int status = d->reference.value && d->reference.recent
                      ? SPAR_OK
                      : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);

@@ -58,6 +58,8 @@ typedef struct spari_advisor {
     int levels;
     int cap, few;           /* nodes that the reference has at most, 0: any; so many are clearly too few for all beams
                                at once */
+    double stalled;         /* change by nodes that was taken for one by dt, the last time; INFINITY: none was, */
+    int stalls;             /* and so many times it was the same */
     int misled, thorough;   /* 1: a coarse dt had asked for too few; 1: no more is it asked */
     spari_record reference; /* what they lead to: errors are taken against it */
     double reference_error;

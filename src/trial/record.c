@@ -29,11 +29,31 @@ static int stations_of(const spar_member *m) {
     return m->kind == SPARI_POINT ? 0 : m->nodes == 1 ? ARMS : STATIONS;
 }
 
-/* A place of a beam in the reference configuration, and its displacement. */
-static void beam_station(const spar_member *m, int k, double X[3], double u[3]) {
-    double eta = (k + 1.0) / STATIONS * m->elements, phi[SPARI_MAX_NODES];
+/* The element of a place of a beam, and where it is there, -1 .. 1. */
+static int place_of_station(const spar_member *m, int k, double *xi) {
+    double eta = (k + 1.0) / STATIONS * m->elements;
     int e = (int)ceil(eta) - 1;
-    spari_resample_basis(m->per_element, 2 * (eta - e) - 1, phi);
+    *xi = 2 * (eta - e) - 1;
+    return e;
+}
+
+/* Bases at the places of all beams, which stay as they are through a run. */
+static void find_bases(const spar_session *s, double *basis) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int k = 0; k < stations_of(m); k++, basis += SPARI_MAX_NODES) {
+            double xi = 0;
+            (void)place_of_station(m, k, &xi);
+            if (m->nodes > 1) {
+                spari_resample_basis(m->per_element, xi, basis);
+            }
+        }
+    }
+}
+
+/* A place of a beam in the reference configuration, and its displacement. */
+static void beam_station(const spar_member *m, int k, const double *phi, double X[3], double u[3]) {
+    double xi;
+    int e = place_of_station(m, k, &xi);
     for (int c = 0; c < 3; c++) {
         X[c] = u[c] = 0;
         for (int l = 0; l < m->per_element; l++) {
@@ -66,17 +86,17 @@ static void beyond_root(const spar_member *m, const double X[3], const double u[
     }
 }
 
-/* start: displacements at the beginning */
-static void look_at_motion(const spar_session *s, const double *start, double *motion, double *beyond) {
+static void look_at_motion(const spar_session *s, const spari_record *r, double *motion, double *beyond) {
+    const double *start = r->start, *basis = r->basis;
     int64_t at = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         int held = m->kind == SPARI_BEAM && spari_member_root_is_given(m);
-        for (int k = 0; k < stations_of(m); k++, at += 3) {
+        for (int k = 0; k < stations_of(m); k++, at += 3, basis += SPARI_MAX_NODES) {
             double X[3], *u = motion + at;
             if (m->nodes == 1) {
                 body_station(m, k, X, u);
             } else {
-                beam_station(m, k, X, u);
+                beam_station(m, k, basis, X, u);
             }
             if (held) {
                 beyond_root(m, X, u, beyond + at);
@@ -182,9 +202,11 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
     r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
     r->room = spari_zalloc(room, sizeof *r->room);
+    r->basis = spari_zalloc(SPARI_MAX_NODES * r->stations, sizeof *r->basis);
     r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, where it is summed */
-    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room && r->member_work,
+    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room && r->basis && r->member_work,
                   SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    find_bases(s, r->basis);
     return SPAR_OK;
 }
 
@@ -195,6 +217,7 @@ void spari_record_free(spari_record *r) {
     free(r->trail);
     free(r->start);
     free(r->room);
+    free(r->basis);
     free(r->member_work);
     *r = (spari_record){0};
 }
@@ -211,9 +234,9 @@ static double *recent(const spari_record *r, int64_t i) {
 
 void spari_record_begin(spari_record *r, const spar_session *s) {
     double *now = recent(r, 0);
-    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+    look_at_motion(s, r, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
     memcpy(r->start, now + r->first[SPARI_OF_MOTION], (size_t)(3 * r->stations) * sizeof *now);
-    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+    look_at_motion(s, r, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
 }
 
 /* Sample k, in steps from the beginning. */
@@ -266,7 +289,7 @@ static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
 
 int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
     double *now = recent(r, i);
-    look_at_motion(s, r->start, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
+    look_at_motion(s, r, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
     SPARI_TRY(look_at_goals(r, s, now));
     r->taken = i;
     int64_t bad = spari_first_nonfinite(now, width(r));

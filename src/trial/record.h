@@ -29,6 +29,7 @@ struct spari_record {
     double *value;                   /* [SPARI_SAMPLES][first[SPARI_BLOCKS]] */
     double *recent;                  /* [4][the same], of the last steps */
     double *start, *room;            /* displacements at the beginning; work for reactions */
+    double *basis;                   /* [stations][SPARI_MAX_NODES] of the places along beams */
     double *load; /* [SPARI_LOADS][members][6]: fluid loads after the first step and at even times, their sum and moment
                      by the length about the root's reference place */
     double *trail;         /* [4][members][6] the same of the last three steps, and their second difference */
