@@ -21,7 +21,7 @@ int spari_limb_nodes_tied(const spar_member *m, int *node) {
     int n = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            if (j->member[side] != m) {
+            if (j->member[side] != m || j->node[side] >= m->nodes) { /* of a trial: not yet where it will be tied */
                 continue;
             }
             int at = 0, tied = m->row->whole ? 0 : spari_member_unique(m, j->node[side]);
