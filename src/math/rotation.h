@@ -38,6 +38,13 @@ static inline void spari_quat_conj(const double q[4], double c[4]) {
     c[0] = q[0], c[1] = -q[1], c[2] = -q[2], c[3] = -q[3];
 }
 
+/* turn = b a*: what turns a into b, in global axes; turn may be one of them */
+static inline void spari_quat_between(const double a[4], const double b[4], double turn[4]) {
+    double back[4];
+    spari_quat_conj(a, back);
+    spari_quat_mul(b, back, turn);
+}
+
 static inline double spari_quat_dot(const double a[4], const double b[4]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }

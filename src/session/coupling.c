@@ -165,12 +165,11 @@ static void load_norms(const spar_session *s, const double *from, double *change
 
 /* Displacement and turn of a node between two motions. */
 static void travel(const double *from, const double *to, double d[6]) {
-    double c[4], p[4];
+    double p[4];
     for (int k = 0; k < 3; k++) {
         d[k] = to[k] - from[k];
     }
-    spari_quat_conj(from + 3, c);
-    spari_quat_mul(to + 3, c, p);
+    spari_quat_between(from + 3, to + 3, p);
     spari_quat_log(p, d + 3);
 }
 

@@ -54,9 +54,8 @@ static void keep_shape(const spari_solver *s, const spar_member *member, spari_e
     const spari_state *from = &e->from, *shape = &e->to;
     spari_root_look_from(s, member, &before, &s->from, &e->to);
     for (int i = 0; i < s->n; i++) {
-        double back[4], turn[4];
-        spari_quat_conj(from->q + 7 * i + 3, back);
-        spari_quat_mul(shape->q + 7 * i + 3, back, turn);
+        double turn[4];
+        spari_quat_between(from->q + 7 * i + 3, shape->q + 7 * i + 3, turn);
         spari_quat_log(turn, dx + 6 * i + 3);
         for (int k = 0; k < 3; k++) {
             dx[6 * i + k] = from->q[7 * i + k] - shape->q[7 * i + k];
@@ -123,7 +122,7 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
     if (end == 0 || e->root) { /* seen from itself a root does not move */
         return;
     }
-    double c[4], p[4];
+    double p[4];
     if (member->root == SPAR_ROOT_DRIVEN) {
         memcpy(to->q, root->q, sizeof root->q);
         memcpy(to->v, root->v, sizeof root->v);
@@ -139,8 +138,7 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
         x[k] = to->q[k] - from->q[k];
     }
     if (end == 6) {
-        spari_quat_conj(from->q + 3, c);
-        spari_quat_mul(to->q + 3, c, p);
+        spari_quat_between(from->q + 3, to->q + 3, p);
         spari_quat_log(p, x + 3);
     }
 }
@@ -562,14 +560,13 @@ static double begin_step(void *self) {
 static int substep(void *self, const spar_member *member, const spari_scheme *c, const spari_part *part,
                    double *power) {
     spari_solver *s = self;
-    double back[4], turn[4] = {1, 0, 0, 0};
+    double turn[4] = {1, 0, 0, 0};
     swap(&s->from, &s->to);
     if (s->arms) {
         spari_arms_at(s->arms, part->s);
     }
     if (member->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_conj(part->before.q + 3, back);
-        spari_quat_mul(part->root.q + 3, back, turn);
+        spari_quat_between(part->before.q + 3, part->root.q + 3, turn);
     }
     spari_ends e = spari_root_ends(s, member, c, &part->root, part->ratio, &s->from, &s->to);
     if (part->leaps) {

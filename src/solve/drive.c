@@ -14,10 +14,9 @@ spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double 
     }
     double h00 = 1 - s * s * (3 - 2 * s), h01 = s * s * (3 - 2 * s), h10 = s * (1 - s) * (1 - s),
            h11 = -s * s * (1 - s), d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s), d11 = s * (3 * s - 2);
-    double c[4], p[4], psi1[3], t[9], rate1[3], psi[3], rate[3];
+    double p[4], psi1[3], t[9], rate1[3], psi[3], rate[3];
     spari_pose out;
-    spari_quat_conj(a->q + 3, c);
-    spari_quat_mul(b->q + 3, c, p);
+    spari_quat_between(a->q + 3, b->q + 3, p);
     spari_quat_log(p, psi1);
     spari_tangent_inverse(psi1, t);
     for (int k = 0; k < 3; k++) {
@@ -42,12 +41,11 @@ spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double 
 }
 
 void spari_drive_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]) {
-    double back[4], turn[4];
+    double turn[4];
     for (int k = 0; k < 3; k++) {
         place[k] = to->q[k] - from->q[k];
     }
-    spari_quat_conj(from->q + 3, back);
-    spari_quat_mul(to->q + 3, back, turn);
+    spari_quat_between(from->q + 3, to->q + 3, turn);
     spari_quat_log(turn, place + 3);
     for (int k = 0; k < 6; k++) {
         const double *v = from->v, *a = from->a, *b = to->a;

@@ -94,7 +94,7 @@ static void part_of_frame(spari_limb *p, int k, int substeps, double dt) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    double u = (double)k / substeps, back[4], ratio = k == 1 ? spari_scheme_ratio(f->steps.h_begin, p->scheme.h) : 1;
+    double u = (double)k / substeps, ratio = k == 1 ? spari_scheme_ratio(f->steps.h_begin, p->scheme.h) : 1;
     const spari_state t = s->from;
     const spari_frame_state y = f->from;
     s->from = s->to, s->to = t;
@@ -107,8 +107,7 @@ static void part_of_frame(spari_limb *p, int k, int substeps, double dt) {
     p->turn[0] = 1;
     memset(p->turn + 1, 0, 3 * sizeof *p->turn);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_conj(p->before.q + 3, back);
-        spari_quat_mul(p->root.q + 3, back, p->turn);
+        spari_quat_between(p->before.q + 3, p->root.q + 3, p->turn);
     }
     p->ends = spari_root_ends(s, m, &p->scheme, &p->root, ratio, &s->from, &s->to);
     spari_scheme_stretch(ratio, f->n, f->from.a, f->from.b);
@@ -204,9 +203,7 @@ static int frame_serves(const spari_limb *p) {
 
 static void see_turn_of_frame(const spari_limb *p) {
     const spari_solver *s = p->solver;
-    double back[4];
-    spari_quat_conj(s->kept_q, back);
-    spari_quat_mul(p->state->q + 3, back, s->turn);
+    spari_quat_between(s->kept_q, p->state->q + 3, s->turn);
 }
 
 static int reduce_frame(spari_limb *p, double *x) {

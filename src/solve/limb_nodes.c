@@ -89,7 +89,7 @@ static void swap_ends(spari_state *a, spari_state *b) {
 static void part_of_nodes(spari_limb *p, int k, int substeps, double dt) {
     const spar_member *m = p->member;
     spari_solver *s = p->solver;
-    double f = (double)k / substeps, back[4], ratio = k == 1 ? spari_scheme_ratio(s->steps.h_begin, p->scheme.h) : 1;
+    double f = (double)k / substeps, ratio = k == 1 ? spari_scheme_ratio(s->steps.h_begin, p->scheme.h) : 1;
     swap_ends(&s->from, &s->to);
     for (int i = 0; i < 6 * s->n; i++) {
         s->steps.load[i] = (1 - f) * s->steps.load0[i] + f * s->steps.load1[i];
@@ -102,8 +102,7 @@ static void part_of_nodes(spari_limb *p, int k, int substeps, double dt) {
     p->turn[0] = 1;
     memset(p->turn + 1, 0, 3 * sizeof *p->turn);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_conj(p->before.q + 3, back);
-        spari_quat_mul(p->root.q + 3, back, p->turn);
+        spari_quat_between(p->before.q + 3, p->root.q + 3, p->turn);
     }
     p->ends = spari_root_ends(s, m, &p->scheme, &p->root, ratio, &s->from, &s->to);
     p->state = &p->ends.seen;

@@ -60,8 +60,7 @@ spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const sp
     if (s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
         double turn[4], psi[3], way[3];
-        spari_quat_conj(before.q + 3, turn);
-        spari_quat_mul(root->q + 3, turn, turn);
+        spari_quat_between(before.q + 3, root->q + 3, turn);
         spari_quat_log(turn, psi);
         for (int k = 0; k < 3; k++) {
             way[k] = root->q[k] - before.q[k];

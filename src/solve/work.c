@@ -39,20 +39,20 @@ static int turns_linearly(const spar_member *m) {
 /* Displacement and rotation vector of node i over the step; linearly: the change of its rotation vector. */
 static void increment(const spar_member *m, int64_t i, int linearly, double d[6]) {
     const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
-    double conj[4], turn[4];
+    double turn[4];
     for (int c = 0; c < 3; c++) {
         d[c] = to[c] - from[c];
     }
     if (linearly) {
-        spari_quat_log(from + 3, conj);
+        double before[3];
+        spari_quat_log(from + 3, before);
         spari_quat_log(to + 3, turn);
         for (int c = 0; c < 3; c++) {
-            d[3 + c] = turn[c] - conj[c];
+            d[3 + c] = turn[c] - before[c];
         }
         return;
     }
-    spari_quat_conj(from + 3, conj);
-    spari_quat_mul(to + 3, conj, turn);
+    spari_quat_between(from + 3, to + 3, turn);
     spari_quat_log(turn, d + 3);
 }
 

@@ -95,9 +95,8 @@ static void displace(spar_session *s, const floquet *f, double way, double speed
 
 /* How a node has moved against where it was at the beginning: way, turn, and both of the velocities, seen as above. */
 static void look_at_change(const double *base, const double own[3], const double *q, const double *v, double x[12]) {
-    double back[4], turn[4], carried[3];
-    spari_quat_conj(base + 3, back);
-    spari_quat_mul(q + 3, back, turn);
+    double turn[4], carried[3];
+    spari_quat_between(base + 3, q + 3, turn);
     spari_quat_log(turn, x + 3);
     for (int k = 0; k < 3; k++) {
         x[k] = q[k] - base[k];
