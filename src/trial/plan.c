@@ -477,15 +477,15 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
 }
 
 /* Whether a finer dt is to be tried since nodes change not much less where there are more of them: it is the dt, a
-   finer one shows what nodes do. Where that has shown the same twice it is the nodes, from then on. */
+   finer one shows what nodes do. Where that shows the same it is the nodes, from then on. */
 static int is_dt(spari_advisor *d, int level, double part, double before) {
     const double same = 0.8;
     int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
-    if (stalls && d->stalls <= 2) {
+    if (stalls && d->stalls <= 1) {
         d->stalls = part > same * d->stalled ? d->stalls + 1 : 1;
         d->stalled = part;
     }
-    return stalls && d->stalls <= 2;
+    return stalls && d->stalls <= 1;
 }
 
 /* Fewer nodes than a run with `most` has, and one more than those that change little: finer dt need no more of the line
