@@ -32,14 +32,6 @@ static spar_member *body_at(spar_session *s, const char *name, const double x[3]
     return b;
 }
 
-static spar_joint *joint_of(spar_session *s, const char *name, spar_member *a, int64_t node, spar_member *b,
-                            int64_t other, int free_motions, const double x[3]) {
-    spar_joint *j = NULL;
-    OK(s, spar_joint_create(s, name, a, node, b, other, free_motions, &j));
-    OK(s, spar_joint_set_frame(j, x, rest));
-    return j;
-}
-
 /* A wing with a flap on a sprung, damped and loaded hinge at its tip, from which a weight hangs on a rope; a rigid boom
    on a driven shaft; a point that the host drives, on a spring. */
 static void describe(scene *c) {
@@ -55,7 +47,7 @@ static void describe(scene *c) {
     OK(s, spar_member_set_fidelity(c->member[0], kind, 20));
     if (kind != SPAR_FIDELITY_EXACT) {
         OK(s, spar_member_set_root(c->member[0], SPAR_ROOT_FREE));
-        (void)joint_of(s, "foot", c->member[0], 0, NULL, 0, 0, (double[]){0, 0, 0});
+        (void)scene_joint_at(s, "foot", c->member[0], 0, NULL, 0, 0, (double[]){0, 0, 0});
     }
     c->member[1] = body_at(s, "flap", tip);
     c->member[2] = body_at(s, "weight", hang);
@@ -70,18 +62,19 @@ static void describe(scene *c) {
     for (int i = 0; i < 36; i += 7) {
         all[i] = 10;
     }
-    c->joint[0] = joint_of(s, "flap hinge", c->member[1], 0, c->member[0], 7, SPAR_FREE_RY, tip);
+    c->joint[0] = scene_joint_at(s, "flap hinge", c->member[1], 0, c->member[0], 7, SPAR_FREE_RY, tip);
     OK(s, spar_joint_set_spring(c->joint[0], spring, damper, NULL));
     OK(s, spar_joint_set_load(c->joint[0], (double[]){0, 0, 0, 0, 0.7, 0}));
     OK(s, spar_line_create(s, "rope", c->member[2], 0, hang, c->member[1], 0, tip, &c->joint[1]));
-    c->joint[2] = joint_of(s, "shaft", c->member[3], 0, NULL, 0, SPAR_FREE_RZ, far);
+    c->joint[2] = scene_joint_at(s, "shaft", c->member[3], 0, NULL, 0, SPAR_FREE_RZ, far);
     OK(s, spar_joint_set_driven(c->joint[2], SPAR_FREE_RZ));
-    c->joint[3] = joint_of(s, "weld", c->member[4], 0, c->member[3], 3, 0, (double[]){2, 6, 0});
-    c->joint[4] = joint_of(s, "tether", c->member[5], 0, NULL, 0, 63, above);
+    c->joint[3] = scene_joint_at(s, "weld", c->member[4], 0, c->member[3], 3, 0, (double[]){2, 6, 0});
+    c->joint[4] = scene_joint_at(s, "tether", c->member[5], 0, NULL, 0, 63, above);
     OK(s, spar_joint_set_spring(c->joint[4], all, NULL, NULL));
     OK(s, spar_line_create(s, "stay", c->member[2], 0, hang, NULL, 0, above, &c->joint[5]));
     OK(s, spar_line_set_spring(c->joint[5], 5, 0.1, 4, 1));
-    c->joint[6] = joint_of(s, "moss", c->member[2], 0, NULL, 0, 63, hang); /* or a weight on a rope spins freely */
+    c->joint[6] =
+        scene_joint_at(s, "moss", c->member[2], 0, NULL, 0, 63, hang); /* or a weight on a rope spins freely */
     OK(s, spar_joint_set_spring(c->joint[6], all, NULL, NULL));
 }
 

@@ -53,6 +53,35 @@ static inline spar_member *scene_beam(spar_session *s, const char *name, int ele
     return b;
 }
 
+/* a rigid body with its node at the centre of mass, its axes the global ones, committed */
+static inline spar_member *scene_body(spar_session *s, const char *name, const double x[3], double m,
+                                      const double J[3]) {
+    const double centre[3] = {0, 0, 0}, straight[4] = {1, 0, 0, 0};
+    double mass[36];
+    spar_member *b = NULL;
+    scene_mass(mass, m, centre, J);
+    OK(s, spar_rigid_create(s, name, x, straight, mass, &b));
+    OK(s, spar_member_commit(b));
+    return b;
+}
+
+/* a joint with its place and axes as they come by themselves */
+static inline spar_joint *scene_joint(spar_session *s, const char *name, spar_member *a, int64_t node_a, spar_member *b,
+                                      int64_t node_b, int free_motions) {
+    spar_joint *j = NULL;
+    OK(s, spar_joint_create(s, name, a, node_a, b, node_b, free_motions, &j));
+    return j;
+}
+
+/* a joint at x, its axes the global ones */
+static inline spar_joint *scene_joint_at(spar_session *s, const char *name, spar_member *a, int64_t node_a,
+                                         spar_member *b, int64_t node_b, int free_motions, const double x[3]) {
+    const double straight[4] = {1, 0, 0, 0};
+    spar_joint *j = scene_joint(s, name, a, node_a, b, node_b, free_motions);
+    OK(s, spar_joint_set_frame(j, x, straight));
+    return j;
+}
+
 /* The composite box section of Wang et al., Wind Energy 20 (2017), we.2101: bending and torsion coupled */
 static inline void scene_box(double *K, double *M) {
     scene_diagonal(K, 1368.17e3, 88.56e3, 38.78e3, 16.96e3, 59.12e3, 141.47e3);

@@ -6,22 +6,6 @@
 
 static const double upright[4] = {1, 0, 0, 0}, zero[3] = {0, 0, 0};
 
-static spar_member *make_body(spar_session *s, const char *name, const double x[3], double m, const double J[3]) {
-    double mass[36];
-    spar_member *b = NULL;
-    scene_mass(mass, m, zero, J);
-    OK(s, spar_rigid_create(s, name, x, upright, mass, &b));
-    OK(s, spar_member_commit(b));
-    return b;
-}
-
-static spar_joint *tie(spar_session *s, const char *name, spar_member *a, int64_t node_a, spar_member *b,
-                       int64_t node_b, int free_motions) {
-    spar_joint *j = NULL;
-    OK(s, spar_joint_create(s, name, a, node_a, b, node_b, free_motions, &j));
-    return j;
-}
-
 /* ---- equilibrium with a fluid ---- */
 
 /* A fluid at one point: a force along z of f0 - k z. */
@@ -65,8 +49,8 @@ static void test_raft(void **state) {
     pond p = {.f0 = 100, .k = 300};
     spar_session *s = scene_session();
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
-    spar_member *raft = make_body(s, "raft", zero, m, J);
-    spar_joint *slide = tie(s, "slide", raft, 0, NULL, 0, SPAR_FREE_Z);
+    spar_member *raft = scene_body(s, "raft", zero, m, J);
+    spar_joint *slide = scene_joint(s, "slide", raft, 0, NULL, 0, SPAR_FREE_Z);
     scene_diagonal(K, 0, 0, 500, 0, 0, 0);
     OK(s, spar_joint_set_spring(slide, K, NULL, preload));
     dip(s, raft, zero, &p);
@@ -100,7 +84,7 @@ static void test_welded_in_a_fluid(void **state) {
         OK(s, spar_member_set_root(half[k], k ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED));
         OK(s, spar_member_commit(half[k]));
     }
-    (void)tie(s, "weld", half[1], 0, half[0], 5, 0);
+    (void)scene_joint(s, "weld", half[1], 0, half[0], 5, 0);
     pond at_half = {.f0 = 400, .k = 150}, at_one = {.f0 = 400, .k = 150, .next = &at_half};
     dip(s, one, (double[]){2, 0, 0}, &at_one);
     dip(s, half[1], (double[]){2, 1, 0}, &at_half);
@@ -137,8 +121,9 @@ static void test_refused(void **state) {
     double K[36], z[6], t = 0;
     pond p = {.f0 = 1, .k = 0.2};
     spar_session *s = scene_session();
-    spar_member *boom = make_body(s, "boom", zero, 1, J), *post = make_body(s, "post", end, 1, J);
-    spar_joint *hinge = tie(s, "hinge", boom, 0, NULL, 0, SPAR_FREE_RX), *weld = tie(s, "weld", post, 0, boom, 0, 0);
+    spar_member *boom = scene_body(s, "boom", zero, 1, J), *post = scene_body(s, "post", end, 1, J);
+    spar_joint *hinge = scene_joint(s, "hinge", boom, 0, NULL, 0, SPAR_FREE_RX),
+               *weld = scene_joint(s, "weld", post, 0, boom, 0, 0);
     OK(s, spar_joint_set_frame(weld, end, NULL));
     dip(s, post, end, &p);
     OK(s, spar_step(s, 0.01, push_ponds, &p, NULL));
@@ -170,8 +155,8 @@ static void test_adrift(void **state) {
     (void)state;
     const double J[3] = {1, 1, 1}, end[3] = {1, 0, 0}, load[6] = {0, 0, 1, 0, 0, 0};
     spar_session *s = scene_session();
-    spar_member *a = make_body(s, "hull", zero, 1, J), *b = make_body(s, "keel", end, 1, J);
-    spar_joint *weld = tie(s, "weld", b, 0, a, 0, 0);
+    spar_member *a = scene_body(s, "hull", zero, 1, J), *b = scene_body(s, "keel", end, 1, J);
+    spar_joint *weld = scene_joint(s, "weld", b, 0, a, 0, 0);
     OK(s, spar_joint_set_frame(weld, end, NULL));
     OK(s, spar_member_set_load(a, 0, SPAR_LOAD_DEAD, load));
     assert_int_equal(spar_session_solve_static(s, 1, NULL, NULL, NULL), SPAR_ERR_NUMERIC);
@@ -189,12 +174,12 @@ static void test_joint_that_comes_later(void **state) {
     double K[36], z[6];
     spar_session *s = scene_session();
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
-    spar_member *raft = make_body(s, "raft", zero, 3, J);
-    spar_joint *slide = tie(s, "slide", raft, 0, NULL, 0, SPAR_FREE_Z), *second;
+    spar_member *raft = scene_body(s, "raft", zero, 3, J);
+    spar_joint *slide = scene_joint(s, "slide", raft, 0, NULL, 0, SPAR_FREE_Z), *second;
     scene_diagonal(K, 0, 0, 500, 0, 0, 0);
     OK(s, spar_joint_set_spring(slide, K, NULL, NULL));
     OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
-    second = tie(s, "second", raft, 0, NULL, 0, 63);
+    second = scene_joint(s, "second", raft, 0, NULL, 0, 63);
     OK(s, spar_joint_set_spring(second, K, NULL, NULL));
     for (int i = 0; i < 2; i++) {
         OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
@@ -228,7 +213,7 @@ static void test_modes_of_a_weld(void **state) {
             OK(s, spar_member_set_placement(last, place, NULL));
             OK(s, spar_member_set_root(last, SPAR_ROOT_FREE));
             OK(s, spar_member_commit(last));
-            (void)tie(s, "weld", last, 0, first, P - 1, 0);
+            (void)scene_joint(s, "weld", last, 0, first, P - 1, 0);
         }
         int64_t n;
         OK(s, spar_member_get_count(last, &n));
@@ -262,10 +247,10 @@ static void test_drivetrain(void **state) {
     const double J[2] = {3, 50}, k = 700, omega = sqrt(k * (1 / J[0] + 1 / J[1]));
     double K[36], f[3], shape[2][2][6];
     spar_session *s = scene_session();
-    spar_member *b[2] = {make_body(s, "generator", zero, 1, (double[]){J[0], 1, 1}),
-                         make_body(s, "rotor", zero, 40, (double[]){J[1], 30, 30})};
-    (void)tie(s, "bearing", b[0], 0, NULL, 0, SPAR_FREE_RX);
-    spar_joint *shaft = tie(s, "shaft", b[1], 0, b[0], 0, SPAR_FREE_RX);
+    spar_member *b[2] = {scene_body(s, "generator", zero, 1, (double[]){J[0], 1, 1}),
+                         scene_body(s, "rotor", zero, 40, (double[]){J[1], 30, 30})};
+    (void)scene_joint(s, "bearing", b[0], 0, NULL, 0, SPAR_FREE_RX);
+    spar_joint *shaft = scene_joint(s, "shaft", b[1], 0, b[0], 0, SPAR_FREE_RX);
     scene_diagonal(K, 0, 0, 0, k, 0, 0);
     OK(s, spar_joint_set_spring(shaft, K, NULL, NULL));
     for (int i = 0; i < 2; i++) {
@@ -299,10 +284,10 @@ static spar_session *hang_chain(spar_joint *joint[CHAIN]) {
         const double x[3] = {0, 0, -0.5 * k};
         OK(s, spar_rigid_create(s, (const char *[]){"first", "second", "third", "fourth"}[k], x, upright, mass, &link));
         OK(s, spar_member_commit(link));
-        joint[k] = tie(s, (const char *[]){"1", "2", "3", "4"}[k], link, 0, above, 0,
-                       k == CHAIN - 1 ? 0
-                       : k % 2        ? SPAR_FREE_RX
-                                      : SPAR_FREE_RY);
+        joint[k] = scene_joint(s, (const char *[]){"1", "2", "3", "4"}[k], link, 0, above, 0,
+                               k == CHAIN - 1 ? 0
+                               : k % 2        ? SPAR_FREE_RX
+                                              : SPAR_FREE_RY);
         OK(s, spar_joint_set_frame(joint[k], x, NULL));
         above = link;
     }
@@ -394,8 +379,9 @@ static ledger keep_ledger(double dt) {
     OK(s, spar_session_set_integrator(s, 1, 1));
     spar_member *b[3] = {make_accounted(s, "arm", zero, 2, c, J), make_accounted(s, "weight", tip, 1, zero, J),
                          make_accounted(s, "bob", tip, 1, down, J)};
-    spar_joint *j[4] = {tie(s, "hinge", b[0], 0, NULL, 0, SPAR_FREE_RY), tie(s, "slide", b[1], 0, b[0], 0, SPAR_FREE_Z),
-                        tie(s, "ball", b[2], 0, b[0], 0, 56), NULL};
+    spar_joint *j[4] = {scene_joint(s, "hinge", b[0], 0, NULL, 0, SPAR_FREE_RY),
+                        scene_joint(s, "slide", b[1], 0, b[0], 0, SPAR_FREE_Z),
+                        scene_joint(s, "ball", b[2], 0, b[0], 0, 56), NULL};
     OK(s, spar_joint_set_frame(j[1], tip, NULL));
     OK(s, spar_joint_set_frame(j[2], tip, NULL));
     OK(s, spar_line_create(s, "line", b[2], 0, end, NULL, 0, peg, &j[3]));
@@ -457,9 +443,9 @@ static void test_motor(void **state) {
     const double J[3] = {1, 1, 0.5}, load[6] = {0, 0, 0, 0, 0, 2};
     double z[6], e[SPAR_JOINT_ENERGY_COUNT];
     spar_session *s = scene_session();
-    spar_member *wheel = make_accounted(s, "wheel", zero, 1, zero, J), *other = make_body(s, "other", zero, 1, J);
-    spar_joint *bearing = tie(s, "bearing", wheel, 0, NULL, 0, SPAR_FREE_RZ), *spare;
-    spare = tie(s, "spare", other, 0, NULL, 0, 63);
+    spar_member *wheel = make_accounted(s, "wheel", zero, 1, zero, J), *other = scene_body(s, "other", zero, 1, J);
+    spar_joint *bearing = scene_joint(s, "bearing", wheel, 0, NULL, 0, SPAR_FREE_RZ), *spare;
+    spare = scene_joint(s, "spare", other, 0, NULL, 0, 63);
     OK(s, spar_joint_set_load(bearing, load));
     scene_run(s, 0.01, 100);
     OK(s, spar_joint_get_motion(bearing, z, NULL, NULL));

@@ -31,13 +31,6 @@ static spar_member *add_body(spar_session *s, const char *name, const double x[3
     return b;
 }
 
-static spar_joint *add_joint(spar_session *s, const char *name, spar_member *a, int64_t node_a, spar_member *b,
-                             int64_t node_b, int free_motions) {
-    spar_joint *j = NULL;
-    OK(s, spar_joint_create(s, name, a, node_a, b, node_b, free_motions, &j));
-    return j;
-}
-
 /* What is held stays, and its rate: the worst of all. */
 static double gap_of(const spar_joint *j, int free_motions) {
     double z[6], rate[6], worst = 0;
@@ -74,7 +67,7 @@ static void test_weld_to_the_ground(void **state) {
         OK(s, spar_session_set_gravity(s, down));
         spar_member *both[2] = {add_beam(s, "fixed", kinds[i], SPAR_ROOT_FIXED, origin, 600),
                                 add_beam(s, "welded", kinds[i], SPAR_ROOT_FREE, origin, 600)};
-        spar_joint *weld = add_joint(s, "weld", both[1], 0, NULL, 0, 0);
+        spar_joint *weld = scene_joint(s, "weld", both[1], 0, NULL, 0, 0);
         for (int k = 0; k < 2; k++) {
             OK(s, spar_member_set_load(both[k], 9, SPAR_LOAD_DEAD, (double[]){0, 20, 30, 5, 0, 0}));
             OK(s, spar_member_solve_modes(both[k], 3, f[k], NULL));
@@ -116,7 +109,7 @@ static void test_tip_body(void **state) {
         OK(s, spar_member_set_fidelity(b, kinds[i], 6));
         OK(s, spar_member_commit(b));
         spar_member *m = add_body(s, "body", (double[]){2, 0, 0}, 2, 1e-7);
-        (void)add_joint(s, "weld", m, 0, b, 9, 0);
+        (void)scene_joint(s, "weld", m, 0, b, 9, 0);
         OK(s, spar_member_solve_modes(b, 2, f, NULL));
         NEAR(f[0], expected, 2e-4 * expected);
         NEAR(f[1], sqrt(1.5) * expected, 3e-4 * expected);
@@ -145,7 +138,7 @@ static void test_two_halves(void **state) {
         for (int k = 0; k < 3; k++) {
             OK(s, spar_member_commit(all[k]));
         }
-        (void)add_joint(s, "weld", outer, 0, inner, 5, 0);
+        (void)scene_joint(s, "weld", outer, 0, inner, 5, 0);
         const double force[6] = {0, 0.1, 0.2, 0.05, 0, 0};
         OK(s, spar_member_set_load(one, 11, SPAR_LOAD_DEAD, force));
         OK(s, spar_member_set_load(outer, 5, SPAR_LOAD_DEAD, force));
@@ -175,7 +168,7 @@ static fall swing(int kind, double ei, double dt, double T, double rho) {
     OK(s, spar_session_set_gravity(s, down));
     OK(s, spar_session_set_integrator(s, rho, 1));
     spar_member *b = add_beam(s, "pendulum", kind, SPAR_ROOT_FREE, origin, ei);
-    spar_joint *j = add_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY);
+    spar_joint *j = scene_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY);
     for (int i = 0, n = (int)lround(T / dt); i < n; i++) {
         scene_run(s, dt, 1);
         w.energy = fmax(w.energy, fabs(energy_of(b)));
@@ -210,7 +203,7 @@ static void swing_driven(int kind, double dt, double tip[7]) {
     spar_session *s = scene_session();
     OK(s, spar_session_set_integrator(s, 0.6, 1));
     spar_member *b = add_beam(s, "arm", kind, SPAR_ROOT_FREE, origin, 600);
-    spar_joint *j = add_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY);
+    spar_joint *j = scene_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY);
     OK(s, spar_joint_set_driven(j, SPAR_FREE_RY));
     for (int i = 0, n = (int)lround(1 / dt); i < n; i++) {
         double t = (i + 1) * dt, z[6] = {0}, rate[6] = {0}, a[6] = {0};
@@ -250,8 +243,8 @@ static void blade(int kind, double dt, double off[2]) {
                 *exact = add_beam(s, "exact", SPAR_FIDELITY_EXACT, SPAR_ROOT_FREE, origin, 600), *hub = NULL;
     OK(s, spar_point_create(s, "hub", origin, NULL, &hub));
     OK(s, spar_member_commit(hub));
-    (void)add_joint(s, "weld", welded, 0, hub, 0, 0);
-    (void)add_joint(s, "other", exact, 0, hub, 0, 0);
+    (void)scene_joint(s, "weld", welded, 0, hub, 0, 0);
+    (void)scene_joint(s, "other", exact, 0, hub, 0, 0);
     spar_member *all[3] = {driven, welded, exact};
     for (int k = 0; k < 3; k++) {
         OK(s, spar_member_set_load(all[k], 9, SPAR_LOAD_DEAD, (double[]){0, 0, 15, 0, 0, 0}));
@@ -294,8 +287,8 @@ static void test_in_space(void **state) {
                     *end = add_body(s, "end", (double[]){2, 0, 0}, 0.5, 0.02),
                     *b[2] = {add_beam(s, "right", kinds[i], SPAR_ROOT_FREE, origin, 2000),
                              add_beam(s, "on", kinds[i], SPAR_ROOT_FREE, (double[]){2, 0, 0}, 2000)};
-        spar_joint *j[3] = {add_joint(s, "root", b[0], 0, hub, 0, 0), add_joint(s, "on", b[1], 0, b[0], 9, 0),
-                            add_joint(s, "ball", end, 0, b[0], 9, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ)};
+        spar_joint *j[3] = {scene_joint(s, "root", b[0], 0, hub, 0, 0), scene_joint(s, "on", b[1], 0, b[0], 9, 0),
+                            scene_joint(s, "ball", end, 0, b[0], 9, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ)};
         spar_member *all[4] = {hub, end, b[0], b[1]};
         double first = 0, worst = 0, gap = 0;
         for (int k = 0; k < 4; k++) {
@@ -331,7 +324,7 @@ static void test_pinned(void **state) {
         OK(s, spar_session_set_integrator(s, 0.9, 1));
         spar_member *b = add_beam(s, "arm", i ? kinds[i - 1] : SPAR_FIDELITY_EXACT, SPAR_ROOT_PINNED, origin, 600),
                     *end = add_body(s, "end", (double[]){2, 0, 0}, 1, 0.2);
-        spar_joint *j = add_joint(s, "ball", end, 0, b, 9, 56);
+        spar_joint *j = scene_joint(s, "ball", end, 0, b, 9, 56);
         OK(s, spar_member_set_load(b, 9, SPAR_LOAD_DEAD, (double[]){0, 20, 30, 5, 0, 0}));
         scene_run(s, 0.001, 300);
         scene_tip(b, tip[i]);

@@ -8,22 +8,6 @@
 
 static const double upright[4] = {1, 0, 0, 0}, zero[3] = {0, 0, 0}, two_pi = 6.283185307179586;
 
-static spar_member *make_body(spar_session *s, const char *name, const double x[3], double m, const double J[3]) {
-    double mass[36];
-    spar_member *b = NULL;
-    scene_mass(mass, m, zero, J);
-    OK(s, spar_rigid_create(s, name, x, upright, mass, &b));
-    OK(s, spar_member_commit(b));
-    return b;
-}
-
-static spar_joint *tie(spar_session *s, const char *name, spar_member *a, int64_t node_a, spar_member *b,
-                       int64_t node_b, int free_motions) {
-    spar_joint *j = NULL;
-    OK(s, spar_joint_create(s, name, a, node_a, b, node_b, free_motions, &j));
-    return j;
-}
-
 /* ---- frames ---- */
 
 /* Roots of a function between `from` and `to`, by steps and bisection; how many. */
@@ -102,8 +86,8 @@ static void test_portal(void **state) {
         OK(s, spar_member_set_root(b[k], k == 1 ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED));
         OK(s, spar_member_commit(b[k]));
     }
-    (void)tie(s, "left corner", b[1], 0, b[0], P - 1, 0);
-    (void)tie(s, "right corner", b[1], P - 1, b[2], P - 1, 0);
+    (void)scene_joint(s, "left corner", b[1], 0, b[0], P - 1, 0);
+    (void)scene_joint(s, "right corner", b[1], P - 1, b[2], P - 1, 0);
     OK(s, spar_member_solve_modes(b[1], 5, f, NULL));
     int n = roots_of(portal_symmetric, 0.5, 9, 10, root);
     n += roots_of(portal_sway, 0.5, 9, 10, root + n);
@@ -137,8 +121,8 @@ static void test_two_spans(void **state) {
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_commit(b));
     for (int k = 0; k < 3; k++) {
-        spar_joint *j = tie(s, (const char *[]){"left", "middle", "right"}[k], b, (int64_t[]){0, P, 2 * P - 1}[k], NULL,
-                            0, SPAR_FREE_RY | (k ? SPAR_FREE_X : 0));
+        spar_joint *j = scene_joint(s, (const char *[]){"left", "middle", "right"}[k], b,
+                                    (int64_t[]){0, P, 2 * P - 1}[k], NULL, 0, SPAR_FREE_RY | (k ? SPAR_FREE_X : 0));
         OK(s, spar_joint_set_frame(j, (double[]){k * L, 0, 0}, NULL));
     }
     OK(s, spar_member_solve_modes(b, 4, f, NULL));
@@ -187,8 +171,8 @@ static void test_foundation(void **state) {
     for (int i = 0; i <= SPRINGS + 1; i++) {
         int end = i == 0 || i == SPRINGS + 1;
         snprintf(what, sizeof what, "support %d", i);
-        spar_joint *j = tie(s, what, b, i == SPRINGS + 1 ? (SPRINGS + 1) * P - 1 : i * P, NULL, 0,
-                            end ? SPAR_FREE_RY | (i ? SPAR_FREE_X : 0) : 63);
+        spar_joint *j = scene_joint(s, what, b, i == SPRINGS + 1 ? (SPRINGS + 1) * P - 1 : i * P, NULL, 0,
+                                    end ? SPAR_FREE_RY | (i ? SPAR_FREE_X : 0) : 63);
         OK(s, spar_joint_set_frame(j, (double[]){i * L / (SPRINGS + 1), 0, 0}, NULL));
         OK(s, spar_joint_set_spring(j, end ? NULL : spring, NULL, NULL));
     }
@@ -230,8 +214,8 @@ static void test_hanging_parallelogram(void **state) {
         OK(s, spar_member_commit(b[k]));
     }
     for (int k = 0; k < 4; k++) {
-        spar_joint *j = tie(s, (const char *[]){"foot", "foot2", "top", "top2"}[k], b[k < 2 ? k : 2], 0,
-                            k < 2 ? NULL : b[k - 2], 0, SPAR_FREE_RY);
+        spar_joint *j = scene_joint(s, (const char *[]){"foot", "foot2", "top", "top2"}[k], b[k < 2 ? k : 2], 0,
+                                    k < 2 ? NULL : b[k - 2], 0, SPAR_FREE_RY);
         OK(s, spar_joint_set_frame(j, x[k], upright));
     }
     OK(s, spar_member_solve_static(b[2], 1));
@@ -249,7 +233,7 @@ static void test_taut_lines(void **state) {
     const double m = 2, k = 400, T = k * 0.2, J[3] = {1, 2, 3}, end[2][3] = {{1, 0, 0}, {-1, 0, 0}};
     double f[6];
     spar_session *s = scene_session();
-    spar_member *b = make_body(s, "bead", zero, m, J);
+    spar_member *b = scene_body(s, "bead", zero, m, J);
     for (int i = 0; i < 2; i++) {
         spar_joint *j = NULL;
         OK(s, spar_line_create(s, i ? "left" : "right", b, 0, zero, NULL, 0, end[i], &j));
@@ -279,7 +263,7 @@ static void test_preloaded(void **state) {
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
     OK(s, spar_rigid_create(s, "body", zero, upright, mass, &b));
     OK(s, spar_member_commit(b));
-    spar_joint *j = tie(s, "spring", b, 0, NULL, 0, 63);
+    spar_joint *j = scene_joint(s, "spring", b, 0, NULL, 0, 63);
     scene_diagonal(K, 1e5, 2e5, 3e5, 4e7, 5e7, 6e7);
     OK(s, spar_joint_set_spring(j, K, NULL, preload));
     OK(s, spar_member_solve_static(b, 1));

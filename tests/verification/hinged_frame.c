@@ -140,15 +140,6 @@ static double limit_of(int follows, double from, double to, double uv[2]) {
 
 /* ---- spar ---- */
 
-static spar_joint *tie(spar_session *s, const char *name, spar_member *a, int64_t node, spar_member *b, int64_t other,
-                       int free_motions, const double x[3]) {
-    static const double straight[4] = {1, 0, 0, 0};
-    spar_joint *j = NULL;
-    OK(s, spar_joint_create(s, name, a, node, b, other, free_motions, &j));
-    OK(s, spar_joint_set_frame(j, x, straight));
-    return j;
-}
-
 /* From rest, in `steps` load steps; whether there is something. Out of the plane the legs are stiff. */
 static int solve(int follows, double load, int steps, double uv[2]) {
     const double eta[2] = {0, 1}, foot[3] = {0}, corner[3] = {0, 0, leg}, far[3] = {leg, 0, leg},
@@ -164,9 +155,9 @@ static int solve(int follows, double load, int steps, double uv[2]) {
         OK(s, spar_member_set_root(legs[k], SPAR_ROOT_FREE));
         OK(s, spar_member_commit(legs[k]));
     }
-    (void)tie(s, "foot", legs[0], 0, NULL, 0, SPAR_FREE_RY, foot);
-    (void)tie(s, "corner", legs[1], 0, legs[0], COLUMN * P - 1, 0, corner);
-    (void)tie(s, "far foot", legs[1], BEAM * P - 1, NULL, 0, SPAR_FREE_RY, far);
+    (void)scene_joint_at(s, "foot", legs[0], 0, NULL, 0, SPAR_FREE_RY, foot);
+    (void)scene_joint_at(s, "corner", legs[1], 0, legs[0], COLUMN * P - 1, 0, corner);
+    (void)scene_joint_at(s, "far foot", legs[1], BEAM * P - 1, NULL, 0, SPAR_FREE_RY, far);
     OK(s, spar_member_set_load(legs[1], P, follows ? SPAR_LOAD_FOLLOWER : SPAR_LOAD_DEAD, force));
     int status = spar_member_solve_static(legs[0], steps);
     OK(s, spar_member_get_motion(legs[1], q, NULL, NULL));
