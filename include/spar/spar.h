@@ -738,12 +738,12 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
    A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame that turns
    with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
    accelerations become those of the deformed shape turning steadily. Members that joints tie to such a root, to a node
-   that is told to turn, or to a hinge that is driven with a rate against what stands, turn with it as one; there gravity
-   and dead loads across the axis, parts that turn or are driven against each other, and joints to what stands that are
-   not alike all around are SPAR_ERR_UNSUPPORTED. Under dead forces (no moments, no followers) the result is the stable
-   equilibrium that growing loads lead to: past a limit or branching point there is none, and it is refused. Where
-   neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log is warned.
-   SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the way;
+   that is told to turn, or to a hinge that is driven with a rate against what stands, turn with it as one; there
+   gravity and dead loads across the axis, parts that turn or are driven against each other, and joints to what stands
+   that are not alike all around are SPAR_ERR_UNSUPPORTED. Under dead forces (no moments, no followers) the result is
+   the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is refused.
+   Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log is
+   warned. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the way;
    SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
@@ -1359,9 +1359,9 @@ enum {
     SPAR_TRY_COUNT = 5
 };
 /* How far a call that makes many trials is (spar_session_advise, spar_session_report_effects,
-   spar_session_solve_eigenvalues, spar_session_solve_floquet): called before each of its runs, between which the session is as it was. It may read
-   the session, and changes nothing of it. Answer 0 to go on; anything else ends the call: SPAR_ERR_USER, and all is as
-   it was.
+   spar_session_solve_eigenvalues, spar_session_solve_floquet): called before each of its runs, between which the
+   session is as it was. It may read the session, and changes nothing of it. Answer 0 to go on; anything else ends the
+   call: SPAR_ERR_USER, and all is as it was.
      done: what has been run so far, from 0, in trials with the session as it is: of advice counted, as
            SPAR_ADVICE_WORK, or runs where the session as it is fails; of effects, eigenvalues and multipliers runs
      expected: what it will come to, at first by what such calls have come to, later by what the runs show; never below
@@ -1421,24 +1421,24 @@ SPAR_API int spar_session_solve_eigenvalues(spar_session *session, double dt, in
 
 /* Stability of a state that is periodic in time: a rotor of two blades, or on a tower, or under its weight, whose small
    motions have coefficients that change with the angle. The eigenvalues of the map of small motions over one period
-   (Floquet's multipliers mu), found by trials: beyond the present state, which has to repeat, all that spar solves for is
-   moved along each of its lowest undamped modes, and given the velocity of it, to and fro, and the session goes through
-   the period with the host's own steps and fluid; 4 modes + 1 runs of a period and a step, after each of which it goes
-   back, to the last bit. Run until the state repeats, then call. Newton is strict in them.
+   (Floquet's multipliers mu), found by trials: beyond the present state, which has to repeat, all that spar solves for
+   is moved along each of its lowest undamped modes, and given the velocity of it, to and fro, and the session goes
+   through the period with the host's own steps and fluid; 4 modes + 1 runs of a period and a step, after each of which
+   it goes back, to the last bit. Run until the state repeats, then call. Newton is strict in them.
      dt: in, s, of the steps, as the run is stepped: multipliers are those of the steps, right to dt^2
      steps: in, of the period, >= 1: a turn of the rotor, or so many that all is where it was
      amplitude: in, of what is moved: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-4.
            Errors are its square, and what the coupling leaves over it
-     before, solve, context: in, as of spar_session_try, repeatable: what drives roots and joints moves by the time. Each
-           run begins with a balanced start, where solve is called with dt 0 (spar_session_start)
+     before, solve, context: in, as of spar_session_try, repeatable: what drives roots and joints moves by the time.
+           Each run begins with a balanced start, where solve is called with dt 0 (spar_session_start)
      modes: in, 1 to 200, at most the unknowns less what is held: more until the answer stays
      n: in, how many, at most 2 modes
      eigenvalue[n][2]: out, growth rate, 1/s, and angular frequency, rad/s, of log(mu) over the period, the least damped
            first; one of each conjugate pair, its frequency from 0 to pi over the period: it is known up to multiples of
            2 pi over the period, and up to its sign. A growth rate > 0 is an instability
-   The fluid begins each run with the state it has (spar_fluid_set_states): what it remembers for longer than a period is
-   not seen. Collective. SPAR_ERR_STATE: the state does not repeat: the message says by how much; SPAR_ERR_NUMERIC: fewer
-   than n; SPAR_ERR_UNSUPPORTED: nothing is solved for. Failures as of spar_step. */
+   The fluid begins each run with the state it has (spar_fluid_set_states): what it remembers for longer than a period
+   is not seen. Collective. SPAR_ERR_STATE: the state does not repeat: the message says by how much; SPAR_ERR_NUMERIC:
+   fewer than n; SPAR_ERR_UNSUPPORTED: nothing is solved for. Failures as of spar_step. */
 SPAR_API int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, double amplitude,
                                         spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
                                         int64_t n, double *eigenvalue);
