@@ -206,13 +206,13 @@ static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wi
     return SPAR_OK;
 }
 
-/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are those. 0, or 1. */
+/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are those. A status, without a message. */
 static int form_map(floquet *f) {
     size_t n = 2 * (size_t)f->modes;
     int sign, wrong;
     gsl_permutation *p = gsl_permutation_alloc(n);
     if (!p) {
-        return 1;
+        return SPAR_ERR_MEMORY;
     }
     gsl_matrix_transpose(f->Y[0]);
     gsl_matrix_transpose(f->Y[1]);
@@ -222,7 +222,7 @@ static int form_map(floquet *f) {
         SPARI_BLAS(wrong = gsl_linalg_LU_svx(f->Y[0], p, &column.vector));
     }
     gsl_permutation_free(p);
-    return wrong != 0;
+    return wrong ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
 
 static int by_size(const void *a, const void *b) {
@@ -230,26 +230,30 @@ static int by_size(const void *a, const void *b) {
     return x < y ? 1 : x > y ? -1 : 0;
 }
 
-/* Multipliers, the largest first, one of each conjugate pair; how many, or -1. */
-static int solve_map(floquet *f, double complex *z) {
+/* Multipliers z [2 modes], the largest first, one of each conjugate pair, and how many. A status, without a message. */
+static int solve_map(floquet *f, double complex *z, int *count) {
     size_t n = 2 * (size_t)f->modes;
     gsl_vector_complex *value = gsl_vector_complex_alloc(n);
     gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(n);
-    int count = 0, wrong = !value || !work || form_map(f);
-    if (!wrong) {
+    int status = z && value && work ? form_map(f) : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        int wrong;
         gsl_eigen_nonsymm_params(0, 1, work);
         SPARI_BLAS(wrong = gsl_eigen_nonsymm(f->Y[1], value, work));
+        status = wrong ? SPAR_ERR_NUMERIC : SPAR_OK;
     }
-    for (size_t k = 0; k < n && !wrong; k++) {
+    for (size_t k = 0; k < n && status == SPAR_OK; k++) {
         gsl_complex x = gsl_vector_complex_get(value, k);
         if (GSL_IMAG(x) >= 0) {
-            z[count++] = CMPLX(GSL_REAL(x), GSL_IMAG(x));
+            z[(*count)++] = CMPLX(GSL_REAL(x), GSL_IMAG(x));
         }
     }
     gsl_vector_complex_free(value);
     gsl_eigen_nonsymm_free(work);
-    qsort(z, (size_t)count, sizeof *z, by_size);
-    return wrong ? -1 : count;
+    if (*count > 0) {
+        qsort(z, (size_t)*count, sizeof *z, by_size);
+    }
+    return status;
 }
 
 /* ---- the call ---- */
@@ -302,17 +306,17 @@ static int weigh_shapes(spar_session *s, floquet *f) {
 
 static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eigenvalue) {
     double complex *z = spari_zalloc(2 * (int64_t)f->modes, sizeof *z);
-    int count = z ? solve_map(f, z) : -1;
+    int count = 0, status = solve_map(f, z, &count);
     double period = f->run.dt * (double)f->steps;
     for (int64_t k = 0; k < n && k < count; k++) {
         eigenvalue[2 * k] = log(cabs(z[k])) / period;
         eigenvalue[2 * k + 1] = carg(z[k]) / period;
     }
     free(z);
-    SPARI_REQUIRE(s, z, SPAR_ERR_MEMORY, "no memory for %d modes", f->modes);
+    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", f->modes);
     SPARI_REQUIRE(s, count >= n, SPAR_ERR_NUMERIC,
-                  "%d of %lld multipliers; of conjugate pairs one counts: ask for fewer, or give more modes",
-                  count < 0 ? 0 : count, (long long)n);
+                  "%d of %lld multipliers; of conjugate pairs one counts: ask for fewer, or give more modes", count,
+                  (long long)n);
     return SPAR_OK;
 }
 
