@@ -15,7 +15,6 @@
 #include <string.h>
 
 static const double common_amplitude = 1e-5, most_amplitude = 0.1;
-enum { MOST_MODES = 200 };
 static const int64_t most_memory = 1000000;
 /* Of the largest load, what a fluid's way to rest may differ from that of a linear system. */
 static const double most_misfit = 1e-3;
@@ -178,7 +177,7 @@ static int check_coupled(spar_session *s, const char *call, const coupled_ask *a
     SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= most_amplitude, SPAR_ERR_ARGUMENT,
                   "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, most_amplitude,
                   common_amplitude);
-    SPARI_REQUIRE(s, f->modes >= 1, SPAR_ERR_ARGUMENT, "%s: no modes; give 1 to %d", call, MOST_MODES);
+    SPARI_REQUIRE(s, f->modes >= 1, SPAR_ERR_ARGUMENT, "%s: no modes; give 1 to %d", call, SPARI_SHAPES_MOST);
     SPARI_REQUIRE(s, ask->n >= 0 && ask->n <= 2 * f->modes, SPAR_ERR_ARGUMENT,
                   "%s: %lld eigenvalues of %d modes; give 0 to twice as many", call, (long long)ask->n, f->modes);
     SPARI_REQUIRE(s, eigenvalue || ask->n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
@@ -202,10 +201,8 @@ int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t mem
     ask.fluid = (spari_answer_ask){.run = {.dt = dt, .steps = SPARI_MULTIPLE}, .memory = memory};
     ask.fluid.run.before = before, ask.fluid.run.solve = solve, ask.fluid.run.context = context;
     ask.fluid.amplitude = amplitude == 0 ? common_amplitude : amplitude;
-    ask.fluid.modes = modes >= 1 && modes <= MOST_MODES ? (int)modes : 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        ask.fluid.nodes += m->committed ? m->nodes : 0;
-    }
+    ask.fluid.modes = modes >= 1 && modes <= SPARI_SHAPES_MOST ? (int)modes : 0;
+    ask.fluid.nodes = spari_shapes_nodes(s);
     spari_progress progress = spari_progress_of(s, __func__);
     ask.fluid.run.progress = &progress;
     int status = check_coupled(s, __func__, &ask, nodes, shift, eigenvalue);

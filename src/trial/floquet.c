@@ -24,7 +24,7 @@
 #include <string.h>
 
 static const double usual_amplitude = 1e-4, largest_amplitude = 0.1;
-enum { MOST_SHAPES = 200, NODE = 13 };
+enum { NODE = 13 };
 /* How far the state may be from itself after a period: displacement by the member's length, turn, and both by the
    velocities times a radian of the period. */
 static const double periodic = 1e-3;
@@ -346,8 +346,8 @@ static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64
     SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= largest_amplitude, SPAR_ERR_ARGUMENT,
                   "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, largest_amplitude,
                   usual_amplitude);
-    SPARI_REQUIRE(s, modes >= 1 && modes <= MOST_SHAPES, SPAR_ERR_ARGUMENT, "%s: %lld modes; give 1 to %d", call,
-                  (long long)modes, MOST_SHAPES);
+    SPARI_REQUIRE(s, modes >= 1 && modes <= SPARI_SHAPES_MOST, SPAR_ERR_ARGUMENT, "%s: %lld modes; give 1 to %d", call,
+                  (long long)modes, SPARI_SHAPES_MOST);
     SPARI_REQUIRE(s, n >= 0 && n <= 2 * modes, SPAR_ERR_ARGUMENT,
                   "%s: %lld multipliers of %lld modes; give 0 to twice as many", call, (long long)n, (long long)modes);
     SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
@@ -361,13 +361,12 @@ int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, 
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_progress progress = spari_progress_of(s, __func__);
-    floquet f = {.call = __func__, .steps = steps, .modes = (int)(modes >= 1 && modes <= MOST_SHAPES ? modes : 0)};
+    floquet f = {
+        .call = __func__, .steps = steps, .modes = (int)(modes >= 1 && modes <= SPARI_SHAPES_MOST ? modes : 0)};
     f.run = (spari_run){.dt = dt, .steps = SPARI_MULTIPLE, .before = before, .solve = solve, .context = context};
     f.run.progress = &progress;
     f.amplitude = amplitude == 0 ? usual_amplitude : amplitude;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        f.nodes += m->committed ? m->nodes : 0;
-    }
+    f.nodes = spari_shapes_nodes(s);
     const spari_alike alike[] = {spari_real("dt", dt),
                                  spari_whole("steps", steps),
                                  spari_real("amplitude", amplitude),

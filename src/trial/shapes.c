@@ -8,6 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+int64_t spari_shapes_nodes(const spar_session *s) {
+    int64_t nodes = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        nodes += m->committed ? m->nodes : 0;
+    }
+    return nodes;
+}
+
 void spari_shapes_times(const spari_pencil *p, int kind, const double *x, double *y) {
     memset(y, 0, (size_t)p->n * sizeof *y);
     spari_pencil_times(p, 0, kind == 0, kind == 1, kind == 2, x, y);

@@ -4,6 +4,11 @@
 
 #include "../solve/swing.h"
 
+/* As many as are asked for at most. */
+enum { SPARI_SHAPES_MOST = 200 };
+
+/* Nodes of the members that have been committed: as many as shapes are shown at. */
+int64_t spari_shapes_nodes(const spar_session *session);
 /* K, C or M (kind 0, 1, 2) times x. */
 void spari_shapes_times(const spari_pencil *pencil, int kind, const double *x, double *y);
 double spari_shapes_product(int n, const double *a, const double *b);
