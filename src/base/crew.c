@@ -13,6 +13,15 @@
 /* Looks this often before it sleeps: some ten microseconds, about what going to sleep and being woken takes. */
 enum { SPIN = 4000 };
 
+/* Items that one worker begins with, those before `end`: the same in each round of so many, since what it wrote of an
+   item in the round before is near it (beside each other's, cores fetch them from one another). Who has done them goes
+   on with those that others have left. Counters that several write to lie on cache lines of their own. */
+typedef struct share {
+    atomic_llong next;
+    int64_t end;
+    char apart[112];
+} share;
+
 typedef struct hand {
     spari_crew *crew;
     pthread_t thread;
@@ -23,14 +32,13 @@ typedef struct hand {
 struct spari_crew {
     int threads;
     hand *hands;  /* [threads]; the first is the caller's and has no thread of its own */
+    share *share; /* [threads] */
     int64_t kept; /* doubles of work space that all hands have */
     pthread_mutex_t lock;
     pthread_cond_t begun, ended;
     atomic_long round;  /* counts the runs */
     atomic_int at_work; /* threads that have not ended the round */
     atomic_int leave;   /* no more rounds */
-    atomic_llong next;  /* item to be done */
-    int64_t items;
     spari_task task;
     void *context;
     fenv_t surroundings;
@@ -44,13 +52,26 @@ static inline void rest(void) {
 #endif
 }
 
-/* Takes items until there are none left. */
+/* Takes items until there are none left, its own first. */
 static void work_on(spari_crew *c, int worker) {
     inside = 1;
-    for (int64_t i; (i = atomic_fetch_add_explicit(&c->next, 1, memory_order_relaxed)) < c->items;) {
-        c->task(c->context, i, worker);
+    for (int k = 0; k < c->threads; k++) {
+        share *s = c->share + (worker + k) % c->threads;
+        for (int64_t i; (i = atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed)) < s->end;) {
+            c->task(c->context, i, worker);
+        }
     }
     inside = 0;
+}
+
+static void share_out(spari_crew *c, int64_t items) {
+    int64_t each = items / c->threads, more = items % c->threads, from = 0;
+    for (int k = 0; k < c->threads; k++) {
+        share *s = c->share + k;
+        s->end = from + each + (k < more);
+        atomic_store_explicit(&s->next, from, memory_order_relaxed);
+        from = s->end;
+    }
 }
 
 /* Waits for the round after `last`. */
@@ -123,6 +144,7 @@ static void dismiss(spari_crew *c) {
     (void)pthread_cond_destroy(&c->begun);
     (void)pthread_mutex_destroy(&c->lock);
     free(c->hands);
+    free(c->share);
     free(c);
 }
 
@@ -139,12 +161,14 @@ static int start_hand(hand *h) {
 spari_crew *spari_crew_create(int threads) {
     spari_crew *c = spari_zalloc(1, sizeof *c);
     hand *hands = spari_zalloc(threads, sizeof *hands);
-    if (!c || !hands) {
+    share *shares = spari_zalloc(threads, sizeof *shares);
+    if (!c || !hands || !shares) {
         free(c);
         free(hands);
+        free(shares);
         return NULL;
     }
-    c->hands = hands;
+    c->hands = hands, c->share = shares;
     (void)pthread_mutex_init(&c->lock, NULL); /* with default attributes nothing can fail where there are threads */
     (void)pthread_cond_init(&c->begun, NULL);
     (void)pthread_cond_init(&c->ended, NULL);
@@ -180,9 +204,9 @@ void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *cont
         }
         return;
     }
-    crew->items = items, crew->task = task, crew->context = context;
+    crew->task = task, crew->context = context;
     (void)fegetenv(&crew->surroundings);
-    atomic_store_explicit(&crew->next, 0, memory_order_relaxed);
+    share_out(crew, items);
     atomic_store_explicit(&crew->at_work, crew->threads - 1, memory_order_relaxed);
     call_hands(crew);
     work_on(crew, 0);
