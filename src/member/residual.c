@@ -1,4 +1,5 @@
 /* Forces of a body, and its energy: sums over the quadrature points. docs/theory.md, "The beam". */
+#include "../base/crew.h"
 #include "../math/basis.h"
 #include "linear_body.h"
 #include "point.h"
@@ -44,11 +45,18 @@ static double drag_power(const spari_body *body, const double *q, const double *
     return 2 * body->drag * energy[0];
 }
 
+enum { CLEARED = 256 };
+
+static void clear_forces(void *context, int64_t from, int64_t to) {
+    double *r = context;
+    memset(r + 6 * from, 0, (size_t)(6 * (to - from)) * sizeof *r);
+}
+
 double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
                                  double factor, double *r, double *power) {
     force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
     double scale = 0, damped = 0;
-    memset(r, 0, (size_t)body->unique * 6 * sizeof *r);
+    spari_crew_spread(body->crew ? *body->crew : NULL, body->unique, CLEARED, clear_forces, r);
     spari_body_sweep(body, add_forces, &s);
     for (int64_t tile = 0; tile < spari_body_tiles(body); tile++) {
         const double *sum = body->tally + 2 * tile;

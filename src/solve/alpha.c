@@ -551,9 +551,19 @@ static int begin_leap(spari_solver *s, const spar_member *member, const spari_sc
     return SPAR_OK;
 }
 
+static void begin_span(void *context, int64_t from, int64_t to) {
+    const spari_solver *s = context;
+    const spari_state *b = &s->begin;
+    size_t n = (size_t)(to - from) * sizeof *b->q;
+    memcpy(s->to.q + 7 * from, b->q + 7 * from, 7 * n);
+    memcpy(s->to.v + 6 * from, b->v + 6 * from, 6 * n);
+    memcpy(s->to.a + 6 * from, b->a + 6 * from, 6 * n);
+    memcpy(s->to.b + 6 * from, b->b + 6 * from, 6 * n);
+}
+
 static double begin_step(void *self) {
-    spari_solver *s = self;
-    memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
+    const spari_solver *s = self;
+    spari_solver_spread(s, begin_span, self);
     return s->power_begin;
 }
 

@@ -21,7 +21,7 @@ enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 #include "../math/widths.h"
 
 /* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
-enum { LONG = 64, ELEMENTS = 16 };
+enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
    it got any.
@@ -708,17 +708,24 @@ static void back_elements(void *context, int64_t from, int64_t to) {
     s->bad[from / ELEMENTS] = spari_first_nonfinite(s->z + m * (size_t)from, (int64_t)m * (to - from)) >= 0;
 }
 
-static int solve_by_ends(spari_linear *s, double *x) {
+/* What is left of the unknowns between element e - 1 and element e. */
+static void gather_ends(void *context, int64_t from, int64_t to) {
+    const linear_elements *t = context;
+    const spari_linear *s = t->s;
     size_t m = (size_t)s->block, own = s->own, o = (size_t)s->overlap, last = (size_t)s->elements;
-    linear_elements t = {s, x, kernels_here()};
-    double *end = s->ends_x;
-    spread_elements(s, forth_elements, &t);
-    for (size_t e = 0; e <= last; e++, end += o) { /* between element e - 1 and element e */
+    for (size_t e = (size_t)from; e < (size_t)to; e++) {
         for (size_t i = 0; i < o; i++) {
             double left = e > 0 ? s->z[m * e - o + i] : 0, right = e < last ? s->z[m * e + own + i] : 0;
-            end[i] = x[(m - o) * e + i] + left + right;
+            s->ends_x[o * e + i] = t->x[(m - o) * e + i] + left + right;
         }
     }
+}
+
+static int solve_by_ends(spari_linear *s, double *x) {
+    size_t m = (size_t)s->block, o = (size_t)s->overlap, last = (size_t)s->elements;
+    linear_elements t = {s, x, kernels_here()};
+    spread_elements(s, forth_elements, &t);
+    spari_crew_spread(s->crew ? *s->crew : NULL, s->elements + 1, GATHERED, gather_ends, &t);
     int bad = spari_linear_solve(s->ends, s->ends_x);
     spread_elements(s, back_elements, &t);
     memcpy(x + (m - o) * last, s->ends_x + o * last, o * sizeof(double));

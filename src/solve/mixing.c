@@ -90,6 +90,12 @@ static void mix_span(void *context, int64_t from, int64_t to) {
     t->kernels->mix(t->m, t->by, t->x, from, to);
 }
 
+static void keep_span(void *context, int64_t from, int64_t to) {
+    const mixing_pass *t = context;
+    double *kept = t->m->seen == 0 ? t->m->z : t->m->w[0];
+    memcpy(kept + from, t->x + from, (size_t)(to - from) * sizeof *kept);
+}
+
 static void exchange(double **a) {
     double *there = a[0];
     a[0] = a[1];
@@ -139,12 +145,13 @@ static void find_parts(const spari_mixing *m, double length, double by[2]) {
 }
 
 void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double length, double *x) {
+    mixing_pass t = {.m = m, .x = x};
     if (m->seen < 2) { /* a pair of +-lambda is not seen in one change: two corrections are taken as they come */
-        memcpy(m->seen == 0 ? m->z : m->w[0], x, (size_t)m->unknowns * sizeof *x);
+        spari_crew_spread(crew, m->unknowns, SPAN, keep_span, &t);
         m->seen++;
         return;
     }
-    mixing_pass t = {.m = m, .kernels = mixing_here(lanes), .x = x};
+    t.kernels = mixing_here(lanes);
     spari_crew_spread(crew, m->unknowns, SPAN, look_at_span, &t);
     exchange(m->d);
     exchange(m->w);
