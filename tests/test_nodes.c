@@ -1,5 +1,5 @@
-/* Nodes side by side: turns into the axes of the kept tangent, corrections, places, and what is seen from a driven
-   root, at every width that the processor has.
+/* Nodes side by side: turns into the axes of the kept tangent, starting values, corrections, places, and what is seen
+   from a driven root, at every width that the processor has.
 
    Oracles: the formulas node by node with the operations of math/rotation.h, whose exponential map and tangent operator
    are other code; 1e-14 of the largest number that goes in, for 1e2 operations of 1e-16. Widths among each other: the
@@ -282,6 +282,47 @@ static void test_no_number(void **unused) {
     }
 }
 
+/* Starting values keep the scheme's equations, of Bruls, Cardona & Arnold (2012), (1 - alpha_m) b' + alpha_m b =
+   (1 - alpha_f) a' + alpha_f a and Newmark's, with what stays over the step; and have the bits of one unknown. */
+static void check_prediction(const substep *s, const substep *own, spari_guess stays, int n) {
+    const spari_scheme *c = &s->c;
+    const double *v = s->room[0] + 7 * MOST, *a = v + 6 * MOST, *b = a + 6 * MOST;
+    const double *v1 = own->room[1] + 7 * MOST, *a1 = v1 + 6 * MOST, *b1 = a1 + 6 * MOST, h = c->h;
+    for (int i = 0; i < 6 * n; i++) {
+        double one[4], mean = (1 - c->alpha_m) * b1[i] + c->alpha_m * b[i];
+        assert_true(fabs(mean - (1 - c->alpha_f) * a1[i] - c->alpha_f * a[i]) <= 1e-12);
+        assert_true(fabs(own->x[i] - h * v[i] - h * h * ((0.5 - c->beta) * b[i] + c->beta * b1[i])) <= 1e-14);
+        assert_true(fabs(v1[i] - v[i] - h * ((1 - c->gamma) * b[i] + c->gamma * b1[i])) <= 1e-14);
+        assert_true(stays != SPARI_KEEP_ACCELERATION || a1[i] == a[i]);
+        assert_true(stays != SPARI_KEEP_VELOCITY || fabs(own->x[i] - h * v[i]) <= 1e-14);
+        assert_true(stays != SPARI_KEEP_PLACE || fabs(own->x[i]) <= 1e-14);
+        spari_rates from = {s->from.v + i, s->from.a + i, s->from.b + i}, to = {one, one + 1, one + 2};
+        spari_scheme_predict(c, stays, 1, from, one + 3, to);
+        assert_true(one[0] == v1[i] && one[1] == a1[i] && one[2] == b1[i] && one[3] == own->x[i]);
+    }
+    assert_true(memcmp(own->x + 6 * n, s->x + 6 * n, sizeof s->x - (size_t)(6 * n) * sizeof *s->x) == 0);
+}
+
+static void test_starting_values(void **unused) {
+    (void)unused;
+    const spari_guess guesses[] = {SPARI_KEEP_ACCELERATION, SPARI_KEEP_VELOCITY, SPARI_KEEP_PLACE};
+    for (int n = 1; n <= MOST; n++) {
+        substep s, own;
+        random_substep(n, 0.3, 0, &s);
+        s.c.alpha_m = 0.3, s.c.alpha_f = 0.4, s.c.gamma = 0.6, s.c.beta = 0.3025;
+        for (int k = 0; k < WIDTHS; k++) {
+            for (int g = 0; g < 3; g++) {
+                own = s;
+                spari_state to = {own.room[1], own.room[1] + 7 * MOST, own.room[1] + 13 * MOST,
+                                  own.room[1] + 19 * MOST};
+                spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &s.from, .to = &to, .x = own.x};
+                spari_nodes_predict(&t, guesses[g], 0, n);
+                check_prediction(&s, &own, guesses[g], n);
+            }
+        }
+    }
+}
+
 static void test_steps(void **unused) {
     (void)unused;
     for (int n = 1; n <= MOST; n++) {
@@ -478,8 +519,9 @@ static void test_show(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns),     cmocka_unit_test(test_corrections), cmocka_unit_test(test_places),
-        cmocka_unit_test(test_no_number), cmocka_unit_test(test_steps),       cmocka_unit_test(test_show),
+        cmocka_unit_test(test_turns),           cmocka_unit_test(test_corrections), cmocka_unit_test(test_places),
+        cmocka_unit_test(test_no_number),       cmocka_unit_test(test_steps),       cmocka_unit_test(test_show),
+        cmocka_unit_test(test_starting_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,11 +18,6 @@
 
 /* ---- one substep ---- */
 
-/* Rates from node i on. */
-static spari_rates rates_of(const spari_state *s, int64_t i) {
-    return (spari_rates){s->v + 6 * i, s->a + 6 * i, s->b + 6 * i};
-}
-
 /* What is done node by node, in spans of them. */
 typedef struct alpha_nodes {
     const spari_solver *s;
@@ -67,8 +62,7 @@ static void keep_shape(const spari_solver *s, const spar_member *member, spari_e
 static void predict_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
     const spari_node_work *w = &t->work;
-    int n = (int)(6 * (to - from));
-    spari_scheme_predict(w->c, t->stays, n, rates_of(w->from, from), w->x + 6 * from, rates_of(w->to, from));
+    spari_nodes_predict(w, t->stays, from, to);
     if (t->shifted) {
         spari_nodes_correct(w, from, to);
     }

@@ -230,6 +230,28 @@ TARGET static void NAME(correct)(const spari_node_work *t, int64_t from, int64_t
     }
 }
 
+/* ---- starting values ---- */
+
+/* Of the unknowns from..to, whole vectors of them: the acceleration stays (scheme.c has the same for one). Where it
+   leaves off. */
+TARGET static int64_t NAME(predict)(const spari_node_work *t, int64_t from, int64_t to) {
+    const spari_scheme *c = t->c;
+    const double h = c->h, half = 0.5 - c->beta, beta = c->beta, before = 1 - c->gamma, gamma = c->gamma;
+    const double alpha_m = c->alpha_m, rest = 1 - c->alpha_m, square = h * h;
+    const double *v0 = t->from->v, *a0 = t->from->a, *b0 = t->from->b;
+    double *x = t->x, *v1 = t->to->v, *a1 = t->to->a, *b1 = t->to->b;
+    int64_t i = from;
+    for (; i + W <= to; i += W) {
+        L b = NAME(get)(b0 + i), a = NAME(get)(a0 + i), v = NAME(get)(v0 + i);
+        L next = (a - alpha_m * b) / rest;
+        NAME(put)(a1 + i, a);
+        NAME(put)(x + i, h * v + square * (half * b + beta * next));
+        NAME(put)(v1 + i, v + h * (before * b + gamma * next));
+        NAME(put)(b1 + i, next);
+    }
+    return i;
+}
+
 /* ---- places ---- */
 
 HERE void NAME(place_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {

@@ -36,6 +36,7 @@ typedef struct node_kernels {
     double (*back)(const spari_node_work *t, int64_t from, int64_t to);
     void (*forth)(const spari_node_work *t, int64_t from, int64_t to);
     spari_node_size (*sized[SIZED])(const spari_node_work *t, int64_t from, int64_t to);
+    int64_t (*predict)(const spari_node_work *t, int64_t from, int64_t to);
     void (*correct)(const spari_node_work *t, int64_t from, int64_t to);
     void (*show)(const spari_root_view *t, int64_t from, int64_t to);
     void (*look)(const spari_root_view *t, int64_t from, int64_t to);
@@ -45,8 +46,8 @@ typedef struct node_kernels {
 #define NODE_KERNELS(set)                                                                                              \
     {                                                                                                                  \
         (int)(sizeof(lanes_##set) / sizeof(double)), turn_back_##set, turn_forth_##set,                                \
-            {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, correct_##set, show_##set, look_##set,  \
-            lose_##set                                                                                                 \
+            {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, predict_##set, correct_##set,           \
+            show_##set, look_##set, lose_##set                                                                         \
     }
 static const node_kernels plain_nodes = NODE_KERNELS(plain);
 #ifdef SPARI_X86
@@ -106,6 +107,16 @@ void spari_nodes_turn_forth(const spari_node_work *t, int64_t from, int64_t to) 
 
 spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t to) {
     return largest_of(TAKE, t, from, to);
+}
+
+void spari_nodes_predict(const spari_node_work *t, spari_guess stays, int64_t from, int64_t to) {
+    int64_t i = 6 * from;
+    if (stays == SPARI_KEEP_ACCELERATION) {
+        i = kernels_of(t->lanes, to - from)->predict(t, i, 6 * to);
+    }
+    const spari_rates before = {t->from->v + i, t->from->a + i, t->from->b + i},
+                      after = {t->to->v + i, t->to->a + i, t->to->b + i};
+    spari_scheme_predict(t->c, stays, (int)(6 * to - i), before, t->x + i, after);
 }
 
 void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {

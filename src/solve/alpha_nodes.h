@@ -50,6 +50,8 @@ void spari_nodes_turn_forth(const spari_node_work *t, int64_t from, int64_t to);
 /* dx := what x has to lose: turned forth, into the axes of the root, rotations through the inverse tangent operator of
    the rotation vector and the inverse of d psi / d x = I - k omega^n~, k = h^2 cv / 12. */
 spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t to);
+/* Starting values of a substep: x and the rates (spari_scheme_predict). */
+void spari_nodes_predict(const spari_node_work *t, spari_guess stays, int64_t from, int64_t to);
 /* x and the rates less cut dx. */
 void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to);
 /* Places from the increments x, and without inertia the rates. The rotation vector is the increment plus h^2/12
