@@ -226,6 +226,74 @@ static void compare_motion(scene *s, int consistent) {
     free(got);
 }
 
+/* What goes straight to the host has the bits of what goes through tiles, wherever the host's array begins, from any
+   node on, and nothing beside it is touched. */
+static void compare_straight(scene *s, int consistent, int single, int64_t first) {
+    enum { FEW = 1200, EDGE = 80 };
+    static double buf[SPARI_ROWS][SPARI_ROW], tiles[2][3 * FEW], straight[2][3 * FEW + EDGE], want[3 * FEW + EDGE];
+    static float floats[2][3 * FEW];
+    const size_t size = single ? sizeof(float) : sizeof(double), skip = 3 * (size_t)first * size;
+    const size_t bytes = 3 * (size_t)(s->n - first) * size;
+    assert_true(s->n <= FEW);
+    for (int64_t at = 0; at < s->n; at += SPARI_TILE) {
+        spari_tile_motion(s->set, at, s->field, consistent, SPARI_UPTO_RATE, buf);
+        for (int k = 0; k < 2; k++) {
+            spari_tile_store(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_PLACE), tiles[k]);
+            spari_tile_store_f32(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_PLACE), floats[k]);
+        }
+    }
+    for (int begin = 0; begin < 64;
+         begin += begin % 8 == 4 ? 3 : 4) { /* 0, 4, 7, 11, 15, ...: at numbers and between */
+        for (int asked = 1; asked < 4; asked++) {
+            char *to[2];
+            memset(straight, 0xa5, sizeof straight);
+            for (int k = 0; k < 2; k++) {
+                to[k] = (char *)straight[k] + (64 - (uintptr_t)straight[k] % 64) % 64 + (k ? 63 - begin : begin);
+            }
+            spari_move_to(s->set, first, s->n - first, s->field, consistent, single, asked & 1 ? to[0] : NULL,
+                          asked & 2 ? to[1] : NULL);
+            for (int k = 0; k < 2; k++) {
+                memset(want, 0xa5, sizeof want);
+                if (asked & (k + 1)) {
+                    const char *all = single ? (const char *)floats[k] : (const char *)tiles[k];
+                    memcpy((char *)want + (to[k] - (char *)straight[k]) + skip, all + skip, bytes);
+                }
+                assert_memory_equal(straight[k], want, sizeof want);
+            }
+        }
+    }
+}
+
+static void straight_as_by_tiles(void **unused) {
+    (void)unused;
+    static const int64_t counts[] = {1, 7, 15, 16, 17, 33, 64, 255, 513, 1100};
+    unsigned long long seed = 17;
+    static scene s;
+    for (size_t k = 0; k < 2 * sizeof counts / sizeof *counts; k++) {
+        const int64_t n = counts[k / 2];
+        const int elements = k % 2 ? 3 : 1;
+        scene_start(&s, elements, 4 + (int)(k % 3), n, &seed);
+        uint8_t *flags = calloc((size_t)n, 1);
+        spari_nodes_free(s.set);
+        for (int64_t j = 0; j < n; j++) { /* along the line, as they have to come */
+            s.element[j] = (int)(j * elements / n);
+        }
+        s.set = spari_nodes_create(n, elements, s.nodes);
+        spari_nodes_put(s.set, s.element, s.xi, s.con[0], flags);
+        free(flags);
+        for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+            s.set->lanes = widths[w];
+            for (int how = 0; how < 4; how++) {
+                assert_true(how > 1 || spari_can_move_to(s.set, 0));
+                fill(&s, how % 2, SPARI_UPTO_RATE);
+                compare_straight(&s, how % 2, how / 2, 0);
+                compare_straight(&s, how % 2, how / 2, n / 3);
+            }
+        }
+        scene_end(&s);
+    }
+}
+
 static void motion_is_the_formula(void **unused) {
     (void)unused;
     unsigned long long seed = 99;
@@ -736,6 +804,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(modal_matrix_knows_chebyshev),
         cmocka_unit_test(motion_is_the_formula),
+        cmocka_unit_test(straight_as_by_tiles),
         cmocka_unit_test(any_count_of_nodes),
         cmocka_unit_test(rigid_motion_is_exact),
         cmocka_unit_test(signs_do_not_matter),

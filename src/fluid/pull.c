@@ -310,12 +310,12 @@ static int check_turns(const spar_fluid *fluid, int which, const wanted *w, cons
     return SPAR_OK;
 }
 
-/* A pull of the nodes of one set. */
+/* A pull of the nodes of one set. direct: without tiles. */
 typedef struct pulling {
     const spar_fluid *fluid;
     const spari_node_set *set;
     const wanted *wanted;
-    int what, states;
+    int what, states, direct;
     double share[2];
     double least[SPARI_CREW_MOST]; /* |Q|^2 that each thread has met */
 } pulling;
@@ -341,11 +341,27 @@ static void pull_tile(pulling *p, int64_t first, const states *t, double *least)
 static void pull_slab(void *context, int64_t slab, int worker) {
     pulling *p = context;
     const states t = tiles_of(p->fluid, worker, p->states, p->share);
+    const wanted *w = p->wanted;
     int64_t from = slab * SPARI_SLAB, end = from + SPARI_SLAB < p->set->nodes->n ? from + SPARI_SLAB : p->set->nodes->n;
-    for (int64_t first = from; first < end; first += SPARI_TILE) {
+    if (p->direct) {
+        const int single = w->x.f || w->v.f;
+        void *x = single ? (void *)w->x.f : w->x.d, *v = single ? (void *)w->v.f : w->v.d;
+        double least =
+            spari_move_to(p->set->nodes, from, end - from, p->fluid->field[0], p->fluid->consistent, single, x, v);
+        p->least[worker] = fmin(p->least[worker], least);
+    }
+    for (int64_t first = from; first < end && !p->direct; first += SPARI_TILE) {
         pull_tile(p, first, &t, &p->least[worker]);
     }
     spari_tiles_end();
+}
+
+/* Whether nothing is done to the motion between the kernels and the host's triples. */
+static int is_direct(const pulling *p) {
+    const wanted *w = p->wanted;
+    const int single = w->x.f || w->v.f;
+    return p->states == 1 && p->what <= SPARI_UPTO_RATE && !p->set->weight && !w->layout &&
+           (single ? !w->x.d && !w->v.d : 1) && spari_can_move_to(p->set->nodes, single);
 }
 
 /* All pulls: the nodes of one set at t^n + theta dt. */
@@ -363,6 +379,7 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         !w->layout) {
         return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
     }
+    p.direct = is_direct(&p);
     for (int k = 0; k < spari_crew_threads(crew); k++) {
         p.least[k] = HUGE_VAL;
     }

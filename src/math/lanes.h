@@ -7,10 +7,12 @@
 #if defined(__GNUC__)
 #define SPARI_ALWAYS_INLINE __attribute__((always_inline))
 #define SPARI_UNROLL _Pragma("GCC unroll 9")
+#define SPARI_UNROLL_ALL _Pragma("GCC unroll 32")
 #define SPARI_AHEAD(p) __builtin_prefetch(p)
 #else
 #define SPARI_ALWAYS_INLINE
 #define SPARI_UNROLL
+#define SPARI_UNROLL_ALL
 #define SPARI_AHEAD(p) ((void)(p))
 #endif
 

@@ -3,10 +3,10 @@
      W           lanes of a vector
      NAME(x)     the name of x at this width
      TARGET      function attributes of the instruction set
-     MADD(a,b,c) a b + c, rounded once where the processor can
+     MADD(a,b,c) a b + c, rounded once where the processor can; MSUB a b - c and NMADD c - a b likewise
      SPLAT(p)    *p in every lane
      ROOT(x)     square root, where there is an instruction for it
-     MOST(a,b)   the larger, b where one is no number, likewise
+     MOST(a,b)   the larger, b where one is no number, likewise; LEAST the smaller
      ABOVE(a,b)  some bits where a lane of a is larger, likewise
      STREAM(p,v) v to p, a multiple of its size, past the caches, likewise
      L           the vector; get and put take it from memory and bring it there
@@ -19,9 +19,12 @@
 #undef NAME
 #undef TARGET
 #undef MADD
+#undef MSUB
+#undef NMADD
 #undef SPLAT
 #undef ROOT
 #undef MOST
+#undef LEAST
 #undef ABOVE
 #undef STREAM
 #undef L
@@ -44,9 +47,12 @@
 #define NAME(x) x##_avx2
 #define TARGET __attribute__((target("avx2,fma")))
 #define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define MSUB(a, b, c) _mm256_fmsub_pd(a, b, c)
+#define NMADD(a, b, c) _mm256_fnmadd_pd(a, b, c)
 #define SPLAT(p) _mm256_broadcast_sd(p)
 #define ROOT(x) _mm256_sqrt_pd(x)
 #define MOST(a, b) _mm256_max_pd(a, b)
+#define LEAST(a, b) _mm256_min_pd(a, b)
 #define ABOVE(a, b) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ))
 #define STREAM(p, v) _mm256_stream_pd(p, v)
 #elif SPARI_WIDTH == 8
@@ -54,9 +60,12 @@
 #define NAME(x) x##_avx512
 #define TARGET __attribute__((target("avx512f,avx512dq")))
 #define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define MSUB(a, b, c) _mm512_fmsub_pd(a, b, c)
+#define NMADD(a, b, c) _mm512_fnmadd_pd(a, b, c)
 #define SPLAT(p) _mm512_set1_pd(*(p))
 #define ROOT(x) _mm512_sqrt_pd(x)
 #define MOST(a, b) _mm512_max_pd(a, b)
+#define LEAST(a, b) _mm512_min_pd(a, b)
 #define ABOVE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)
 #define STREAM(p, v) _mm512_stream_pd(p, v)
 #endif
@@ -64,6 +73,8 @@
 #if SPARI_WIDTH == 1 || SPARI_WIDTH == 2
 #define TARGET
 #define MADD(a, b, c) ((a) * (b) + (c))
+#define MSUB(a, b, c) ((a) * (b) - (c))
+#define NMADD(a, b, c) ((c) - (a) * (b))
 #if W == 1
 #define SPLAT(p) (*(p))
 #else
@@ -72,6 +83,7 @@
 #if W == 2 && defined(__SSE2__)
 #define ROOT(x) _mm_sqrt_pd(x)
 #define MOST(a, b) _mm_max_pd(a, b)
+#define LEAST(a, b) _mm_min_pd(a, b)
 #define ABOVE(a, b) _mm_movemask_pd(_mm_cmpgt_pd(a, b))
 #define STREAM(p, v) _mm_stream_pd(p, v)
 #endif

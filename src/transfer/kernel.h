@@ -16,11 +16,21 @@ typedef int64_t NAME(bits) __attribute__((vector_size(8 * W)));
 #endif
 
 HERE L NAME(less)(L a, L b) {
-#if W > 1
+#ifdef LEAST
+    return LEAST(a, b);
+#elif W > 1
     NAME(bits) m = a < b;
     return (L)(((NAME(bits))a & m) | ((NAME(bits))b & ~m));
 #else
     return a < b ? a : b;
+#endif
+}
+
+HERE L NAME(size)(L a) {
+#if W > 1
+    return (L)((NAME(bits))a & INT64_MAX);
+#else
+    return fabs(a);
 #endif
 }
 
@@ -46,27 +56,31 @@ HERE double NAME(least)(L v) {
 
 /* ---- triples in memory, rows in the tile ---- */
 
-/* W triples x0 y0 z0 x1 ... from three vectors, and back. */
-HERE void NAME(weave)(L x, L y, L z, double *out) {
+/* W triples x0 y0 z0 x1 ... as they lie in memory, from three vectors, and back. */
+HERE void NAME(weave)(const L *v, L *out) {
+    const L x = v[0], y = v[1], z = v[2];
 #if W == 2
-    NAME(put)(out, MIX(x, y, 0, 2));
-    NAME(put)(out + 2, MIX(z, x, 0, 3));
-    NAME(put)(out + 4, MIX(y, z, 1, 3));
+    out[0] = MIX(x, y, 0, 2), out[1] = MIX(z, x, 0, 3), out[2] = MIX(y, z, 1, 3);
 #elif W == 4
     L xy = MIX(x, y, 0, 4, 2, 6), yz = MIX(y, z, 1, 5, 3, 7), zx = MIX(z, x, 0, 5, 2, 7);
-    NAME(put)(out, MIX(xy, zx, 0, 1, 4, 5));
-    NAME(put)(out + 4, MIX(yz, xy, 0, 1, 6, 7));
-    NAME(put)(out + 8, MIX(zx, yz, 2, 3, 6, 7));
+    out[0] = MIX(xy, zx, 0, 1, 4, 5), out[1] = MIX(yz, xy, 0, 1, 6, 7), out[2] = MIX(zx, yz, 2, 3, 6, 7);
 #elif W == 8
     L a = MIX(x, y, 0, 8, 0, 1, 9, 1, 2, 10), b = MIX(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
       c = MIX(x, y, 13, 0, 6, 14, 0, 7, 15, 0);
-    NAME(put)(out, MIX(a, z, 0, 1, 8, 3, 4, 9, 6, 7));
-    NAME(put)(out + 8, MIX(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
-    NAME(put)(out + 16, MIX(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
+    out[0] = MIX(a, z, 0, 1, 8, 3, 4, 9, 6, 7);
+    out[1] = MIX(b, z, 10, 1, 2, 11, 4, 5, 12, 7);
+    out[2] = MIX(c, z, 0, 13, 2, 3, 14, 5, 6, 15);
 #else
-    double t[3] = {x, y, z};
-    memcpy(out, t, sizeof t);
+    out[0] = x, out[1] = y, out[2] = z;
 #endif
+}
+
+HERE void NAME(put_triples)(const L *v, double *out) {
+    L t[3];
+    NAME(weave)(v, t);
+    NAME(put)(out, t[0]);
+    NAME(put)(out + W, t[1]);
+    NAME(put)(out + 2 * W, t[2]);
 }
 
 HERE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
@@ -96,7 +110,8 @@ HERE void NAME(unweave)(const double *in, L *x, L *y, L *z) {
 TARGET static void NAME(store_triples)(double (*row)[SPARI_ROW], int count, double *out) {
     int i = 0;
     for (; i + W <= count; i += W) {
-        NAME(weave)(NAME(get)(row[0] + i), NAME(get)(row[1] + i), NAME(get)(row[2] + i), out + 3 * (ptrdiff_t)i);
+        const L v[3] = {NAME(get)(row[0] + i), NAME(get)(row[1] + i), NAME(get)(row[2] + i)};
+        NAME(put_triples)(v, out + 3 * (ptrdiff_t)i);
     }
     for (; i < count; i++) {
         double t[3] = {row[0][i], row[1][i], row[2][i]};
@@ -189,45 +204,107 @@ TARGET static void NAME(load_singles)(const float *in, int count, double (*row)[
 
 /* ---- sums over the modes ---- */
 
-/* T_k of a pair of vectors, row k at t + k * stride. */
+#ifndef SUMMED
+#define SUMMED 14 /* fields at once, at most */
+#endif
+
+#if W == 8
+/* s[f] = sum_k T_k c[k][f] for both vectors: n fields, of which from the fourth on `skip` are left out before, at once
+   in 32 registers, with T_k found on the way. t: where they are kept for later, row k at t + k * stride; NULL: nowhere.
+   x: of both vectors. All but those of memory are constants where this is inlined. */
+HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, const L *x, double *t,
+                    const ptrdiff_t stride, L (*s)[SUMMED]) {
+    static const double one = 1;
+    L a[SUMMED], b[SUMMED], t0 = x[0], t1 = x[1], before0 = SPLAT(&one), before1 = before0, x0 = t0 + t0, x1 = t1 + t1;
+    if (t) {
+        NAME(put)(t, before0);
+        NAME(put)(t + W, before0);
+    }
+    SPARI_UNROLL_ALL
+    for (int f = 0; f < n; f++) {
+        a[f] = b[f] = SPLAT(c + (f < 3 ? f : f + skip));
+    }
+    for (int k = 1; k < modes; k++) {
+        const double *row = c + (ptrdiff_t)k * SPARI_FIELDS;
+        SPARI_UNROLL_ALL
+        for (int f = 0; f < n; f++) {
+            L r = SPLAT(row + (f < 3 ? f : f + skip));
+            a[f] = MADD(t0, r, a[f]);
+            b[f] = MADD(t1, r, b[f]);
+        }
+        if (t) {
+            NAME(put)(t + k * stride, t0);
+            NAME(put)(t + k * stride + W, t1);
+        }
+        L after0 = MSUB(x0, t0, before0), after1 = MSUB(x1, t1, before1);
+        before0 = t0, before1 = t1, t0 = after0, t1 = after1;
+    }
+    SPARI_UNROLL_ALL
+    for (int f = 0; f < n; f++) {
+        s[0][f] = a[f], s[1][f] = b[f];
+    }
+}
+#else
+/* T_k of a pair of vectors, row k at t + k * stride; two modes at least. */
 HERE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stride) {
     static const double one = 1;
     L a0 = SPLAT(&one), b0 = a0, a1 = x[0], b1 = x[1], a2 = a1 + a1, b2 = b1 + b1;
     NAME(put)(t, a0);
     NAME(put)(t + W, b0);
-    for (int k = 1; k < modes; k++) {
-        L a = MADD(a2, a1, -a0), b = MADD(b2, b1, -b0);
+    NAME(put)(t + stride, a1);
+    NAME(put)(t + stride + W, b1);
+    for (int k = 2; k < modes; k++) {
+        L a = MSUB(a2, a1, a0), b = MSUB(b2, b1, b0);
+        a0 = a1, a1 = a, b0 = b1, b1 = b;
         NAME(put)(t + k * stride, a1);
         NAME(put)(t + k * stride + W, b1);
-        a0 = a1, a1 = a, b0 = b1, b1 = b;
     }
 }
 
-/* s[f] and s[n + f] = sum_k T_k c[k][f] for the first and the second vector. n is a constant where this is inlined. */
-HERE void NAME(sum)(const int n, int modes, const double *c, const double *t, const ptrdiff_t stride, L *s) {
+/* Of the fields of `sum` below those from `from` on, n of them, in registers. */
+HERE void NAME(sum_some)(const int from, const int n, const int skip, int modes, const double *c, const double *t,
+                         const ptrdiff_t stride, L (*s)[SUMMED]) {
     L a[6], b[6];
     SPARI_UNROLL
     for (int f = 0; f < n; f++) {
-        a[f] = SPLAT(c + f), b[f] = a[f];
+        a[f] = b[f] = SPLAT(c + (from + f < 3 ? from + f : from + f + skip));
     }
     for (int k = 1; k < modes; k++) {
         const double *row = c + (ptrdiff_t)k * SPARI_FIELDS;
         L ta = NAME(get)(t + k * stride), tb = NAME(get)(t + k * stride + W);
         SPARI_UNROLL
         for (int f = 0; f < n; f++) {
-            L r = SPLAT(row + f);
+            L r = SPLAT(row + (from + f < 3 ? from + f : from + f + skip));
             a[f] = MADD(ta, r, a[f]);
             b[f] = MADD(tb, r, b[f]);
         }
     }
     SPARI_UNROLL
     for (int f = 0; f < n; f++) {
-        s[f] = a[f], s[n + f] = b[f];
+        s[0][from + f] = a[f], s[1][from + f] = b[f];
     }
 }
 
+/* s[f] = sum_k T_k c[k][f] for both vectors: n fields, of which from the fourth on `skip` are left out before, in parts
+   for which there are registers. x: of both vectors; t: where T_k go, row k at t + k * stride. n, skip are constants
+   where this is inlined. */
+HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, const L *x, double *t,
+                    const ptrdiff_t stride, L (*s)[SUMMED]) {
+    const int part = n <= 6 ? n : n <= 12 ? (n + 1) / 2 : (n + 2) / 3;
+    NAME(chebyshev)(modes, x, t, stride);
+    NAME(sum_some)(0, part, skip, modes, c, t, stride, s);
+    if (part < n) {
+        NAME(sum_some)(part, n <= 12 ? n - part : part, skip, modes, c, t, stride, s);
+    }
+    if (2 * part < n) {
+        NAME(sum_some)(2 * part, n - 2 * part, skip, modes, c, t, stride, s);
+    }
+}
+#endif
+
 /* ---- rotations ---- */
 
+/* Without fused operations, for sums that are alike at every width. */
 HERE void NAME(cross)(const L *a, const L *b, L *c) {
     L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     c[0] = x, c[1] = y, c[2] = z;
@@ -237,105 +314,138 @@ HERE L NAME(square)(const L *q) {
     return (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]);
 }
 
-/* r = R(Q / |Q|) c without a square root: c + 2 / |Q|^2 (w u x c + u x (u x c)) */
-HERE void NAME(turn)(const L *q, L over, const L *c, L *r) {
-    L t[3], s[3], g = over + over;
-    NAME(cross)(q + 1, c, t);
-    NAME(cross)(q + 1, t, s);
+/* The same with as few operations as there are: a x b, and with c before it. */
+HERE void NAME(fused_cross)(const L *a, const L *b, L *r) {
+    L x = NMADD(a[2], b[1], a[1] * b[2]), y = NMADD(a[0], b[2], a[2] * b[0]), z = NMADD(a[1], b[0], a[0] * b[1]);
+    r[0] = x, r[1] = y, r[2] = z;
+}
+
+HERE void NAME(add_cross)(const L *c, const L *a, const L *b, L *r) {
+    L x = NMADD(a[2], b[1], MADD(a[1], b[2], c[0])), y = NMADD(a[0], b[2], MADD(a[2], b[0], c[1])),
+      z = NMADD(a[1], b[0], MADD(a[0], b[1], c[2]));
+    r[0] = x, r[1] = y, r[2] = z;
+}
+
+HERE L NAME(fused_square)(const L *q) {
+    return MADD(q[3], q[3], MADD(q[2], q[2], MADD(q[1], q[1], q[0] * q[0])));
+}
+
+/* r = R(Q / |Q|) c without a square root: c + twice (w u x c + u x (u x c)), twice: 2 / |Q|^2 */
+HERE void NAME(turn)(const L *q, L twice, const L *c, L *r) {
+    L t[3], s[3];
+    NAME(fused_cross)(q + 1, c, t);
+    s[0] = q[0] * t[0], s[1] = q[0] * t[1], s[2] = q[0] * t[2];
+    NAME(add_cross)(s, q + 1, t, s);
     for (int i = 0; i < 3; i++) {
-        r[i] = MADD(g, MADD(q[0], t[i], s[i]), c[i]);
+        r[i] = MADD(twice, s[i], c[i]);
     }
 }
 
 /* vector part of D Q* / |Q|^2: omega for D = 2 dQ/dt */
 HERE void NAME(spin)(const L *d, const L *q, L over, L *w) {
     L t[3];
-    NAME(cross)(d + 1, q + 1, t);
     for (int i = 0; i < 3; i++) {
-        w[i] = (d[i + 1] * q[0] - d[0] * q[i + 1] - t[i]) * over;
+        t[i] = NMADD(d[0], q[i + 1], d[i + 1] * q[0]);
+    }
+    NAME(add_cross)(t, q + 1, d + 1, t);
+    for (int i = 0; i < 3; i++) {
+        w[i] = t[i] * over;
     }
 }
 
 /* ---- motion out ---- */
 
-HERE void NAME(put_row)(int width, const L *x, double (*row)[SPARI_ROW], int at) {
+/* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. d, twist:
+   its fields as the nodes have them; u: which of the two vectors. */
+HERE void NAME(accelerate)(const int consistent, const L *q, L over, const L *d, const L *accel, const L *twist,
+                           const L *r, const L *w, const L *wr, L *out) {
+    L alpha[3] = {twist[0], twist[1], twist[2]};
+    if (consistent) {
+        L rate = MADD(d[3], q[3], MADD(d[2], q[2], MADD(d[1], q[1], d[0] * q[0]))) * over;
+        NAME(spin)(twist, q, over, alpha);
+        for (int i = 0; i < 3; i++) {
+            alpha[i] = NMADD(w[i], rate, alpha[i]);
+        }
+    }
+    NAME(add_cross)(accel, alpha, r, out);
+    NAME(add_cross)(out, w, wr, out);
+    out[3] = alpha[0], out[4] = alpha[1], out[5] = alpha[2];
+}
+
+/* The rows SPARI_R_* of one vector, of its interpolated fields: place, rate, Q, spin, accel, twist, what there is of
+   them. Returns |Q|^2. */
+HERE L NAME(move_one)(const int consistent, const int what, const L *place, const L *rate, const L *q, const L *spin,
+                      const L *accel, const L *twist, const L *con, L *out) {
+    const int upto = what & SPARI_UPTO;
+    static const double two = 2;
+    L square = NAME(fused_square)(q), twice = SPLAT(&two) / square, r[3], w[3], wr[3];
+    NAME(turn)(q, twice, con, r);
+    for (int i = 0; i < 3; i++) {
+        out[SPARI_R_PLACE + i] = place[i] + r[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        out[SPARI_R_QUAT + i] = q[i];
+    }
+    if (upto < SPARI_UPTO_RATE) {
+        return square;
+    }
+    L over = twice * 0.5;
+    w[0] = spin[0], w[1] = spin[1], w[2] = spin[2];
+    if (consistent) {
+        NAME(spin)(spin, q, over, w);
+    }
+    NAME(add_cross)(rate, w, r, out + SPARI_R_RATE);
+    for (int i = 0; i < 3; i++) {
+        out[SPARI_R_OMEGA + i] = w[i];
+    }
+    if (upto >= SPARI_UPTO_ACCEL) {
+        NAME(fused_cross)(w, r, wr);
+        NAME(accelerate)(consistent, q, over, spin, accel, twist, r, w, wr, out + SPARI_R_ACCEL);
+    }
+    return square;
+}
+
+/* PAIR nodes of one element; in: xi and con of either vector; out: the rows that are asked for, of either. Returns the
+   lesser |Q|^2, lane by lane. */
+HERE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
+                  L (*out)[SPARI_ROWS]) {
+    const int upto = what & SPARI_UPTO, spins = consistent ? 4 : 3;
+    const int rates = upto >= SPARI_UPTO_RATE,
+              turned = rates ? SPARI_F_QUAT : 3; /* Q right after places without rates */
+    L field[2][SUMMED], second[2][SUMMED], least[2];
+#if W == 8
+    double *t = NULL;
+#else
+    L polynomials[2 * SPARI_MAX_NODES];
+    double *t = (double *)polynomials;
+#endif
+    NAME(sum)(rates ? SPARI_F_SPIN + spins : 7, rates ? 0 : 3, modes, c, in[0], t, PAIR, field);
+    if (upto >= SPARI_UPTO_ACCEL) {
+        NAME(sum)(3 + spins, 0, modes, c + SPARI_F_ACCEL, in[0], t, PAIR, second);
+    }
+    SPARI_UNROLL
+    for (int u = 0; u < 2; u++) {
+        const L *f = field[u], *g = second[u], con[3] = {in[1][u], in[2][u], in[3][u]};
+        least[u] =
+            NAME(move_one)(consistent, what, f, f + SPARI_F_RATE, f + turned, f + SPARI_F_SPIN, g, g + 3, con, out[u]);
+    }
+    return NAME(less)(least[0], least[1]);
+}
+
+HERE void NAME(put_row)(const int width, const L *x, double (*row)[SPARI_ROW], int at) {
     SPARI_UNROLL
     for (int i = 0; i < width; i++) {
         NAME(put)(row[i] + at, x[i]);
     }
 }
 
-/* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. */
-HERE void NAME(accelerate)(const int consistent, const L *q, L over, const L *r, const L *d, const L *w, const L *wr,
-                           const L *accel, const L *twist, double (*buf)[SPARI_ROW], int at) {
-    L alpha[3], wt[3], ar[3];
-    if (consistent) {
-        L rate = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2] + d[3] * q[3]) * over;
-        NAME(spin)(twist, q, over, alpha);
-        for (int i = 0; i < 3; i++) {
-            alpha[i] -= w[i] * rate;
-        }
-    } else {
-        alpha[0] = twist[0], alpha[1] = twist[1], alpha[2] = twist[2];
-    }
-    NAME(cross)(w, wr, wt);
-    NAME(cross)(alpha, r, ar);
-    for (int i = 0; i < 3; i++) {
-        NAME(put)(buf[SPARI_R_ACCEL + i] + at, accel[i] + ar[i] + wt[i]);
-    }
-    NAME(put_row)(3, alpha, buf + SPARI_R_ALPHA, at);
-}
-
-/* PAIR nodes of one element; in: xi and con of either vector. Returns the lesser |Q|^2, lane by lane. */
-HERE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
-                  double (*buf)[SPARI_ROW], int at) {
-    const int spins = consistent ? 4 : 3, upto = what & SPARI_UPTO, poses = what & SPARI_POSES;
-    double t[SPARI_MAX_NODES * PAIR];
-    const int linear = upto >= SPARI_UPTO_RATE ? 6 : 3; /* place, and velocity behind it */
-    L place[12], quat[8], spin[8], accel[6], twist[8], least[2];
-    NAME(chebyshev)(modes, in[0], t, PAIR);
-    NAME(sum)(4, modes, c + SPARI_F_QUAT, t, PAIR, quat);
-    NAME(sum)(linear, modes, c + SPARI_F_PLACE, t, PAIR, place);
-    if (upto >= SPARI_UPTO_RATE) {
-        NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, PAIR, spin);
-    }
-    if (upto >= SPARI_UPTO_ACCEL) {
-        NAME(sum)(3, modes, c + SPARI_F_ACCEL, t, PAIR, accel);
-        NAME(sum)(spins, modes, c + SPARI_F_TWIST, t, PAIR, twist);
-    }
-    SPARI_UNROLL
-    for (int u = 0; u < 2; u++, at += W) {
-        const L *q = quat + 4 * u, con[3] = {in[1][u], in[2][u], in[3][u]};
-        L square = NAME(square)(q), over = 1.0 / square, r[3], w[3], wr[3];
-        least[u] = square;
-        NAME(turn)(q, over, con, r);
-        for (int i = 0; i < 3; i++) {
-            NAME(put)(buf[SPARI_R_PLACE + i] + at, place[linear * u + i] + r[i]);
-        }
-        if (poses) {
-            NAME(put_row)(4, q, buf + SPARI_R_QUAT, at);
-        }
-        if (upto < SPARI_UPTO_RATE) {
-            continue;
-        }
-        if (consistent) {
-            NAME(spin)(spin + 4 * u, q, over, w);
-        } else {
-            w[0] = spin[3 * u], w[1] = spin[3 * u + 1], w[2] = spin[3 * u + 2];
-        }
-        NAME(cross)(w, r, wr);
-        for (int i = 0; i < 3; i++) {
-            NAME(put)(buf[SPARI_R_RATE + i] + at, place[6 * u + 3 + i] + wr[i]);
-        }
-        if (poses) {
-            NAME(put_row)(3, w, buf + SPARI_R_OMEGA, at);
-        }
-        if (upto >= SPARI_UPTO_ACCEL) {
-            NAME(accelerate)
-            (consistent, q, over, r, spin + spins * u, w, wr, accel + 3 * u, twist + spins * u, buf, at);
-        }
-    }
-    return NAME(less)(least[0], least[1]);
+/* What is asked for of one vector, into the rows of the tile. */
+HERE void NAME(put_rows)(const int what, const L *x, double (*buf)[SPARI_ROW], int at) {
+    const int upto = what & SPARI_UPTO, poses = what & SPARI_POSES, rates = upto >= SPARI_UPTO_RATE;
+    NAME(put_row)(rates ? 6 : 3, x, buf, at); /* places, velocities */
+    NAME(put_row)(poses ? 4 : 0, x + SPARI_R_QUAT, buf + SPARI_R_QUAT, at);
+    NAME(put_row)(poses && rates ? 3 : 0, x + SPARI_R_OMEGA, buf + SPARI_R_OMEGA, at);
+    NAME(put_row)(upto >= SPARI_UPTO_ACCEL ? 6 : 0, x + SPARI_R_ACCEL, buf + SPARI_R_ACCEL, at);
 }
 
 /* PAIR values of n rows; what lies beyond the end of a run repeats the last node, so that every lane is a real one. */
@@ -375,10 +485,12 @@ HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const doub
                       const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
     const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
-    L least = SPLAT(&huge), in[4][2];
+    L least = SPLAT(&huge), in[4][2], out[2][SPARI_ROWS];
     for (int i = 0; i < count; i += PAIR) {
         NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
-        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, buf, at + i));
+        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
+        NAME(put_rows)(what, out[0], buf, at + i);
+        NAME(put_rows)(what, out[1], buf, at + i + W);
     }
     return NAME(least)(least);
 }
@@ -403,7 +515,8 @@ HERE void NAME(rotate)(const L *turn, const L *c, L *r) {
 /* Triples a + b of W nodes to the host's, of which `count` are there. */
 HERE void NAME(give)(const L *a, const L *b, int count, double *out) {
     double part[3 * W];
-    NAME(weave)(a[0] + b[0], a[1] + b[1], a[2] + b[2], count < W ? part : out);
+    const L v[3] = {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+    NAME(put_triples)(v, count < W ? part : out);
     if (count < W) {
         memcpy(out, part, 3 * (size_t)count * sizeof *out);
     }
@@ -571,107 +684,172 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
     }
 }
 
+#include "kernel_direct.h"
+
 /* ---- loads in ---- */
 
 /* What the audit wants to know of one vector: totals of the fluid's side, largest sizes (as least negatives). */
 HERE void NAME(audit)(const int has_moment, const L *place, const L *r, const L *rate, const L *w, const L *f,
                       const L *m, L *sums, L *tops) {
-    L x[3], v[3], xf[3];
-    NAME(cross)(w, r, v);
+    static const double zero = 0;
+    const L none = SPLAT(&zero);
+    L x[3], v[3];
     for (int i = 0; i < 3; i++) {
         x[i] = place[i] + r[i];
-        v[i] += rate[i];
     }
-    NAME(cross)(x, f, xf);
+    NAME(add_cross)(rate, w, r, v);
+    NAME(add_cross)(sums + 3, x, f, sums + 3);
     for (int i = 0; i < 3; i++) {
         sums[i] += f[i];
-        sums[3 + i] += has_moment ? xf[i] + m[i] : xf[i];
         sums[6] = MADD(f[i], v[i], sums[6]);
-        sums[7] += NAME(less)(f[i], -f[i]); /* minus |f| */
+        sums[7] += NAME(size)(f[i]);
         if (has_moment) {
+            sums[3 + i] += m[i];
             sums[6] = MADD(m[i], w[i], sums[6]);
-            sums[8] += NAME(less)(m[i], -m[i]);
+            sums[8] += NAME(size)(m[i]);
         }
     }
-    tops[0] = NAME(less)(tops[0], -(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
-    tops[1] = NAME(less)(tops[1], -(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    tops[2] = NAME(less)(tops[2], -(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+    tops[0] = NAME(less)(tops[0], NMADD(x[2], x[2], NMADD(x[1], x[1], NMADD(x[0], x[0], none))));
+    tops[1] = NAME(less)(tops[1], NMADD(v[2], v[2], NMADD(v[1], v[1], NMADD(v[0], v[0], none))));
+    tops[2] = NAME(less)(tops[2], NMADD(w[2], w[2], NMADD(w[1], w[1], NMADD(w[0], w[0], none))));
+}
+
+/* What is summed at the foot of a node of which the moment is M, into the rows g: M, or of the consistent kind
+   (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2. */
+HERE void NAME(put_moment)(const int consistent, const L *m, const L *q, L over, double (*g)[SPARI_ROW], int at) {
+    if (!consistent) {
+        NAME(put_row)(3, m, g, at);
+        return;
+    }
+    L s[4];
+    s[0] = -MADD(m[2], q[3], MADD(m[1], q[2], m[0] * q[1])) * over;
+    for (int i = 0; i < 3; i++) {
+        s[1 + i] = m[i] * q[0];
+    }
+    NAME(add_cross)(s + 1, m, q + 1, s + 1);
+    for (int i = 0; i < 3; i++) {
+        s[1 + i] *= over;
+    }
+    NAME(put_row)(4, s, g, at);
 }
 
 /* Moments at the feet of PAIR nodes, into the rows g at `at`; their T_k into t. in: xi, con, force, moment. */
 HERE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
                    const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
-    const int spins = consistent ? 4 : 3;
-    L quat[8], place[12], spin[8], least[2];
-    NAME(chebyshev)(modes, in[0], t, SPARI_ROW);
-    NAME(sum)(4, modes, c + SPARI_F_QUAT, t, SPARI_ROW, quat);
-    if (audited) {
-        NAME(sum)(6, modes, c + SPARI_F_PLACE, t, SPARI_ROW, place); /* and velocity */
-        NAME(sum)(spins, modes, c + SPARI_F_SPIN, t, SPARI_ROW, spin);
-    }
+    static const double two = 2;
+    const int fields = !audited ? 4 : consistent ? SPARI_F_SPIN + 4 : SPARI_F_SPIN + 3;
+    L field[2][SUMMED], least[2];
+    NAME(sum)(fields, 0, modes, audited ? c : c + SPARI_F_QUAT, in[0], t, SPARI_ROW, field);
     SPARI_UNROLL
     for (int u = 0; u < 2; u++, at += W) {
-        const L *q = quat + 4 * u, con[3] = {in[1][u], in[2][u], in[3][u]}, f[3] = {in[4][u], in[5][u], in[6][u]};
-        L square = NAME(square)(q), over = 1.0 / square, r[3], m[3], moment[3] = {0}, w[3];
+        const L con[3] = {in[1][u], in[2][u], in[3][u]}, f[3] = {in[4][u], in[5][u], in[6][u]};
+        const L *all = field[u], *q = audited ? all + SPARI_F_QUAT : all, *spin = all + SPARI_F_SPIN;
+        L square = NAME(fused_square)(q), twice = SPLAT(&two) / square, over = twice * 0.5, r[3], m[3], moment[3];
         least[u] = square;
-        NAME(turn)(q, over, con, r);
-        NAME(cross)(r, f, m);
+        NAME(turn)(q, twice, con, r);
         if (has_moment) {
-            for (int i = 0; i < 3; i++) {
-                moment[i] = in[7 + i][u];
-                m[i] += moment[i];
-            }
-        }
-        if (consistent) { /* (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2 */
-            L s[3];
-            NAME(cross)(m, q + 1, s);
-            NAME(put)(g[0] + at, -(m[0] * q[1] + m[1] * q[2] + m[2] * q[3]) * over);
-            for (int i = 0; i < 3; i++) {
-                NAME(put)(g[1 + i] + at, (m[i] * q[0] + s[i]) * over);
-            }
+            moment[0] = in[7][u], moment[1] = in[8][u], moment[2] = in[9][u];
+            NAME(add_cross)(moment, r, f, m);
         } else {
-            for (int i = 0; i < 3; i++) {
-                NAME(put)(g[i] + at, m[i]);
-            }
+            NAME(fused_cross)(r, f, m);
         }
+        NAME(put_moment)(consistent, m, q, over, g, at);
         if (audited) {
+            L w[3] = {spin[0], spin[1], spin[2]};
             if (consistent) {
-                NAME(spin)(spin + 4 * u, q, over, w);
-            } else {
-                w[0] = spin[3 * u], w[1] = spin[3 * u + 1], w[2] = spin[3 * u + 2];
+                NAME(spin)(spin, q, over, w);
             }
-            NAME(audit)(has_moment, place + 6 * u, r, place + 6 * u + 3, w, f, moment, sums, tops);
+            NAME(audit)(has_moment, all, r, all + SPARI_F_RATE, w, f, moment, sums, tops);
         }
     }
     return NAME(less)(least[0], least[1]);
 }
 
-/* sum_k over one run: modal[k][f] += sum_i t[k][i] row_f[i]; two k at a time keep their sums in registers. */
-HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
-                        double (*g)[SPARI_ROW], int at, double *modal) {
+/* Sums of the lanes of n vectors, each in an order of its own. */
+HERE void NAME(totals)(const int n, const L *v, double *sum) {
+#if W == 8
+    SPARI_UNROLL_ALL
+    for (int j = 0; j < n; j += 8) {
+        static const double zero = 0;
+        L a[8], b[4], c[2], d;
+        SPARI_UNROLL
+        for (int i = 0; i < 8; i++) {
+            a[i] = SPLAT(&zero);
+            if (j + i < n) {
+                a[i] = v[j + i];
+            }
+        }
+        SPARI_UNROLL
+        for (int i = 0; i < 4; i++) {
+            b[i] = MIX(a[2 * i], a[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14) +
+                   MIX(a[2 * i], a[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+        }
+        SPARI_UNROLL
+        for (int i = 0; i < 2; i++) {
+            c[i] = MIX(b[2 * i], b[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13) +
+                   MIX(b[2 * i], b[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+        d = MIX(c[0], c[1], 0, 1, 2, 3, 8, 9, 10, 11) + MIX(c[0], c[1], 4, 5, 6, 7, 12, 13, 14, 15);
+        memcpy(sum + j, &d, (size_t)(n - j < 8 ? n - j : 8) * sizeof *sum);
+    }
+#else
+    SPARI_UNROLL_ALL
+    for (int j = 0; j < n; j++) {
+        sum[j] = NAME(total)(v[j]);
+    }
+#endif
+}
+
+/* Modes k to k + most - 1 of sum_k over one run, those beyond the last again the last and left out: modal[k][f] +=
+   sum_i t[k][i] row_f[i]. The sums are in registers. */
+HERE void NAME(project_some)(const int most, const int rows, int k, int modes, int count, double (*t)[SPARI_ROW],
+                             double (*f)[SPARI_ROW], double (*g)[SPARI_ROW], int at, double *modal) {
     static const double zero = 0;
-    for (int k = 0; k < modes; k += 2) {
-        int k1 = k + 1 < modes ? k + 1 : k;
-        L a[7], b[7];
+    L a[4 * 7];
+    double sum[4 * 7];
+    const double *mode[4];
+    SPARI_UNROLL
+    for (int m = 0; m < most; m++) {
+        mode[m] = t[k + m < modes ? k + m : modes - 1];
+    }
+    SPARI_UNROLL_ALL
+    for (int j = 0; j < most * rows; j++) {
+        a[j] = SPLAT(&zero);
+    }
+    for (int i = 0; i < count; i += W) {
+        L T[4];
+        SPARI_UNROLL
+        for (int m = 0; m < most; m++) {
+            T[m] = NAME(get)(mode[m] + i);
+        }
         SPARI_UNROLL
         for (int j = 0; j < rows; j++) {
-            a[j] = SPLAT(&zero), b[j] = a[j];
-        }
-        for (int i = 0; i < count; i += W) {
-            L ta = NAME(get)(t[k] + i), tb = NAME(get)(t[k1] + i);
+            L y = NAME(get)(j < 3 ? f[j] + at + i : g[j - 3] + i);
             SPARI_UNROLL
-            for (int j = 0; j < rows; j++) {
-                L y = NAME(get)(j < 3 ? f[j] + at + i : g[j - 3] + i);
-                a[j] = MADD(ta, y, a[j]);
-                b[j] = MADD(tb, y, b[j]);
+            for (int m = 0; m < most; m++) {
+                a[m * rows + j] = MADD(T[m], y, a[m * rows + j]);
             }
         }
+    }
+    NAME(totals)(most * rows, a, sum);
+    for (int m = 0; m < most && k + m < modes; m++) {
         for (int j = 0; j < rows; j++) {
-            spari_add(modal + ((ptrdiff_t)k * 7 + j) * 2, NAME(total)(a[j]));
-            if (k1 > k) {
-                spari_add(modal + ((ptrdiff_t)k1 * 7 + j) * 2, NAME(total)(b[j]));
-            }
+            spari_add(modal + ((ptrdiff_t)(k + m) * 7 + j) * 2, sum[m * rows + j]);
         }
+    }
+}
+
+/* As many modes at a time as there are registers for. */
+HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
+                        double (*g)[SPARI_ROW], int at, double *modal) {
+    int k = 0;
+#if W == 8
+    for (; k + 2 < modes; k += 4) {
+        NAME(project_some)(4, rows, k, modes, count, t, f, g, at, modal);
+    }
+#endif
+    for (; k < modes; k += 2) {
+        NAME(project_some)(2, rows, k, modes, count, t, f, g, at, modal);
     }
 }
 
@@ -698,8 +876,10 @@ HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int cou
 }
 
 HERE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops) {
+    double total[9];
+    NAME(totals)(9, add, total);
     for (int i = 0; i < 9; i++) {
-        spari_add(sums + 2 * i, NAME(total)(add[i]));
+        spari_add(sums + 2 * i, total[i]);
     }
     for (int i = 0; i < 3; i++) {
         double m = NAME(least)(top[i]);

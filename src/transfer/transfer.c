@@ -67,6 +67,8 @@ typedef struct kernels {
                 int has_moment, double (*f)[SPARI_ROW], int at, double (*rows)[SPARI_ROW], double *least,
                 spari_bin_cut *cut, spari_bins *load);
     void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
+    double (*move_to)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int single,
+                      void *x, void *v, int past);
     void (*give)(double (*row)[SPARI_ROW], int count, double *out, int past);
     void (*give_singles)(double (*row)[SPARI_ROW], int count, float *out, int past);
     void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
@@ -77,17 +79,18 @@ static kernels choose_kernels(const spari_nodes *s) {
 #ifdef SPARI_X86
     switch (spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX)) {
     case 8:
-        return (kernels){motion_avx512,       loads_avx512,        bins_avx512,         carry_to_avx512,
-                         give_triples_avx512, give_singles_avx512, load_triples_avx512, load_singles_avx512};
+        return (kernels){motion_avx512,       loads_avx512,        bins_avx512,
+                         carry_to_avx512,     move_to_avx512,      give_triples_avx512,
+                         give_singles_avx512, load_triples_avx512, load_singles_avx512};
     case 4:
-        return (kernels){motion_avx2,       loads_avx2,        bins_avx2,         carry_to_avx2,
+        return (kernels){motion_avx2,       loads_avx2,        bins_avx2,         carry_to_avx2,    move_to_avx2,
                          give_triples_avx2, give_singles_avx2, load_triples_avx2, load_singles_avx2};
     default:
         break;
     }
 #endif
     (void)s;
-    return (kernels){motion_plain,       loads_plain,        bins_plain,         carry_to_plain,
+    return (kernels){motion_plain,       loads_plain,        bins_plain,         carry_to_plain,    move_to_plain,
                      give_triples_plain, give_singles_plain, load_triples_plain, load_singles_plain};
 }
 
@@ -145,9 +148,23 @@ static void order_tile(const int *element, int count, uint16_t *place) {
     }
 }
 
+/* The nodes are stored as they come: along the line. */
+static int is_in_order(const spari_nodes *s) {
+    for (int64_t p = 0; p < s->n; p++) {
+        if (s->place[p] != p % SPARI_TILE) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 void spari_nodes_put(spari_nodes *s, const int *element, const double *xi, const double *con, const uint8_t *flags) {
     for (int64_t first = 0; s->place && first < s->n; first += SPARI_TILE) {
         order_tile(element + first, spari_tile_count(s, first), s->place + first);
+    }
+    if (s->place && is_in_order(s)) {
+        free(s->place);
+        s->place = NULL;
     }
     for (int64_t p = 0; p < s->n; p++) {
         int64_t node = spari_nodes_node(s, p);
@@ -269,6 +286,33 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
     return least;
 }
 
+/* Past the caches are whole lines, which only the widest vectors make. */
+static int is_past(const spari_nodes *s) {
+    return s->n >= SPARI_PAST;
+}
+
+int spari_can_move_to(const spari_nodes *s, int single) {
+    int lines = spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX) == 8;
+    return !s->place && s->per_element > 1 && (lines || (!single && !is_past(s)));
+}
+
+double spari_move_to(const spari_nodes *s, int64_t first, int64_t count, const double *c, int consistent, int single,
+                     void *x, void *v) {
+    const kernels kernel = choose_kernels(s);
+    const size_t triple = 3 * (single ? sizeof(float) : sizeof(double));
+    const ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
+    double least = HUGE_VAL;
+    for (int64_t at = first; at < first + count;) {
+        const size_t skip = (size_t)at * triple;
+        int run = run_length(s, at, (int)(first + count - at));
+        double d = kernel.move_to(s, at, run, c + spari_nodes_element(s, at) * block, consistent, single,
+                                  x ? (char *)x + skip : NULL, v ? (char *)v + skip : NULL, is_past(s));
+        least = d < least ? d : least;
+        at += run;
+    }
+    return least;
+}
+
 double spari_carry(const spari_nodes *s, const double *c, double *x, double *v) {
     const carrier m = carrier_of(c);
     choose_kernels(s).carry(s, &m, x, v);
@@ -317,7 +361,7 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
 void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
     int count = spari_tile_count(s, first);
     if (!s->place) {
-        choose_kernels(s).give(row, count, x + 3 * first, s->n >= SPARI_PAST);
+        choose_kernels(s).give(row, count, x + 3 * first, is_past(s));
         return;
     }
     for (int i = 0; i < count; i++) {
@@ -329,7 +373,7 @@ void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_R
 void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
     int count = spari_tile_count(s, first);
     if (!s->place) {
-        choose_kernels(s).give_singles(row, count, x + 3 * first, s->n >= SPARI_PAST);
+        choose_kernels(s).give_singles(row, count, x + 3 * first, is_past(s));
         return;
     }
     for (int i = 0; i < count; i++) {
@@ -521,9 +565,10 @@ static void finish_audit(const load_sums *of, spari_audit *audit) {
         audit->moment[i] = sums[2 * (i + 3)] + sums[2 * (i + 3) + 1];
     }
     audit->power = sums[12] + sums[13];
-    audit->force_sum = -(sums[14] + sums[15]);
-    audit->moment_sum = -(sums[16] + sums[17]);
-    audit->x_max = sqrt(-of->tops[0]), audit->v_max = sqrt(-of->tops[1]), audit->omega_max = sqrt(-of->tops[2]);
+    audit->force_sum = sums[14] + sums[15];
+    audit->moment_sum = sums[16] + sums[17];
+    audit->x_max = sqrt(0 - of->tops[0]), audit->v_max = sqrt(0 - of->tops[1]); /* no negative zero */
+    audit->omega_max = sqrt(0 - of->tops[2]);
 }
 
 double spari_gather_loads(const spari_nodes *s, const double *modal, const double *c, int consistent, const double *q,

@@ -132,6 +132,13 @@ double spari_tile_motion(const spari_nodes *nodes, int64_t first, const double *
    |q|^2. */
 double spari_carry(const spari_nodes *nodes, const double *c, double *x, double *v);
 
+/* Places and velocities of `count` nodes of a beam from `first` on straight to the host's triples, of all nodes, either
+   NULL: not wanted. single: floats. Where spari_can_move_to says so; else by tiles. The bits are the same. Returns the
+   least |Q|^2. */
+int spari_can_move_to(const spari_nodes *nodes, int single);
+double spari_move_to(const spari_nodes *nodes, int64_t first, int64_t count, const double *c, int consistent,
+                     int single, void *x, void *v);
+
 /* Three rows of a tile, in storage order, to the host's triples x [n][3]. */
 void spari_tile_store(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], double *x);
 void spari_tile_store_f32(const spari_nodes *nodes, int64_t first, double (*row)[SPARI_ROW], float *x);
