@@ -29,29 +29,82 @@ HERE void NAME(drop)(const int whole, const int64_t *at, const int width, double
     NODE_AT(0) = x;
 #else
     SPARI_UNROLL
-    for (int l = 0; l < W; l++) {
+    for (int l = W - 1; l >= 0; l--) {
         NODE_AT(l) = x[l];
     }
 #endif
 }
 
-/* n components, one after the other. */
+/* Two components next to each other: nodes come and go two numbers at a time, and are turned over two by two. */
+#undef PAIRED
+#ifdef LOW
+#define PAIRED 1
+#define PAIR_OF(l) _mm_loadu_pd(&NODE_AT(l))
+HERE void NAME(pick_pair)(const int whole, const int64_t *at, const int width, const double *p, L *x) {
+    (void)at;
+#if W == 2
+    L even = PAIR_OF(0), odd = PAIR_OF(1);
+#elif W == 4
+    L even = _mm256_insertf128_pd(_mm256_castpd128_pd256(PAIR_OF(0)), PAIR_OF(2), 1);
+    L odd = _mm256_insertf128_pd(_mm256_castpd128_pd256(PAIR_OF(1)), PAIR_OF(3), 1);
+#else
+    L even = _mm512_insertf64x2(_mm512_castpd128_pd512(PAIR_OF(0)), PAIR_OF(2), 1);
+    L odd = _mm512_insertf64x2(_mm512_castpd128_pd512(PAIR_OF(1)), PAIR_OF(3), 1);
+    even = _mm512_insertf64x2(_mm512_insertf64x2(even, PAIR_OF(4), 2), PAIR_OF(6), 3);
+    odd = _mm512_insertf64x2(_mm512_insertf64x2(odd, PAIR_OF(5), 2), PAIR_OF(7), 3);
+#endif
+    x[0] = LOW(even, odd);
+    x[1] = HIGH(even, odd);
+}
+
+HERE void NAME(drop_pair)(const int whole, const int64_t *at, const int width, double *p, const L *x) {
+    (void)at;
+    L even = LOW(x[0], x[1]), odd = HIGH(x[0], x[1]);
+    SPARI_UNROLL
+    for (int l = W - 2; l >= 0; l -= 2) {
+        memcpy(&NODE_AT(l + 1), (double *)&odd + l, 2 * sizeof *p);
+        memcpy(&NODE_AT(l), (double *)&even + l, 2 * sizeof *p);
+    }
+}
+#endif
+
+/* n components, one after the other; an odd number's last two overlap the two before. */
 HERE void NAME(pick_rows)(const int whole, const int64_t *at, const int width, const int n, const double *p, L *x) {
+#ifdef PAIRED
+    SPARI_UNROLL
+    for (int i = 0; i + 1 < n; i += 2) {
+        NAME(pick_pair)(whole, at, width, p + i, x + i);
+    }
+    if (n % 2 == 1) {
+        NAME(pick_pair)(whole, at, width, p + n - 2, x + n - 2);
+    }
+#else
     SPARI_UNROLL
     for (int i = 0; i < n; i++) {
         x[i] = NAME(pick)(whole, at, width, p + i);
     }
+#endif
 }
 
 HERE void NAME(drop_rows)(const int whole, const int64_t *at, const int width, const int n, double *p, const L *x) {
+#ifdef PAIRED
+    SPARI_UNROLL
+    for (int i = 0; i + 1 < n; i += 2) {
+        NAME(drop_pair)(whole, at, width, p + i, x + i);
+    }
+    if (n % 2 == 1) {
+        NAME(drop_pair)(whole, at, width, p + n - 2, x + n - 2);
+    }
+#else
     SPARI_UNROLL
     for (int i = 0; i < n; i++) {
         NAME(drop)(whole, at, width, p + i, x[i]);
     }
+#endif
 }
 
-/* The next W of `left` nodes: where there are fewer, the lanes beyond repeat the last. What is written from them is
-   written twice. Whether there are W. */
+/* The next W of `left` nodes: where there are fewer, the lanes beyond repeat the last. What they have is written first,
+   and the last node's own over it. Whether there are W. */
 HERE int NAME(next_nodes)(int64_t left, int64_t *at) {
     for (int l = 0; l < W && left < W; l++) {
         at[l] = l < left ? l : left - 1;

@@ -8,6 +8,7 @@
      ROOT(x)     square root, where there is an instruction for it
      MOST(a,b)   the larger, b where one is no number, likewise; LEAST the smaller
      ABOVE(a,b)  some bits where a lane of a is larger, likewise
+     LOW(a,b)    the first of each two lanes of a and b in turns, and HIGH the second, likewise
      STREAM(p,v) v to p, a multiple of its size, past the caches, likewise
      L           the vector; get and put take it from memory and bring it there
      HERE        how a function begins that is inlined
@@ -26,6 +27,8 @@
 #undef MOST
 #undef LEAST
 #undef ABOVE
+#undef LOW
+#undef HIGH
 #undef STREAM
 #undef L
 #undef HERE
@@ -54,6 +57,8 @@
 #define MOST(a, b) _mm256_max_pd(a, b)
 #define LEAST(a, b) _mm256_min_pd(a, b)
 #define ABOVE(a, b) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ))
+#define LOW(a, b) _mm256_unpacklo_pd(a, b)
+#define HIGH(a, b) _mm256_unpackhi_pd(a, b)
 #define STREAM(p, v) _mm256_stream_pd(p, v)
 #elif SPARI_WIDTH == 8
 #define W 8
@@ -67,6 +72,8 @@
 #define MOST(a, b) _mm512_max_pd(a, b)
 #define LEAST(a, b) _mm512_min_pd(a, b)
 #define ABOVE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)
+#define LOW(a, b) _mm512_unpacklo_pd(a, b)
+#define HIGH(a, b) _mm512_unpackhi_pd(a, b)
 #define STREAM(p, v) _mm512_stream_pd(p, v)
 #endif
 
@@ -85,6 +92,8 @@
 #define MOST(a, b) _mm_max_pd(a, b)
 #define LEAST(a, b) _mm_min_pd(a, b)
 #define ABOVE(a, b) _mm_movemask_pd(_mm_cmpgt_pd(a, b))
+#define LOW(a, b) _mm_unpacklo_pd(a, b)
+#define HIGH(a, b) _mm_unpackhi_pd(a, b)
 #define STREAM(p, v) _mm_stream_pd(p, v)
 #endif
 #endif

@@ -65,13 +65,7 @@ HERE void NAME(tally_sum)(double *row, L x) {
 }
 
 HERE void NAME(tally_most)(double *row, L x) {
-    double a[W], b[W];
-    NAME(put)(a, x);
-    NAME(put)(b, NAME(get)(row));
-    for (int i = 0; i < W; i++) {
-        b[i] = a[i] > b[i] ? a[i] : b[i];
-    }
-    memcpy(row, b, sizeof b);
+    NAME(put)(row, NAME(larger)(x, NAME(get)(row)));
 }
 
 /* Value (u, Q) and slope (u', Q') of a point times its weight w, 14 rows. */

@@ -79,19 +79,12 @@ TARGET static int NAME(gather_nodes)(int first, int left, const double *q, const
     return NAME(are_opposed)(first, z);
 }
 
-/* n rows of nodes: lanes beyond the last have what it has, not what lies beyond it. */
-HERE void NAME(get_own)(const int whole, const int64_t *at, const int n, const double *z, L *x) {
-    SPARI_UNROLL
-    for (int i = 0; i < n; i++) {
-        x[i] = whole ? NAME(get)(z + SPARI_MAX_NODES * i) : NAME(pick)(0, at, 1, z + SPARI_MAX_NODES * i);
-    }
-}
-
-/* Forces of nodes, of the seven that they are given: delta q . g = delta theta . 1/2 Im(g q*) */
+/* Forces of nodes, of the seven that they are given: delta q . g = delta theta . 1/2 Im(g q*). What lanes beyond the
+   last node have is of no node, and overwritten. */
 HERE void NAME(add_block)(const int whole, const int64_t *at, const double *g, const double *z, double *r) {
     L q[4], back[BACK], turn[4], sum[6];
-    NAME(get_own)(whole, at, BACK, g, back);
-    NAME(get_own)(whole, at, 4, z + SPARI_MAX_NODES * Q, q);
+    NAME(get_row)(BACK, 0, g, back);
+    NAME(get_row)(4, Q, z, q);
     const L conj[4] = {q[0], -q[1], -q[2], -q[3]};
     NAME(quat_mul)(back + 3, conj, turn);
     NAME(pick_rows)(whole, at, 6, 6, r, sum);
