@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 300, WIDTHS = 4 };
+enum { MOST = 300, WIDTHS = 4, BEYOND = SPARI_MIXED_STRIPE };
 static const int widths[WIDTHS] = {2, 4, 8, 0};
 
 static double uniform(void) {
@@ -72,7 +72,7 @@ static void test_pair_is_taken(void **unused) {
     const double lambdas[] = {0.1, 0.35, 0.45};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         for (size_t l = 0; l < sizeof lambdas / sizeof *lambdas; l++) {
-            double a[6 * MOST], b[6 * MOST], x[6 * MOST], first[6 * MOST], lambda = lambdas[l];
+            double a[6 * MOST], b[6 * MOST], x[6 * MOST + BEYOND] = {0}, first[6 * MOST], lambda = lambdas[l];
             int n = 6 * counts[c];
             two_directions(n, a, b);
             spari_mixing *m = spari_mixing_create(counts[c]);
@@ -142,12 +142,12 @@ static void test_what_says_nothing(void **unused) {
         for (int fast = 0; fast < 2; fast++) {
             spari_mixing_begin(m);
             for (int it = 0; it < 6; it++) {
-                double x[N], as_it_comes[N], by = fast ? pow(0.02, it) : 1;
+                double x[N + BEYOND] = {0}, as_it_comes[N], by = fast ? pow(0.02, it) : 1;
                 for (int i = 0; i < N; i++) {
                     x[i] = as_it_comes[i] = sizes[s] * by * cos(i) * (it % 2 && fast ? -1 : 1);
                 }
                 spari_mixing_take(m, NULL, 0, 7, x);
-                assert_memory_equal(x, as_it_comes, sizeof x);
+                assert_memory_equal(x, as_it_comes, sizeof as_it_comes);
             }
         }
     }
@@ -158,7 +158,7 @@ static void test_what_says_nothing(void **unused) {
 static void test_begins_anew(void **unused) {
     (void)unused;
     enum { N = 30 };
-    double a[N], b[N], x[2][N];
+    double a[N], b[N], x[2][N + BEYOND] = {{0}};
     two_directions(N, a, b);
     spari_mixing *m = spari_mixing_create(N / 6);
     for (int run = 0; run < 2; run++) {
@@ -168,7 +168,7 @@ static void test_begins_anew(void **unused) {
         }
         spari_mixing_begin(m);
         for (int it = 0; it < 5 + 2 * run; it++) {
-            correct(m, 0, 1, N, 0.4, a, b, e, it < 5 ? x[run] : (double[N]){0});
+            correct(m, 0, 1, N, 0.4, a, b, e, it < 5 ? x[run] : (double[N + BEYOND]){0});
         }
     }
     assert_memory_equal(x[0], x[1], sizeof x[0]);

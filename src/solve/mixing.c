@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Unknowns of four nodes: lanes of every width begin with the same component. */
-enum { STRIPE = 24, SPAN = 256 * 6, VECTORS = 6 };
+enum { STRIPE = SPARI_MIXED_STRIPE, SPAN = 256 * 6, VECTORS = 6 };
 
 #define SPARI_KERNELS "../solve/mixing_lanes.h"
 #include "../math/widths.h"
@@ -42,7 +41,7 @@ static int64_t spans_of(int64_t unknowns) {
 
 spari_mixing *spari_mixing_create(int64_t nodes) {
     spari_mixing *m = spari_zalloc(1, sizeof *m);
-    int64_t n = 6 * nodes;
+    int64_t n = spari_mixed_unknowns(nodes);
     if (!m || !(m->z = spari_zalloc(VECTORS * n + SPARI_MIXED_SUMS * spans_of(n), sizeof *m->z))) {
         free(m);
         return NULL;

@@ -9,7 +9,7 @@
 #include "../base/crew.h"
 
 typedef struct spari_mixing {
-    int64_t unknowns; /* six of a node */
+    int64_t unknowns; /* six of a node, in whole stripes */
     int64_t seen;     /* corrections since the beginning */
     double *z, *c;    /* the last as the tangent has it, and as it was taken */
     double *d[2];     /* of the last two pairs, the newer first: by how much z changed, */
@@ -18,7 +18,11 @@ typedef struct spari_mixing {
     double *sums; /* [spans][SPARI_MIXED_SUMS] */
 } spari_mixing;
 
-enum { SPARI_MIXED_SUMS = 12 };
+/* Unknowns of four nodes: lanes of every width begin with the same component. */
+enum { SPARI_MIXED_SUMS = 12, SPARI_MIXED_STRIPE = 24 };
+static inline int64_t spari_mixed_unknowns(int64_t nodes) {
+    return (6 * nodes + SPARI_MIXED_STRIPE - 1) / SPARI_MIXED_STRIPE * SPARI_MIXED_STRIPE;
+}
 
 /* Of so many nodes; NULL: no memory. */
 spari_mixing *spari_mixing_create(int64_t nodes);
@@ -27,8 +31,8 @@ void spari_mixing_free(spari_mixing *mixing);
 static inline void spari_mixing_begin(spari_mixing *mixing) {
     mixing->seen = 0;
 }
-/* x [nodes][6], a correction as the tangent has it, displacements by `length` and rad, becomes the one to take. lanes:
-   at once at most, 0: what the processor has (tests try all). */
+/* x [nodes][6], a correction as the tangent has it, displacements by `length` and rad, becomes the one to take; beyond
+   it there is room for whole stripes, and zeros. lanes: at once at most, 0: what the processor has (tests try all). */
 void spari_mixing_take(spari_mixing *mixing, spari_crew *crew, int lanes, double length, double *x);
 
 #endif

@@ -3,12 +3,11 @@
 
    Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */
 
-/* The sum of a b over the unknowns from..to of whole nodes: displacements, turns. */
+/* The sum of a b over the unknowns from..to, whole stripes: displacements, turns. */
 HERE void NAME(dot)(const double *a, const double *b, int64_t from, int64_t to, double *out) {
     L sum[STRIPE / W] = {0};
     double part[STRIPE];
-    int64_t i = from;
-    for (; i + STRIPE <= to; i += STRIPE) {
+    for (int64_t i = from; i < to; i += STRIPE) {
         SPARI_UNROLL
         for (int v = 0; v < STRIPE / W; v++) {
             sum[v] = sum[v] + NAME(get)(a + i + W * v) * NAME(get)(b + i + W * v);
@@ -16,9 +15,6 @@ HERE void NAME(dot)(const double *a, const double *b, int64_t from, int64_t to, 
     }
     for (int v = 0; v < STRIPE / W; v++) {
         NAME(put)(part + W * v, sum[v]);
-    }
-    for (int k = 0; i + k < to; k++) {
-        part[k] += a[i + k] * b[i + k];
     }
     for (int side = 0; side < 2; side++) {
         const double *p = part + 3 * side;
@@ -31,15 +27,10 @@ HERE void NAME(dot)(const double *a, const double *b, int64_t from, int64_t to, 
 TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums) {
     const double *old = m->d[0];
     double *z = m->z, *d = m->d[1];
-    int64_t i = from;
-    for (; i + W <= to; i += W) {
+    for (int64_t i = from; i < to; i += W) {
         L now = NAME(get)(x + i);
         NAME(put)(d + i, now - NAME(get)(z + i));
         NAME(put)(z + i, now);
-    }
-    for (; i < to; i++) {
-        d[i] = x[i] - z[i];
-        z[i] = x[i];
     }
     NAME(dot)(d, d, from, to, sums);
     NAME(dot)(d, old, from, to, sums + 2);
@@ -54,8 +45,7 @@ TARGET static void NAME(mix)(const spari_mixing *m, const double *by, double *x,
     const double *d = m->d[0], *old = m->w[1], newer = by[0], older = by[1];
     double *c = m->c, *w = m->w[0];
     const int mixes = newer != 0 || older != 0;
-    int64_t i = from;
-    for (; i + W <= to; i += W) {
+    for (int64_t i = from; i < to; i += W) {
         L pair = NAME(get)(c + i) + NAME(get)(d + i);
         L now = NAME(get)(x + i);
         if (mixes) {
@@ -64,9 +54,5 @@ TARGET static void NAME(mix)(const spari_mixing *m, const double *by, double *x,
         NAME(put)(w + i, pair);
         NAME(put)(c + i, now);
         NAME(put)(x + i, now);
-    }
-    for (; i < to; i++) {
-        w[i] = c[i] + d[i];
-        c[i] = x[i] = mixes ? x[i] - newer * w[i] - older * old[i] : x[i];
     }
 }

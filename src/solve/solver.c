@@ -31,12 +31,14 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     }
     double **sixes[] = {&s->increment, &s->steps.load, &s->steps.load0, &s->steps.load1, &s->r, &s->dx, &s->leapt};
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
-        ok = ok && (*sixes[k] = spari_zalloc(6 * n, sizeof(double))) != NULL;
+        ok = ok && (*sixes[k] = spari_zalloc(spari_mixed_unknowns(n), sizeof(double))) != NULL;
     }
     ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) != NULL;
     ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
-    ok = ok && (s->most = spari_zalloc((n + SPARI_SPAN - 1) / SPARI_SPAN, sizeof(double)));
+    const int64_t spans = (n + SPARI_SPAN - 1) / SPARI_SPAN;
+    ok = ok && (s->most = spari_zalloc(2 * spans, sizeof(double)));
+    s->most_by = ok ? s->most + spans : NULL;
     ok = ok && (s->mixing = spari_mixing_create(n));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {

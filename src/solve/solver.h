@@ -32,10 +32,10 @@ struct spari_solver {
     double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
     spari_steps steps;
     double *r, *dx;
-    double *leapt;  /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
-    double h_leapt; /* 0: none */
-    double *best;   /* static: state to go back to */
-    double *most;   /* [spans of nodes] the largest of each: spari_solver_most */
+    double *leapt;          /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
+    double h_leapt;         /* 0: none */
+    double *best;           /* static: state to go back to */
+    double *most, *most_by; /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
     spari_linear *linear;
     spari_mixing *mixing;       /* of a solution's corrections; nothing of it lasts longer */
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
@@ -94,12 +94,15 @@ static inline void spari_solver_spread(const spari_solver *solver, spari_span wo
     spari_crew_spread(solver->body->crew ? *solver->body->crew : NULL, solver->n, SPARI_SPAN, work, context);
 }
 /* The largest of the spans'. */
-static inline double spari_solver_most(const spari_solver *solver) {
-    double most = solver->most[0];
+static inline double spari_solver_largest(const spari_solver *solver, const double *spans) {
+    double most = spans[0];
     for (int k = 1; k < (solver->n + SPARI_SPAN - 1) / SPARI_SPAN; k++) {
-        most = solver->most[k] > most ? solver->most[k] : most;
+        most = spans[k] > most ? spans[k] : most;
     }
     return most;
+}
+static inline double spari_solver_most(const spari_solver *solver) {
+    return spari_solver_largest(solver, solver->most);
 }
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
