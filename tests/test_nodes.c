@@ -344,6 +344,43 @@ static void test_steps(void **unused) {
     }
 }
 
+/* All of a correction at once has the bits that its parts have one after the other. */
+static void check_at_once(int n, double angle, int turned, int rooted) {
+    substep s;
+    random_substep(n, angle, 0, &s);
+    for (int k = 0; k < WIDTHS; k++) {
+        substep own[2] = {s, s};
+        spari_node_size size[2][2];
+        for (int j = 0; j < 2; j++) {
+            double *room = own[j].room[1];
+            spari_state from = {s.room[0], s.room[0] + 7 * MOST, s.room[0] + 13 * MOST, s.room[0] + 19 * MOST};
+            spari_state to = {room, room + 7 * MOST, room + 13 * MOST, room + 19 * MOST};
+            spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &from, .to = &to, .cut = 1};
+            t.x = own[j].x, t.dx = own[j].dx, t.turn = turned ? s.turn : NULL, t.R = rooted ? s.R : NULL;
+            if (j == 0) {
+                size[j][0] = spari_nodes_take(&t, 0, n);
+                spari_nodes_correct(&t, 0, n);
+                size[j][1] = spari_nodes_place(&t, 0, n);
+            } else {
+                spari_nodes_advance(&t, 0, n, &size[j][0], &size[j][1]);
+            }
+        }
+        assert_memory_equal(own[0].room[1], own[1].room[1], sizeof s.room[1]);
+        assert_memory_equal(own[0].x, own[1].x, sizeof s.x);
+        assert_memory_equal(own[0].dx, own[1].dx, sizeof s.dx);
+        assert_memory_equal(size[0], size[1], sizeof size[0]);
+    }
+}
+
+static void test_at_once(void **unused) {
+    (void)unused;
+    for (int n = 1; n <= MOST; n++) {
+        for (int k = 0; k < 4 * ANGLES; k++) {
+            check_at_once(n, angles[k / 4], k & 1, k & 2);
+        }
+    }
+}
+
 /* ---- seen from outside ---- */
 
 /* x = X + R (r + u), its velocity and acceleration by the rules for a frame that moves, in global axes. */
@@ -521,7 +558,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_turns),           cmocka_unit_test(test_corrections), cmocka_unit_test(test_places),
         cmocka_unit_test(test_no_number),       cmocka_unit_test(test_steps),       cmocka_unit_test(test_show),
-        cmocka_unit_test(test_starting_values),
+        cmocka_unit_test(test_starting_values), cmocka_unit_test(test_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

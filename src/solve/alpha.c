@@ -37,9 +37,13 @@ static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *
     return work;
 }
 
+static double size_of_span(const alpha_nodes *t, spari_node_size size) {
+    return fmax(sqrt(size.way) / t->s->body->length, sqrt(size.turn));
+}
+
 /* What a span says of its largest. */
 static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
-    t->s->most[from / SPARI_SPAN] = fmax(sqrt(size.way) / t->s->body->length, sqrt(size.turn));
+    t->s->most[from / SPARI_SPAN] = size_of_span(t, size);
 }
 
 /* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
@@ -282,6 +286,15 @@ static void correct_span(void *context, int64_t from, int64_t to) {
     put_size(t, from, spari_nodes_place(&t->work, from, to));
 }
 
+/* Both at once where nothing is cut. */
+static void advance_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    spari_node_size by, way;
+    spari_nodes_advance(&t->work, from, to, &by, &way);
+    put_size(t, from, way);
+    t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
+}
+
 /* Sizes of a correction and of what it led to: relative to the member's length for translations, in radians for
    rotations. */
 typedef struct corrected {
@@ -297,6 +310,11 @@ static corrected correct_turned(const spari_solver *s, const spar_member *member
     t.work.dx = dx, t.work.turn = turn, t.work.R = e->root ? R : NULL;
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
+    }
+    if (longest == INFINITY && !c->still) {
+        spari_solver_spread(s, advance_span, &t);
+        spari_root_show(s, member, e);
+        return (corrected){spari_solver_largest(s, s->most_by), spari_solver_most(s)};
     }
     spari_solver_spread(s, take_increments, &t);
     largest = spari_solver_most(s);

@@ -17,14 +17,25 @@
 
 /* ---- the exponential map ---- */
 
-/* c[0] + x (c[1] + x (... */
+/* c[0] + c[1] x + c[2] x^2 + ..., in pairs, and pairs of them: a vector waits for four products in a row, not for n. */
 HERE L NAME(series)(const int n, const double *c, L x) {
-    L y = SPLAT(c + n - 1);
+    L y[5], power = x;
     SPARI_UNROLL
-    for (int k = n - 2; k >= 0; k--) {
-        y = y * x + SPLAT(c + k);
+    for (int k = 0; k < n; k += 2) {
+        y[k / 2] = SPLAT(c + k);
+        if (k + 1 < n) {
+            y[k / 2] = y[k / 2] + x * SPLAT(c + k + 1);
+        }
     }
-    return y;
+    SPARI_UNROLL
+    for (int m = (n + 1) / 2; m > 1; m = (m + 1) / 2) {
+        power = power * power;
+        SPARI_UNROLL
+        for (int k = 0; k < m; k += 2) {
+            y[k / 2] = k + 1 < m ? y[k] + power * y[k + 1] : y[k];
+        }
+    }
+    return y[0];
 }
 
 /* The lanes whose angle is large: what the series are no good for. */
@@ -141,21 +152,30 @@ TARGET static void NAME(turn_forth)(const spari_node_work *t, int64_t from, int6
 
 /* ---- corrections ---- */
 
-/* psi, and omega^n, which is not looked at without inertia. */
-HERE void NAME(rotations)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, const L *x, L *psi,
-                          L *before) {
-    const double part = t->c->h * t->c->h / 12;
-    L rate[3], turn[3];
+/* psi of the increment and the rates at both ends, which are not looked at without inertia. */
+HERE void NAME(rotations)(const spari_scheme *c, const L *x, const L *rate, const L *before, L *psi) {
+    const double part = c->h * c->h / 12;
+    L turn[3];
     for (int k = 0; k < 3; k++) {
-        psi[k] = x[3 + k];
+        psi[k] = x[k];
     }
-    if (!t->c->still) {
-        NAME(pick_rows)(whole, at, 6, 3, t->to->v + 6 * i + 3, rate);
-        NAME(pick_rows)(whole, at, 6, 3, t->from->v + 6 * i + 3, before);
+    if (!c->still) {
         NAME(cross)(rate, before, turn);
         for (int k = 0; k < 3; k++) {
             psi[k] = psi[k] + part * turn[k];
         }
+    }
+}
+
+/* Angular velocities at both ends. */
+HERE void NAME(pick_spins)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *rate,
+                           L *before) {
+    for (int k = 0; k < 3; k++) {
+        rate[k] = before[k] = (L){0};
+    }
+    if (!t->c->still) {
+        NAME(pick_rows)(whole, at, 6, 3, t->to->v + 6 * i + 3, rate);
+        NAME(pick_rows)(whole, at, 6, 3, t->from->v + 6 * i + 3, before);
     }
 }
 
@@ -177,21 +197,31 @@ HERE spari_node_size NAME(size_of)(const L *size) {
     return (spari_node_size){NAME(largest)(0, size[0]), NAME(largest)(0, size[1])};
 }
 
-HERE void NAME(take_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {
-    L d[6], x[6], psi[3], before[3] = {0};
-    NAME(pick_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
+/* d of nodes with psi, as the tangent has it, becomes what x has to lose. */
+HERE void NAME(to_increments)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *d) {
     if (t->turn) {
         NAME(turn_forth_block)(whole, at, t, i, d);
     }
     for (int k = 0; k < 6 && t->R; k += 3) {
         NAME(matrix_times_back)(t->R, d + k, d + k);
     }
-    NAME(pick_rows)(whole, at, 6, 3, t->x + 6 * i + 3, x + 3);
-    NAME(rotations)(whole, at, t, i, x, psi, before);
+}
+
+HERE void NAME(through_rotations)(const spari_scheme *c, const L *psi, const L *before, L *d) {
     NAME(tangent_inverse)(psi, d + 3);
-    if (!t->c->still) {
-        NAME(without_spin)(t->c->h * t->c->h * t->c->cv / 12, before, d + 3);
+    if (!c->still) {
+        NAME(without_spin)(c->h * c->h * c->cv / 12, before, d + 3);
     }
+}
+
+HERE void NAME(take_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {
+    L d[6], x[3], psi[3], rate[3], before[3];
+    NAME(pick_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
+    NAME(to_increments)(whole, at, t, i, d);
+    NAME(pick_rows)(whole, at, 6, 3, t->x + 6 * i + 3, x);
+    NAME(pick_spins)(whole, at, t, i, rate, before);
+    NAME(rotations)(t->c, x, rate, before, psi);
+    NAME(through_rotations)(t->c, psi, before, d);
     NAME(sizes_of)(d, size);
     NAME(drop_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
 }
@@ -254,11 +284,11 @@ TARGET static int64_t NAME(predict)(const spari_node_work *t, int64_t from, int6
 
 /* ---- places ---- */
 
-HERE void NAME(place_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {
-    L x[6], psi[3], before[3] = {0}, p[4], from[7], q[7];
-    NAME(pick_rows)(whole, at, 6, 6, t->x + 6 * i, x);
+/* Where increments x with rotation vectors psi lead. */
+HERE void NAME(put_places)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, const L *x,
+                           const L *psi) {
+    L p[4], from[7], q[7];
     NAME(pick_rows)(whole, at, 7, 7, t->from->q + 7 * i, from);
-    NAME(rotations)(whole, at, t, i, x, psi, before);
     for (int k = 0; k < 3; k++) {
         q[k] = from[k] + x[k];
     }
@@ -268,8 +298,16 @@ HERE void NAME(place_block)(const int whole, const int64_t *at, const spari_node
     for (int k = 3; k < 7; k++) {
         q[k] = q[k] * over;
     }
-    NAME(sizes_of)(x, size);
     NAME(drop_rows)(whole, at, 7, 7, t->to->q + 7 * i, q);
+}
+
+HERE void NAME(place_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {
+    L x[6], psi[3], rate[3], before[3];
+    NAME(pick_rows)(whole, at, 6, 6, t->x + 6 * i, x);
+    NAME(pick_spins)(whole, at, t, i, rate, before);
+    NAME(rotations)(t->c, x + 3, rate, before, psi);
+    NAME(sizes_of)(x, size);
+    NAME(put_places)(whole, at, t, i, x, psi);
 }
 
 TARGET static spari_node_size NAME(place)(const spari_node_work *t, int64_t from, int64_t to) {
@@ -282,6 +320,52 @@ TARGET static spari_node_size NAME(place)(const spari_node_work *t, int64_t from
         t->to->a[i] = t->to->b[i] = 0;
     }
     return NAME(size_of)(size);
+}
+
+/* ---- all of a correction ---- */
+
+/* Adds by step to what nodes have six of. */
+HERE void NAME(add_to_rows)(const int whole, const int64_t *at, double by, const L *step, double *to, L *x) {
+    NAME(pick_rows)(whole, at, 6, 6, to, x);
+    for (int k = 0; k < 6; k++) {
+        x[k] = x[k] + by * step[k];
+    }
+    NAME(drop_rows)(whole, at, 6, 6, to, x);
+}
+
+/* take_block, correct and place_block at once, nothing of the correction cut. */
+HERE void NAME(advance_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *by, L *way) {
+    const spari_scheme *c = t->c;
+    const spari_state *to = t->to;
+    L d[6], x[6], v[6], psi[3], rate[3], before[3];
+    NAME(pick_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
+    NAME(to_increments)(whole, at, t, i, d);
+    NAME(pick_rows)(whole, at, 6, 3, t->x + 6 * i + 3, x);
+    NAME(pick_spins)(whole, at, t, i, rate, before);
+    NAME(rotations)(c, x, rate, before, psi);
+    NAME(through_rotations)(c, psi, before, d);
+    NAME(sizes_of)(d, by);
+    NAME(drop_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
+    for (int k = 0; k < 6; k++) {
+        d[k] = -d[k];
+    }
+    NAME(add_to_rows)(whole, at, c->cm, d, to->a + 6 * i, v);
+    NAME(add_to_rows)(whole, at, c->cb, d, to->b + 6 * i, v);
+    NAME(add_to_rows)(whole, at, c->rate, d, to->v + 6 * i, v);
+    NAME(add_to_rows)(whole, at, 1, d, t->x + 6 * i, x);
+    NAME(rotations)(c, x + 3, v + 3, before, psi);
+    NAME(sizes_of)(x, way);
+    NAME(put_places)(whole, at, t, i, x, psi);
+}
+
+TARGET static void NAME(advance)(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by,
+                                 spari_node_size *way) {
+    L size[2] = {0}, went[2] = {0};
+#define WORK(whole) NAME(advance_block)(whole, at, t, i, size, went);
+    EACH_BLOCK(from, to, WORK)
+#undef WORK
+    *by = NAME(size_of)(size);
+    *way = NAME(size_of)(went);
 }
 
 HERE void NAME(size_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *size) {

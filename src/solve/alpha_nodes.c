@@ -38,6 +38,7 @@ typedef struct node_kernels {
     spari_node_size (*sized[SIZED])(const spari_node_work *t, int64_t from, int64_t to);
     int64_t (*predict)(const spari_node_work *t, int64_t from, int64_t to);
     void (*correct)(const spari_node_work *t, int64_t from, int64_t to);
+    void (*advance)(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by, spari_node_size *way);
     void (*show)(const spari_root_view *t, int64_t from, int64_t to);
     void (*look)(const spari_root_view *t, int64_t from, int64_t to);
     void (*lose)(const spari_root_jump *t, int64_t from, int64_t to);
@@ -47,7 +48,7 @@ typedef struct node_kernels {
     {                                                                                                                  \
         (int)(sizeof(lanes_##set) / sizeof(double)), turn_back_##set, turn_forth_##set,                                \
             {[TAKE] = take_##set, [PLACE] = place_##set, [SIZE] = size_##set}, predict_##set, correct_##set,           \
-            show_##set, look_##set, lose_##set                                                                         \
+            advance_##set, show_##set, look_##set, lose_##set                                                          \
     }
 static const node_kernels plain_nodes = NODE_KERNELS(plain);
 #ifdef SPARI_X86
@@ -80,12 +81,15 @@ static const node_kernels *kernels_from(int lanes, int64_t from, int64_t to, int
     return kernel;
 }
 
+static spari_node_size larger_of(spari_node_size a, spari_node_size b) {
+    return (spari_node_size){fmax(a.way, b.way), fmax(a.turn, b.turn)};
+}
+
 static spari_node_size largest_of(int pass, const spari_node_work *t, int64_t from, int64_t to) {
     spari_node_size size = {0, 0};
     for (int64_t end; from < to; from = end) {
-        spari_node_size more = kernels_from(t->lanes, from, to, &end)->sized[pass](t, from, end);
-        size.way = fmax(size.way, more.way);
-        size.turn = fmax(size.turn, more.turn);
+        const node_kernels *kernel = kernels_from(t->lanes, from, to, &end);
+        size = larger_of(size, kernel->sized[pass](t, from, end));
     }
     return size;
 }
@@ -125,6 +129,17 @@ void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
 
 spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_t to) {
     return largest_of(PLACE, t, from, to);
+}
+
+void spari_nodes_advance(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by,
+                         spari_node_size *way) {
+    *by = *way = (spari_node_size){0, 0};
+    for (int64_t end; from < to; from = end) {
+        spari_node_size size, went;
+        kernels_from(t->lanes, from, to, &end)->advance(t, from, end, &size, &went);
+        *by = larger_of(*by, size);
+        *way = larger_of(*way, went);
+    }
 }
 
 spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t to) {

@@ -58,6 +58,8 @@ void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to);
    omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly: the scheme stays of second
    order and reversible, and a fast spin about an axis that turns no longer drifts off its axis. The size of x. */
 spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_t to);
+/* take, correct and place at once, with inertia and nothing cut: the same bits. by, way: what take and place answer. */
+void spari_nodes_advance(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by, spari_node_size *way);
 /* The size of x. */
 spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t to);
 /* seen := own, seen from outside. */
