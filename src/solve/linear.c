@@ -23,6 +23,9 @@ enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 /* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
 enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 
+/* An element's first unknowns, so many at most, are left out of a dense matrix where they are fixed. */
+enum { MOST_LEAD = 8 };
+
 /* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
    it got any.
 
@@ -41,6 +44,9 @@ struct spari_linear {
     gsl_matrix *A;   /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
     int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
     int *order;      /* dense: where row i came from by all of these */
+    unsigned fixed;  /* dense, of one element: which of its first unknowns are taken out */
+    size_t lead;     /* dense: so many of them that stand in A no longer */
+    size_t order_of; /* dense: unknowns in A when it is factored */
     double *corners; /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
     double *y;       /* dense: [n, rounded up to eights] room */
     double *room;    /* of the last two */
@@ -199,6 +205,7 @@ void spari_linear_share(spari_linear *s, spari_crew *const *crew) {
 }
 
 void spari_linear_zero(spari_linear *s) {
+    s->fixed = 0;
     if (s->ends) {
         memset(s->parts, 0, (size_t)s->elements * (size_t)(s->block * s->block) * sizeof *s->parts);
         return;
@@ -345,6 +352,7 @@ void spari_linear_fix(spari_linear *s, int i) {
     }
     if (at < s->size) {
         fix_part(s, at, 1);
+        s->fixed |= at < MOST_LEAD ? 1U << at : 0;
     }
     if (s->far && at >= s->inner) {
         fix_part(s->far, s->n - 1 - at, at >= s->size);
@@ -390,19 +398,41 @@ static const linear_kernels *kernels_here(void) {
     return &plain_linear;
 }
 
+/* Before a dense matrix is factored: the unknowns that a root holds, where they are the first, go out of it, and the
+   others become the first. What they lack to whole eights, which solutions take faster than what is left over, others
+   of their own make up. */
+static void leave_out_lead(spari_linear *s, unsigned fixed) {
+    const size_t lead = (size_t)s->overlap, step = s->A->tda, left = s->n > lead ? s->n - lead : 0;
+    const size_t eights = (left + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
+    const unsigned all = lead <= MOST_LEAD ? (1U << lead) - 1 : 0;
+    s->lead = 0, s->order_of = s->n;
+    if (s->elements != 1 || all == 0 || (fixed & all) != all || left == 0 || eights > s->n) {
+        return;
+    }
+    s->lead = lead, s->order_of = eights;
+    for (size_t j = 0; j < eights; j++) {
+        double *column = s->A->data + step * j;
+        size_t own = j < left ? left : 0;
+        memmove(column, column + (own ? (step + 1) * lead : 0), own * sizeof *column);
+        memset(column + own, 0, (eights - own) * sizeof *column);
+        column[j] = own ? column[j] : 1;
+    }
+}
+
 /* What a dense solution takes beyond the factors; loaded: these were not found here, with a part of it. */
 static void ready_dense(spari_linear *s, int loaded) {
     double *corner = s->corners;
-    for (size_t i = 0; i < s->n; i++) {
+    const size_t n = s->order_of;
+    for (size_t i = 0; i < n; i++) {
         s->order[i] = (int)i;
     }
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 0; i < n; i++) {
         int there = s->order[s->swap[i] - 1];
         s->order[s->swap[i] - 1] = s->order[i];
         s->order[i] = there;
     }
-    for (size_t j = 0; j < s->n; j += SPARI_CORNER, corner += SPARI_CORNERS * SPARI_CORNER * SPARI_CORNER) {
-        kernels_here()->corner((int64_t)s->n, (int64_t)j, loaded, s->A->data, (int64_t)s->A->tda, corner);
+    for (size_t j = 0; j < n; j += SPARI_CORNER, corner += SPARI_CORNERS * SPARI_CORNER * SPARI_CORNER) {
+        kernels_here()->corner((int64_t)n, (int64_t)j, loaded, s->A->data, (int64_t)s->A->tda, corner);
     }
 }
 
@@ -414,8 +444,9 @@ static int factor_part(spari_linear *s) {
     int bad = 0;
     double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
     if (s->swap) {
-        bad = kernels_here()->factor_dense((int64_t)s->n, (int64_t)s->n, least, s->A->data, (int64_t)s->A->tda, s->swap,
-                                           s->corners);
+        leave_out_lead(s, s->fixed);
+        bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A->data,
+                                           (int64_t)s->A->tda, s->swap, s->corners);
     } else {
         bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
                                           (int64_t)s->A->tda, s->band_swap->data);
@@ -423,7 +454,7 @@ static int factor_part(spari_linear *s) {
     if (bad) {
         return 1;
     }
-    for (size_t i = 0; i < s->inner; i++) {
+    for (size_t i = 0; i < (s->swap ? s->order_of : s->inner); i++) {
         double pivot = fabs(*entry(s, i, i));
         if (!(pivot > 0) || !isfinite(pivot)) {
             return 1;
@@ -546,7 +577,7 @@ int spari_linear_sign(const spari_linear *s) {
         return sign_of_elements(s) * spari_linear_sign(s->ends);
     }
     int sign = s->far ? spari_linear_sign(s->far) * spari_linear_sign(s->joint) : 1;
-    for (size_t i = 0; i < s->inner; i++) {
+    for (size_t i = 0; i < (s->swap ? s->order_of : s->inner); i++) {
         size_t from = s->swap ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
@@ -732,6 +763,22 @@ static int solve_by_ends(spari_linear *s, double *x) {
     return is_any_bad(s) || bad;
 }
 
+static int solve_left(spari_linear *s, double *x) {
+    const int64_t left = (int64_t)(s->n - s->lead), n = (int64_t)s->order_of;
+    double poison = 0;
+    for (size_t i = 0; i < s->lead; i++) {
+        poison += 0 * x[i];
+    }
+    x += s->lead;
+    for (int64_t i = 0; i < left; i++) {
+        s->y[i] = x[s->order[i]];
+    }
+    memset(s->y + left, 0, (size_t)(n - left) * sizeof *x);
+    int bad = kernels_here()->dense(n, s->A->data, (int64_t)s->A->tda, s->corners, s->y);
+    memcpy(x, s->y, (size_t)left * sizeof *x);
+    return bad || poison != 0;
+}
+
 int spari_linear_solve(spari_linear *s, double *x) {
     int64_t n = (int64_t)s->n;
     if (s->ends) {
@@ -741,12 +788,7 @@ int spari_linear_solve(spari_linear *s, double *x) {
         return solve_halves(s, x);
     }
     if (s->swap) {
-        for (int64_t i = 0; i < n; i++) {
-            s->y[i] = x[s->order[i]];
-        }
-        int bad = kernels_here()->dense(n, s->A->data, (int64_t)s->A->tda, s->corners, s->y);
-        memcpy(x, s->y, s->n * sizeof *x);
-        return bad;
+        return solve_left(s, x);
     }
     forth_part(s, x);
     back_part(s, x);
@@ -809,16 +851,63 @@ int64_t spari_linear_state_size(const spari_linear *s) {
     return part_size(s) + (s->far ? part_size(s->far) + part_size(s->joint) : 0);
 }
 
+/* Column i of the factors, with the unknowns that are left out of them. */
+static void save_dense(const spari_linear *s, size_t i, double *column) {
+    const size_t lead = s->lead;
+    if (lead == 0) {
+        memcpy(column, s->A->data + i * s->A->tda, s->A->size2 * sizeof *column);
+        return;
+    }
+    memset(column, 0, s->n * sizeof *column);
+    if (i < lead) {
+        column[i] = 1;
+    } else {
+        memcpy(column + lead, s->A->data + (i - lead) * s->A->tda, (s->n - lead) * sizeof *column);
+    }
+}
+
+/* Which of the first unknowns of loaded factors had been taken out. */
+static unsigned fixed_of(const spari_linear *s) {
+    unsigned fixed = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        if (s->swap[i] <= (int)i) { /* not of factors that were found here */
+            return 0;
+        }
+    }
+    for (size_t i = 0; i < MOST_LEAD && i < s->n; i++) {
+        int unit = s->swap[i] == (int)i + 1 && *entry(s, i, i) == 1;
+        for (size_t j = 0; j < s->n; j++) {
+            unit = unit && (j == i || (*entry(s, i, j) == 0 && *entry(s, j, i) == 0));
+        }
+        fixed |= unit ? 1U << i : 0;
+    }
+    return fixed;
+}
+
+/* Factors that stand in A with all unknowns. */
+static void load_dense(spari_linear *s) {
+    leave_out_lead(s, fixed_of(s));
+    for (size_t i = 0; i + s->lead < s->n && s->lead > 0; i++) {
+        s->swap[i] = s->swap[i + s->lead] - (int)s->lead;
+    }
+    for (size_t i = s->n - s->lead; i < s->order_of; i++) {
+        s->swap[i] = (int)i + 1;
+    }
+    ready_dense(s, 1);
+}
+
 void spari_linear_save(const spari_linear *s, double *state) {
     if (s->ends) {
         save_chain(s, state);
         return;
     }
     for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
-        memcpy(state, s->A->data + i * s->A->tda, s->A->size2 * sizeof *state);
+        save_dense(s, i, state);
     }
     for (size_t i = 0; i < s->inner; i++) {
-        state[i] = s->swap ? s->swap[i] : (double)gsl_vector_uint_get(s->band_swap, i);
+        state[i] = !s->swap      ? (double)gsl_vector_uint_get(s->band_swap, i)
+                   : i < s->lead ? (double)(i + 1)
+                                 : (double)s->lead + s->swap[i - s->lead];
     }
     if (s->far) {
         spari_linear_save(s->far, state + s->inner);
@@ -858,7 +947,7 @@ void spari_linear_load(spari_linear *s, const double *state) {
         }
     }
     if (s->swap) {
-        ready_dense(s, 1);
+        load_dense(s);
     }
     if (s->far) {
         spari_linear_load(s->far, state + s->inner);
