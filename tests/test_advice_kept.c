@@ -162,6 +162,77 @@ static void test_periods_are_resolved(void **state) {
     assert_true(period / dt[1] < 10);
 }
 
+/* ---- what adds up over the run ---- */
+
+/* A cylinder on a spring whose wake drives it until its drag stops it, and waves: z'' = 0.1 sin 3 t + 0.3 z' - 3 z'^3 -
+   16 z. */
+typedef struct cylinder {
+    spar_session *s;
+    spar_member *b;
+    spar_fluid *f;
+} cylinder;
+
+static double wake(double t, double z, double v) {
+    return 0.1 * sin(3 * t) + 0.3 * v - 3 * v * v * v - 16 * z;
+}
+
+static int flow(spar_session *s, double t, double dt, int iteration, void *context) {
+    cylinder *c = context;
+    double x[3] = {0}, v[3] = {0}, force[3] = {0};
+    (void)s, (void)iteration;
+    int status = spar_fluid_pull_motion(c->f, 1, x, v);
+    force[2] = wake(t + dt, x[2], v[2]);
+    return status ? status : spar_fluid_push_forces(c->f, force, NULL);
+}
+
+/* Runge and Kutta's step. */
+static void step_exactly(double t, double h, double *z, double *v) {
+    const double c[4] = {0, 0.5, 0.5, 1};
+    double dz[5] = {0}, dv[5] = {0}, sz = 0, sv = 0;
+    for (int k = 0; k < 4; k++) {
+        double at = *v + c[k] * h * dv[k];
+        dv[k + 1] = wake(t + c[k] * h, *z + c[k] * h * dz[k], at);
+        dz[k + 1] = at;
+        sz += (k % 3 == 0 ? 1 : 2) * dz[k + 1] / 6, sv += (k % 3 == 0 ? 1 : 2) * dv[k + 1] / 6;
+    }
+    *z += h * sz, *v += h * sv;
+}
+
+/* The phase drifts all the time and the motion has not yet come to its limit cycle in the trials: over ten times them
+   it is off by no more than is said. What loads that are predicted in place of iterated do to the phase is nothing that
+   the steps alone would show. */
+static void test_phase_adds_up(void **state) {
+    (void)state;
+    const double tolerance = 6e-2, step = 0.05, zero[3] = {0}, length = 10 * 128 * step;
+    double M[36], advice[SPAR_ADVICE_COUNT], dt, z = 0, v = 0, difference = 0, size = 0;
+    cylinder c = {.s = scene_session()};
+    scene_diagonal(M, 1, 1, 1, 1, 1, 1);
+    OK(c.s, spar_rigid_create(c.s, "cylinder", zero, NULL, M, &c.b));
+    OK(c.s, spar_member_commit(c.b));
+    OK(c.s, spar_fluid_create(c.b, "water", &c.f));
+    OK(c.s, spar_fluid_set_motion_nodes(c.f, 1, zero));
+    OK(c.s, spar_fluid_set_force_nodes(c.f, 1, zero));
+    OK(c.s, spar_fluid_map(c.f));
+    OK(c.s, spar_session_advise(c.s, tolerance, step, 128, length, NULL, flow, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.s, spar_session_apply_advice(c.s, &dt));
+    for (int i = 0; (i + 1) * dt <= length * (1 + 1e-9); i++) {
+        enum { PARTS = 4 };
+        double q[7];
+        for (int k = 0; k < PARTS; k++) {
+            step_exactly((i + (double)k / PARTS) * dt, dt / PARTS, &z, &v);
+        }
+        OK(c.s, spar_step(c.s, dt, flow, &c, NULL));
+        OK(c.s, spar_member_get_motion(c.b, q, NULL, NULL));
+        difference += (q[2] - z) * (q[2] - z);
+        size += z * z;
+    }
+    double error = sqrt(difference / size);
+    print_message("asked for %g: dt %.4g, said %.3g, is %.3g over ten times the trials\n", tolerance, dt,
+                  advice[SPAR_ADVICE_ERROR], error);
+    assert_true(error <= advice[SPAR_ADVICE_ERROR] && advice[SPAR_ADVICE_ERROR] <= tolerance);
+    spar_session_destroy(&c.s);
+}
+
 /* ---- what is asked for ---- */
 
 /* A rod of 1 m and 1 kg on a hinge falls from the horizontal through still air. */
@@ -310,9 +381,9 @@ static void test_limit(void **state) {
     spar_session_destroy(&p.s);
 }
 
-/* What finding cheaper settings costs, beside what it takes to know which keep the tolerance, is less than what they
-   save in ten times the trials; all of asking too, against a session that keeps the tolerance by much. Of one that is
-   as advised nothing more is saved: trials are left out. */
+/* Of a session that keeps the tolerance by much all of asking costs 0.6 of what it saves in ten times the trials at
+   most; what finding cheaper settings costs is the lesser part of it. Of one that is as advised nothing more is saved:
+   trials are left out. */
 static void test_pays_for_itself(void **state) {
     (void)state;
     const double tolerance = 3e-2, step = 0.02;
@@ -326,8 +397,8 @@ static void test_pays_for_itself(void **state) {
     print_message("with dt/4: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n",
                   advice[SPAR_ADVICE_COST], showing, finding, advice[SPAR_ADVICE_SAVES], advice[SPAR_ADVICE_SKIPPED]);
     assert_true(advice[SPAR_ADVICE_PRESENT_ERROR] <= tolerance);
-    assert_true(showing > 1 && finding >= 0 && finding <= advice[SPAR_ADVICE_SAVES]);
-    assert_true(advice[SPAR_ADVICE_WORK] <= 10 * (1 - advice[SPAR_ADVICE_COST]));
+    assert_true(showing > 1 && finding >= 0 && finding <= 0.5 * showing && advice[SPAR_ADVICE_SAVES] > 0);
+    assert_true(advice[SPAR_ADVICE_WORK] <= 0.6 * 10 * (1 - advice[SPAR_ADVICE_COST]));
     OK(p.s, spar_session_apply_advice(p.s, &dt));
     int64_t steps = 8 * (int64_t)floor(STEPS * step / dt / 8);
     OK(p.s,
@@ -346,6 +417,7 @@ int main(void) {
         cmocka_unit_test(test_bad_lengths),         cmocka_unit_test(test_goals),
         cmocka_unit_test(test_goal_input),          cmocka_unit_test(test_limit),
         cmocka_unit_test(test_pays_for_itself),     cmocka_unit_test(test_periods_are_resolved),
+        cmocka_unit_test(test_phase_adds_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -324,6 +324,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
     *p = rough->plan;
     memcpy(p->group, finest->group, sizeof p->group);
     p->newton = fmax(p->newton, spari_rule.rough_newton * d->tolerance);
+    p->predictor = 1;
     if (!d->session->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
         spari_plan q = *p;
         q.scheme = SPAR_COUPLING_EXPLICIT;
@@ -693,6 +694,17 @@ static spari_outcome next_best(spari_advisor *d, const spari_plan *drifts, int s
     return next;
 }
 
+/* What a look at settings may cost at most, in a trial's time: beyond what there is to take in their place they are not
+   wanted, whatever the look would show. What drifts away makes Newton work. */
+static double most_of_look(const spari_advisor *d, const spari_outcome *now, const spari_plan *looked) {
+    double most = d->good_as_is ? now->cost : INFINITY;
+    for (int k = 0; k < d->known_count; k++) {
+        const spari_outcome *o = &d->known[k];
+        most = spari_plan_is_good(d, o) && !is_no_stabler(&o->plan, looked) ? fmin(most, o->cost) : most;
+    }
+    return spari_rule.at_most * most;
+}
+
 /* In place of what drifts away: the other predictor, what iterates; finer steps; whatever is known and dearer. */
 static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_plan *drifts, spari_outcome *best) {
     spari_plan p = *drifts;
@@ -724,7 +736,7 @@ static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome
             return SPAR_OK;
         }
         double before = d->spent;
-        SPARI_TRY(spari_plan_stays(d, &best->plan, k < spari_rule.trusted, &stays));
+        SPARI_TRY(spari_plan_stays(d, &best->plan, k < spari_rule.trusted, most_of_look(d, now, &best->plan), &stays));
         d->shown += d->spent - before;
         if (stays) {
             return SPAR_OK;

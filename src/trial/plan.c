@@ -390,17 +390,21 @@ int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_re
     return status;
 }
 
-/* level 0: with the host's dt; more: nodes beyond those there are. */
+/* level 0: with the host's dt; more: nodes beyond those there are. From there on the coupling's tolerance falls with dt
+   as the error of predicted loads does: the prediction itself would meet another one once dt is fine enough, and its
+   lag, which adds up over the run, change the order that finer dt show. */
 static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     const spar_session *s = d->session;
+    const double falls = s->keep_dt ? 1 : pow(4, -fmax(0, level));
     spari_plan p = *present;
     p.newton = fmax(spari_rule.reference_newton * d->tolerance, 1e-12);
     p.strict = 1;
     p.substeps = 1;
-    p.predictor = 1;
+    p.predictor = 2;
     if (!s->keep_coupling) {
         p.scheme = SPAR_COUPLING_IQN_ILS;
-        p.rtol = fmax(spari_rule.reference_rtol * d->tolerance, 1e-10);
+        p.rtol = fmax(spari_rule.reference_rtol * d->tolerance * falls, 1e-10);
+        p.newton = fmax(fmin(p.newton, p.rtol), 1e-12);
     }
     p.steps = s->keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
     for (int g = 0; g < d->groups; g++) {
@@ -456,6 +460,7 @@ static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, 
     spari_plan p = reference_plan(d, present, level, more);
     p.newton = fmax(p.newton, spari_rule.rough_newton * d->tolerance);
     p.rtol = d->session->keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
+    p.predictor = 1;
     return p;
 }
 
@@ -746,13 +751,21 @@ int64_t spari_plan_least_steps(const spari_advisor *d) {
 
 /* ---- stability ---- */
 
+/* What of the loads turns round with every step, squared, where an iterated coupling ends as its tolerance allows: as
+   much either way, in each of the second differences' four parts. It stays so, and is in the error of the motion. */
+static double left_to_turn(const spari_plan *p) {
+    return spari_coupling_scheme_of(p->scheme)->iterates ? 16 * p->rtol * p->rtol : 0;
+}
+
 /* Whether a part of the loads that turns round with every step grows, and not with the motion itself, as the finer run
    shows it, until it counts in the host's run; `longer`: the look's. */
-static int seesaws(const spari_advisor *d, const spari_record *r, const spari_record *finer, int longer) {
+static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_record *r, const spari_record *finer,
+                   int longer) {
     double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN)),
            grows = r->alternating[1] / fmax(r->alternating[0], DBL_MIN) / same,
            more = fmax(0, d->longer - longer) / (0.5 * longer), limit = spari_rule.seesaw * d->tolerance;
-    return grows > spari_rule.grows && r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
+    return grows > spari_rule.grows && r->alternating[1] > left_to_turn(p) &&
+           r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
 }
 
 /* What settings that are looked at are compared with: a tight coupling, and half the dt where theirs is tight already.
@@ -791,7 +804,7 @@ static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const
     if (status == SPAR_OK) {
         status = compare_runs(d, run, &d->calm, 1, &error);
     }
-    *stays = status == SPAR_OK && error <= limit && !seesaws(d, run, &d->calm, longer);
+    *stays = status == SPAR_OK && error <= limit && !seesaws(d, p, run, &d->calm, longer);
     tell_plan(d, &q, error, spari_plan_cost(d, &d->calm));
     if (status != SPAR_OK) {
         spari_record_free(&d->calm);
@@ -809,15 +822,15 @@ int spari_plan_look(const spari_advisor *d, const spari_plan *p) {
    in the loads that grows and counts already, while the motion does not. */
 enum { LOOKS_FINE, LOOKS_DOUBTFUL, LOOKS_UNSTABLE };
 
-static int verdict_of(const spari_advisor *d, const spari_record *run, int longer) {
+static int verdict_of(const spari_advisor *d, const spari_plan *p, const spari_record *run, int longer) {
     double limit = spari_rule.seesaw * d->tolerance;
     int away = spari_record_reach(run) > spari_rule.looks_away * spari_record_reach(&d->reference),
-        turns = seesaws(d, run, &d->reference, longer),
+        turns = seesaws(d, p, run, &d->reference, longer),
         counts = run->alternating[1] > spari_rule.evident * limit * limit;
     return turns && counts && !away ? LOOKS_UNSTABLE : turns || away ? LOOKS_DOUBTFUL : LOOKS_FINE;
 }
 
-int spari_plan_stays(spari_advisor *d, const spari_plan *p, int trusts, int *stays) {
+int spari_plan_stays(spari_advisor *d, const spari_plan *p, int trusts, double most, int *stays) {
     int longer = spari_plan_look(d, p);
     spari_record run;
     double seen[2] = {0, 0};
@@ -825,10 +838,10 @@ int spari_plan_stays(spari_advisor *d, const spari_plan *p, int trusts, int *sta
     if (longer == 1) {
         return SPAR_OK;
     }
-    int status = spari_plan_run(d, p, longer, INFINITY, &run);
+    int status = spari_plan_run(d, p, longer, longer * most, &run);
     *stays = 0;
     if (status == SPAR_OK) {
-        seen[0] = verdict_of(d, &run, longer);
+        seen[0] = verdict_of(d, p, &run, longer);
         status = spari_comm_sum(d->session->comm, seen, 1, SPAR_OK, d->session->message, sizeof d->session->message);
         *stays = status == SPAR_OK && seen[0] == LOOKS_FINE;
     }

@@ -151,7 +151,8 @@ const spari_level *spari_plan_good_level(const spari_advisor *advisor);
 /* So many times the trials' time that takes. Local. */
 int spari_plan_look(const spari_advisor *advisor, const spari_plan *plan);
 /* Whether the settings stay where they are for longer than the trials were: what grows slowly enough to pass a trial is
-   found here; where it may be so, beside a run with a tight coupling. trusts: what looks unstable is. */
-int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int trusts, int *stays);
+   found here; where it may be so, beside a run with a tight coupling. trusts: what looks unstable is. most: what costs
+   more than so much in a trial's time does not stay; INFINITY: whatever it costs. */
+int spari_plan_stays(spari_advisor *advisor, const spari_plan *plan, int trusts, double most, int *stays);
 
 #endif
