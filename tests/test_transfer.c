@@ -15,7 +15,10 @@ static const int widths[] = {2, 4, 8}; /* those the processor lacks fall back to
 
 /* ---- a scene: a member's nodes in motion and fluid nodes tied to them ---- */
 
-enum { MOST = 6 * SPARI_MAX_NODES, WORK = (20 + SPARI_MAX_NODES) * SPARI_ROW + MOST * 28 + 44 };
+enum {
+    MOST = 6 * SPARI_MAX_NODES,
+    WORK = (20 + SPARI_MAX_NODES) * SPARI_ROW + (7 * SPARI_MAX_NODES + 33) * 8 + MOST * 28 + 44
+};
 
 typedef struct scene {
     int elements, nodes; /* per element */

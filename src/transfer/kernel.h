@@ -448,28 +448,36 @@ HERE void NAME(put_rows)(const int what, const L *x, double (*buf)[SPARI_ROW], i
     NAME(put_row)(upto >= SPARI_UPTO_ACCEL ? 6 : 0, x + SPARI_R_ACCEL, buf + SPARI_R_ACCEL, at);
 }
 
-/* PAIR values of n rows; what lies beyond the end of a run repeats the last node, so that every lane is a real one. */
-HERE void NAME(fetch)(const double *const *from, const int n, int64_t p, int count, L (*to)[2]) {
-    if (count >= PAIR) {
-        SPARI_UNROLL
-        for (int f = 0; f < n; f++) {
-            to[f][0] = NAME(get)(from[f] + p), to[f][1] = NAME(get)(from[f] + p + W);
-        }
+/* n rows of a run for its nodes from `begin` to `end`, whole pairs of vectors, or what is left beyond them: that is
+   copied to pad, where what lies beyond the end repeats the last node, so that every lane is a real one, or is zero. */
+HERE void NAME(begin_rows)(const double *const *from, const int n, const int zero, int64_t first, int begin, int end,
+                           double (*pad)[PAIR], const double **to) {
+    const int count = end - begin;
+    SPARI_UNROLL
+    for (int f = 0; f < n; f++) {
+        to[f] = from[f] + first + begin;
+    }
+    if (count % PAIR == 0) {
         return;
     }
     for (int f = 0; f < n; f++) {
-        double t[PAIR];
         for (int i = 0; i < PAIR; i++) {
-            t[i] = from[f][p + (i < count ? i : count - 1)];
+            pad[f][i] = i < count ? to[f][i] : zero ? 0 : to[f][count - 1];
         }
-        to[f][0] = NAME(get)(t), to[f][1] = NAME(get)(t + W);
+        to[f] = pad[f];
     }
 }
 
-/* PAIR values of n rows of the nodes' own, which are long: those a tile further on are asked for. Each row is a stream
-   of its own that ends with its page for the processor, and a page is two tiles. */
-HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, const int n, int64_t p, int count,
-                            L (*to)[2]) {
+HERE void NAME(get_pair)(const double *const *from, const int n, int i, L (*to)[2]) {
+    SPARI_UNROLL
+    for (int f = 0; f < n; f++) {
+        to[f][0] = NAME(get)(from[f] + i), to[f][1] = NAME(get)(from[f] + i + W);
+    }
+}
+
+/* n rows of the nodes' own, which are long: those a tile further on than p are asked for. Each row is a stream of its
+   own that ends with its page for the processor, and a page is two tiles. */
+HERE void NAME(ask_ahead)(const spari_nodes *s, const double *const *from, const int n, int64_t p) {
     if (s->n >= SPARI_FAR && p + SPARI_TILE + PAIR <= s->n) {
         SPARI_UNROLL
         for (int f = 0; f < n; f++) {
@@ -478,19 +486,24 @@ HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, con
             }
         }
     }
-    NAME(fetch)(from, n, p, count, to);
 }
 
 HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                       const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
-    const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
+    const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
+    double pad[4][PAIR];
     L least = SPLAT(&huge), in[4][2], out[2][SPARI_ROWS];
-    for (int i = 0; i < count; i += PAIR) {
-        NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
-        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
-        NAME(put_rows)(what, out[0], buf, at + i);
-        NAME(put_rows)(what, out[1], buf, at + i + W);
+    for (int begin = 0, end = count - count % PAIR; begin < count; begin = end, end = count) {
+        const double *row[4];
+        NAME(begin_rows)(from, 4, 0, first, begin, end, pad, row);
+        for (int i = begin; i < end; i += PAIR) {
+            NAME(ask_ahead)(s, from, 4, first + i);
+            NAME(get_pair)(row, 4, i - begin, in);
+            least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
+            NAME(put_rows)(what, out[0], buf, at + i);
+            NAME(put_rows)(what, out[1], buf, at + i + W);
+        }
     }
     return NAME(least)(least);
 }
@@ -562,6 +575,15 @@ TARGET static void NAME(carry_to)(const spari_nodes *s, const carrier *m, double
     }
 }
 
+/* The arms of a pair of vectors. */
+HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, int64_t p, int count, L (*to)[2]) {
+    double pad[3][PAIR];
+    const double *row[3];
+    NAME(ask_ahead)(s, from, 3, p);
+    NAME(begin_rows)(from, 3, 0, p, 0, count < PAIR ? count : PAIR, pad, row);
+    NAME(get_pair)(row, 3, 0, to);
+}
+
 /* The rows of a tile. */
 HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
                       double (*buf)[SPARI_ROW]) {
@@ -575,7 +597,7 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
     NAME(splat)(3, m->accel, accel);
     NAME(splat)(3, m->alpha, alpha);
     for (int at = 0; at < count; at += PAIR) {
-        NAME(fetch_nodes)(s, from, 3, first + at, count - at, c);
+        NAME(fetch_nodes)(s, from, first + at, count - at, c);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
             L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], wr[3], ar[3], wwr[3];
@@ -800,22 +822,46 @@ HERE void NAME(totals)(const int n, const L *v, double *sum) {
 #endif
 }
 
+/* Sums that are held between runs: n vectors from held, or zeros; and back, or with their lanes added into sum. */
+HERE void NAME(take_held)(const int n, int begin, const double *held, L *a) {
+    static const double zero = 0;
+    SPARI_UNROLL_ALL
+    for (int j = 0; j < n; j++) {
+        a[j] = SPLAT(&zero);
+        if (!begin) {
+            a[j] = NAME(get)(held + (ptrdiff_t)j * W);
+        }
+    }
+}
+
+HERE int NAME(give_held)(const int n, int end, const L *a, double *held, double *sum) {
+    if (end) {
+        NAME(totals)(n, a, sum);
+        return 1;
+    }
+    SPARI_UNROLL_ALL
+    for (int j = 0; j < n; j++) {
+        NAME(put)(held + (ptrdiff_t)j * W, a[j]);
+    }
+    return 0;
+}
+
 /* Modes k to k + most - 1 of sum_k over one run, those beyond the last again the last and left out: modal[k][f] +=
    sum_i t[k][i] row_f[i]. The sums are in registers. */
 HERE void NAME(project_some)(const int most, const int rows, int k, int modes, int count, double (*t)[SPARI_ROW],
-                             double (*f)[SPARI_ROW], double (*g)[SPARI_ROW], int at, double *modal) {
-    static const double zero = 0;
+                             const tile_loads *f, double (*g)[SPARI_ROW], double *modal) {
     L a[4 * 7];
-    double sum[4 * 7];
-    const double *mode[4];
+    double sum[4 * 7], *held = f->held + (ptrdiff_t)k * rows * W;
+    const double *mode[4], *row[7];
     SPARI_UNROLL
     for (int m = 0; m < most; m++) {
         mode[m] = t[k + m < modes ? k + m : modes - 1];
     }
-    SPARI_UNROLL_ALL
-    for (int j = 0; j < most * rows; j++) {
-        a[j] = SPLAT(&zero);
+    SPARI_UNROLL
+    for (int j = 0; j < rows; j++) {
+        row[j] = j < 3 ? f->row[j] + f->at : g[j - 3];
     }
+    NAME(take_held)(most * rows, f->begin, held, a);
     for (int i = 0; i < count; i += W) {
         L T[4];
         SPARI_UNROLL
@@ -824,55 +870,54 @@ HERE void NAME(project_some)(const int most, const int rows, int k, int modes, i
         }
         SPARI_UNROLL
         for (int j = 0; j < rows; j++) {
-            L y = NAME(get)(j < 3 ? f[j] + at + i : g[j - 3] + i);
+            L y = NAME(get)(row[j] + i);
             SPARI_UNROLL
             for (int m = 0; m < most; m++) {
                 a[m * rows + j] = MADD(T[m], y, a[m * rows + j]);
             }
         }
     }
-    NAME(totals)(most * rows, a, sum);
-    for (int m = 0; m < most && k + m < modes; m++) {
-        for (int j = 0; j < rows; j++) {
-            spari_add(modal + ((ptrdiff_t)(k + m) * 7 + j) * 2, sum[m * rows + j]);
+    if (NAME(give_held)(most * rows, f->end, a, held, sum)) {
+        for (int m = 0; m < most && k + m < modes; m++) {
+            for (int j = 0; j < rows; j++) {
+                spari_add(modal + ((ptrdiff_t)(k + m) * 7 + j) * 2, sum[m * rows + j]);
+            }
         }
     }
 }
 
 /* As many modes at a time as there are registers for. */
-HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], double (*f)[SPARI_ROW],
-                        double (*g)[SPARI_ROW], int at, double *modal) {
+HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], const tile_loads *f,
+                        double (*g)[SPARI_ROW], double *modal) {
     int k = 0;
 #if W == 8
     for (; k + 2 < modes; k += 4) {
-        NAME(project_some)(4, rows, k, modes, count, t, f, g, at, modal);
+        NAME(project_some)(4, rows, k, modes, count, t, f, g, modal);
     }
 #endif
     for (; k < modes; k += 2) {
-        NAME(project_some)(2, rows, k, modes, count, t, f, g, at, modal);
+        NAME(project_some)(2, rows, k, modes, count, t, f, g, modal);
     }
 }
 
-/* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
-HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int count, L (*to)[2]) {
-    const double *from[6] = {f->row[0], f->row[1], f->row[2], f->row[3], f->row[4], f->row[5]};
+/* The host's forces of a tile further on are asked for. */
+HERE void NAME(ask_loads)(const tile_loads *f, int at) {
     if (f->next) {
         SPARI_UNROLL
         for (int k = 0; k < 3 * PAIR * f->size; k += 64) {
             SPARI_AHEAD(f->next + (ptrdiff_t)3 * (f->at + at) * f->size + k);
         }
     }
-    NAME(fetch)(from, rows, f->at + at, count, to);
-    if (count < PAIR) {
-        double keep[PAIR];
-        for (int j = 0; j < PAIR; j++) {
-            keep[j] = j < count;
-        }
-        SPARI_UNROLL
-        for (int j = 0; j < rows; j++) {
-            to[j][0] *= NAME(get)(keep), to[j][1] *= NAME(get)(keep + W);
-        }
-    }
+}
+
+/* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
+HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int count, L (*to)[2]) {
+    const double *const from[6] = {f->row[0], f->row[1], f->row[2], f->row[3], f->row[4], f->row[5]};
+    double pad[6][PAIR];
+    const double *row[6];
+    NAME(ask_loads)(f, at);
+    NAME(begin_rows)(from, rows, 1, f->at + at, 0, count < PAIR ? count : PAIR, pad, row);
+    NAME(get_pair)(row, rows, 0, to);
 }
 
 HERE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops) {
@@ -930,7 +975,7 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
     NAME(splat)(3, m->rate, rate);
     NAME(splat)(3, m->omega, w);
     for (int at = 0; at < count; at += PAIR) {
-        NAME(fetch_nodes)(s, from, 3, first + at, count - at, c);
+        NAME(fetch_nodes)(s, from, first + at, count - at, c);
         NAME(fetch_loads)(f, rows, at, count - at, in);
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
@@ -961,29 +1006,41 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
 HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                          const int has_moment, const tile_loads *f, const int audited, double (*work)[SPARI_ROW],
                          double *modal, double *sums, double *tops) {
-    static const double huge = HUGE_VAL, zero = 0;
-    double(*g)[SPARI_ROW] = work, (*t)[SPARI_ROW] = work + 4;
-    const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
+    static const double huge = HUGE_VAL;
+    double(*g)[SPARI_ROW] = work, (*t)[SPARI_ROW] = work + 4, pad[10][PAIR];
+    const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]}, *const loads[6] = {f->row[0], f->row[1],
+                                                                                               f->row[2], f->row[3],
+                                                                                               f->row[4], f->row[5]};
     const int modes = s->per_element, rows = has_moment ? 6 : 3;
+    double *held = f->held + (ptrdiff_t)7 * (modes + 3) * W;
     L least = SPLAT(&huge), in[10][2], add[9], top[3];
-    for (int i = 0; i < 9; i++) {
-        add[i] = SPLAT(&zero);
+    if (audited) {
+        NAME(take_held)(9, f->begin, held, add);
+        NAME(take_held)(3, f->begin, held + (ptrdiff_t)9 * W, top);
     }
-    top[0] = top[1] = top[2] = SPLAT(&zero);
-    for (int i = 0; i < count; i += PAIR) {
-        NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
-        NAME(fetch_loads)(f, rows, i, count - i, in + 4);
-        least = NAME(less)(
-            least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in, t[0] + i, g, i, add, top));
+    for (int begin = 0, end = count - count % PAIR; begin < count; begin = end, end = count) {
+        const double *row[10];
+        NAME(begin_rows)(from, 4, 0, first, begin, end, pad, row);
+        NAME(begin_rows)(loads, rows, 1, f->at, begin, end, pad + 4, row + 4);
+        for (int i = begin; i < end; i += PAIR) {
+            NAME(ask_ahead)(s, from, 4, first + i);
+            NAME(ask_loads)(f, i);
+            NAME(get_pair)(row, 4 + rows, i - begin, in);
+            least = NAME(less)(least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in,
+                                                  t[0] + i, g, i, add, top));
+        }
     }
     for (int k = 0; k < modes; k++) {
         for (int i = count; i % W; i++) {
             t[k][i] = 0;
         }
     }
-    NAME(project)(consistent ? 7 : 6, modes, count, t, f->row, g, f->at, modal);
-    if (audited) {
+    NAME(project)(consistent ? 7 : 6, modes, count, t, f, g, modal);
+    if (audited && f->end) {
         NAME(add_audit)(add, top, sums, tops);
+    } else if (audited) {
+        NAME(give_held)(9, 0, add, held, NULL);
+        NAME(give_held)(3, 0, top, held + (ptrdiff_t)9 * W, NULL);
     }
     return NAME(least)(least);
 }

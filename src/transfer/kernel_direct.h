@@ -144,19 +144,25 @@ HERE void NAME(give_pair)(NAME(flow) * f, const int single, const L (*v)[3], int
 HERE double NAME(direct)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                          const int what, const int single, void *x, void *v, int past) {
     static const double huge = HUGE_VAL;
-    const double *from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
+    const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
+    double pad[4][PAIR];
     L least = SPLAT(&huge), in[4][2], out[2][SPARI_ROWS];
     NAME(flow) places = NAME(flow_to)(x, past), rates = NAME(flow_to)(v, past);
-    for (int i = 0; i < count; i += PAIR) {
-        NAME(fetch_nodes)(s, from, 4, first + i, count - i, in);
-        least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
-        if (x) {
-            const L t[2][3] = {{out[0][0], out[0][1], out[0][2]}, {out[1][0], out[1][1], out[1][2]}};
-            NAME(give_pair)(&places, single, t, count - i);
-        }
-        if (what == SPARI_UPTO_RATE) {
-            const L t[2][3] = {{out[0][3], out[0][4], out[0][5]}, {out[1][3], out[1][4], out[1][5]}};
-            NAME(give_pair)(&rates, single, t, count - i);
+    for (int begin = 0, end = count - count % PAIR; begin < count; begin = end, end = count) {
+        const double *row[4];
+        NAME(begin_rows)(from, 4, 0, first, begin, end, pad, row);
+        for (int i = begin; i < end; i += PAIR) {
+            NAME(ask_ahead)(s, from, 4, first + i);
+            NAME(get_pair)(row, 4, i - begin, in);
+            least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
+            if (x) {
+                const L t[2][3] = {{out[0][0], out[0][1], out[0][2]}, {out[1][0], out[1][1], out[1][2]}};
+                NAME(give_pair)(&places, single, t, end - i);
+            }
+            if (what == SPARI_UPTO_RATE) {
+                const L t[2][3] = {{out[0][3], out[0][4], out[0][5]}, {out[1][3], out[1][4], out[1][5]}};
+                NAME(give_pair)(&rates, single, t, end - i);
+            }
         }
     }
     NAME(end_flow)(&places);

@@ -46,11 +46,14 @@ static carrier carrier_of(const double *c) {
 }
 
 /* The loads of a tile's nodes, as rows, of which a run of one element begins at `at`. next: the host's forces of the
-   tile's nodes after it, numbers of `size` bytes; NULL: of no use, or not triples. */
+   tile's nodes after it, numbers of `size` bytes; NULL: of no use, or not triples. held: the sums of the runs of one
+   element, lane by lane, which have their lanes added once for several tiles: they begin with this run, end with it. */
 typedef struct tile_loads {
     double (*row)[SPARI_ROW];
     int at, size;
     const char *next;
+    double *held;
+    int begin, end, nodes; /* nodes: in the sums so far */
 } tile_loads;
 
 #define SPARI_KERNELS "../transfer/kernel.h"
@@ -465,18 +468,35 @@ static void clear_sums(double *block, int64_t nodes) {
     *sums_at(block, nodes).least = HUGE_VAL;
 }
 
-/* The rows f, and where the host's forces after them are, for those who read ahead of many. */
-static tile_loads rows_before(const spari_nodes *s, int64_t first, spari_source force, double (*f)[SPARI_ROW]) {
-    tile_loads t = {f, 0, force.d ? sizeof *force.d : sizeof *force.f, NULL};
-    if (s->n >= SPARI_FAR && !force.layout && first + 2 * SPARI_TILE <= s->n) {
-        t.next = (force.d ? (const char *)force.d : (const char *)force.f) + 3 * (first + SPARI_TILE) * t.size;
+/* Where the host's forces of the tile after this one are, for those who read ahead of many. */
+static const char *forces_ahead(const spari_nodes *s, int64_t first, spari_source force, int size) {
+    if (s->n < SPARI_FAR || force.layout || first + 2 * SPARI_TILE > s->n) {
+        return NULL;
     }
-    return t;
+    return (force.d ? (const char *)force.d : (const char *)force.f) + 3 * (first + SPARI_TILE) * size;
 }
 
-/* f: rows of work space, of which the first six are for the loads. */
-static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], const load_sums *to) {
+/* A run, which lies before `end`, where a slab does. f: rows of work space. */
+static void add_run(const gathering *g, int64_t p, int run, int64_t end, tile_loads *loads, double (*f)[SPARI_ROW],
+                    const load_sums *to) {
     const spari_nodes *s = g->s;
+    const int64_t after = p + run;
+    const int element = spari_nodes_element(s, p);
+    const ptrdiff_t node = (ptrdiff_t)element * s->per_element;
+    loads->nodes += run;
+    loads->end = after >= end || spari_nodes_element(s, after) != element || loads->nodes >= SPARI_HELD;
+    double d = g->kernel.loads(s, p, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, loads, g->audited,
+                               f, to->modal + node * 14, to->audit, to->tops);
+    *to->least = d < *to->least ? d : *to->least;
+    loads->begin = loads->end;
+    loads->nodes = loads->end ? 0 : loads->nodes;
+    loads->at += run;
+}
+
+/* Its rows are the first six of work space. */
+static void add_tile(const gathering *g, int64_t first, int64_t end, tile_loads *loads, const load_sums *to) {
+    const spari_nodes *s = g->s;
+    double(*f)[SPARI_ROW] = loads->row;
     int count = spari_tile_count(s, first);
     fetch_rows(&g->kernel, s, first, count, g->force, f);
     if (g->has_moment) {
@@ -485,24 +505,23 @@ static void add_tile(const gathering *g, int64_t first, double (*f)[SPARI_ROW], 
     for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
         f[0][i] = f[1][i] = f[2][i] = 0;
     }
-    tile_loads loads = rows_before(s, first, g->force, f);
-    while (loads.at < count) {
-        const int at = loads.at;
-        int run = run_length(s, first + at, count - at);
-        ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * s->per_element;
-        double d = g->kernel.loads(s, first + at, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, &loads,
-                                   g->audited, f + 6, to->modal + node * 14, to->audit, to->tops);
-        *to->least = d < *to->least ? d : *to->least;
-        loads.at += run;
+    loads->next = forces_ahead(s, first, g->force, loads->size);
+    loads->at = 0;
+    while (loads->at < count) {
+        int run = run_length(s, first + loads->at, count - loads->at);
+        add_run(g, first + loads->at, run, end, loads, f + 6, to);
     }
 }
 
 static void add_slab(const gathering *g, int64_t slab, double *rows, double *block) {
     const load_sums to = sums_at(block, g->nodes);
     int64_t from = slab * g->slab, end = from + g->slab < g->s->n ? from + g->slab : g->s->n;
+    tile_loads loads = {.row = (double(*)[SPARI_ROW])rows, .begin = 1};
+    loads.size = g->force.d ? sizeof *g->force.d : sizeof *g->force.f;
+    loads.held = rows + spari_gather_held(g->s->per_element);
     clear_sums(block, g->nodes);
     for (int64_t first = from; first < end; first += SPARI_TILE) {
-        add_tile(g, first, (double(*)[SPARI_ROW])rows, &to);
+        add_tile(g, first, end, &loads, &to);
     }
 }
 

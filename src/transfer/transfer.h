@@ -33,6 +33,8 @@ typedef struct spari_nodes {
 /* Nodes that one thread takes at a time where each is by itself, whole tiles; and at least so many where they are
    summed: the sums of more are sums over such slabs in their order, whoever has made them. */
 enum { SPARI_SLAB = 16 * SPARI_TILE, SPARI_SUM_SLAB = 64 * SPARI_TILE };
+/* So many are summed lane by lane before the lanes are added. */
+enum { SPARI_HELD = 8 * SPARI_TILE };
 static inline int64_t spari_slabs(int64_t n, int64_t slab) {
     return (n + slab - 1) / slab;
 }
@@ -149,9 +151,13 @@ void spari_tile_store_at(const spari_nodes *nodes, int64_t first, double (*row)[
                          double *d, float *f);
 
 /* Work space of the loads on a line of so many elements, in doubles: the rows of a tile (loads, polynomials or shape
-   functions, what goes between), then sums, one block for each thread and another for the call. */
-static inline int64_t spari_gather_rows(int per_element) {
+   functions, what goes between) and sums lane by lane, then sums, one block for each thread and another for the call.
+ */
+static inline int64_t spari_gather_held(int per_element) {
     return (int64_t)(20 + per_element) * SPARI_ROW;
+}
+static inline int64_t spari_gather_rows(int per_element) {
+    return spari_gather_held(per_element) + (7 * (per_element + 3) + 12) * 8;
 }
 static inline int64_t spari_gather_share(int64_t nodes) {
     return nodes * 7 * 2 + 22;
