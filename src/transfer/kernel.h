@@ -849,8 +849,10 @@ HERE int NAME(give_held)(const int n, int end, const L *a, double *held, double 
 /* Modes k to k + most - 1 of sum_k over one run, those beyond the last again the last and left out: modal[k][f] +=
    sum_i t[k][i] row_f[i]. The sums are in registers. */
 HERE void NAME(project_some)(const int most, const int rows, int k, int modes, int count, double (*t)[SPARI_ROW],
-                             const tile_loads *f, double (*g)[SPARI_ROW], double *modal) {
+                             const tile_loads *f, double (*g)[SPARI_ROW], double *modal, const char **next,
+                             const char *last) {
     L a[4 * 7];
+    const char *ask = *next;
     double sum[4 * 7], *held = f->held + (ptrdiff_t)k * rows * W;
     const double *mode[4], *row[7];
     SPARI_UNROLL
@@ -868,6 +870,10 @@ HERE void NAME(project_some)(const int most, const int rows, int k, int modes, i
         for (int m = 0; m < most; m++) {
             T[m] = NAME(get)(mode[m] + i);
         }
+        if (ask < last) {
+            SPARI_AHEAD(ask);
+            ask += 64;
+        }
         SPARI_UNROLL
         for (int j = 0; j < rows; j++) {
             L y = NAME(get)(row[j] + i);
@@ -877,6 +883,7 @@ HERE void NAME(project_some)(const int most, const int rows, int k, int modes, i
             }
         }
     }
+    *next = ask;
     if (NAME(give_held)(most * rows, f->end, a, held, sum)) {
         for (int m = 0; m < most && k + m < modes; m++) {
             for (int j = 0; j < rows; j++) {
@@ -886,17 +893,34 @@ HERE void NAME(project_some)(const int most, const int rows, int k, int modes, i
     }
 }
 
-/* As many modes at a time as there are registers for. */
+/* As many modes at a time as there are registers for: how often the rows are gone through. */
+HERE int NAME(times)(int modes) {
+    return W == 8 ? modes / 4 + (modes % 4 + 1) / 2 : (modes + 1) / 2;
+}
+
+/* The host's forces of a tile further on are asked for all the time: a line with each vector of each time the rows are
+   gone through, and the rest, so many bytes with each pair of vectors, before. */
+HERE int NAME(ask_before)(const tile_loads *f, int modes) {
+    const int rest = 3 * PAIR * f->size - 128 * NAME(times)(modes);
+    return f->next && rest > 0 ? rest : 0;
+}
+
 HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_ROW], const tile_loads *f,
                         double (*g)[SPARI_ROW], double *modal) {
+    const char *next = NULL, *last = NULL;
     int k = 0;
+    if (f->next) {
+        next = f->next + (ptrdiff_t)3 * f->at * f->size;
+        last = next + (ptrdiff_t)3 * count * f->size;
+        next += (ptrdiff_t)NAME(ask_before)(f, modes) * (count / PAIR);
+    }
 #if W == 8
     for (; k + 2 < modes; k += 4) {
-        NAME(project_some)(4, rows, k, modes, count, t, f, g, modal);
+        NAME(project_some)(4, rows, k, modes, count, t, f, g, modal, &next, last);
     }
 #endif
     for (; k < modes; k += 2) {
-        NAME(project_some)(2, rows, k, modes, count, t, f, g, modal);
+        NAME(project_some)(2, rows, k, modes, count, t, f, g, modal, &next, last);
     }
 }
 
@@ -1011,7 +1035,8 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
     const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]}, *const loads[6] = {f->row[0], f->row[1],
                                                                                                f->row[2], f->row[3],
                                                                                                f->row[4], f->row[5]};
-    const int modes = s->per_element, rows = has_moment ? 6 : 3;
+    const int modes = s->per_element, rows = has_moment ? 6 : 3, before = NAME(ask_before)(f, modes);
+    const char *ask = before ? f->next + (ptrdiff_t)3 * f->at * f->size : NULL;
     double *held = f->held + (ptrdiff_t)7 * (modes + 3) * W;
     L least = SPLAT(&huge), in[10][2], add[9], top[3];
     if (audited) {
@@ -1024,7 +1049,9 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
         NAME(begin_rows)(loads, rows, 1, f->at, begin, end, pad + 4, row + 4);
         for (int i = begin; i < end; i += PAIR) {
             NAME(ask_ahead)(s, from, 4, first + i);
-            NAME(ask_loads)(f, i);
+            for (int k = 0; k < before; k += 64, ask += 64) {
+                SPARI_AHEAD(ask);
+            }
             NAME(get_pair)(row, 4 + rows, i - begin, in);
             least = NAME(less)(least, NAME(lever)(modes, c, consistent, has_moment, audited, (const L(*)[2])in,
                                                   t[0] + i, g, i, add, top));
