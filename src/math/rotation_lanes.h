@@ -2,7 +2,16 @@
    Included once per width with the macros of width.h. With W = 1 it is plain C. No include guard: this is a body, not
    an interface.
 
-   Lanes do not see each other and nothing is fused: what comes out has the same bits at every width. */
+   Lanes do not see each other, and nothing is fused: what comes out has the same bits at every width. With SPARI_FUSED,
+   which quadrature points have, vectors and what is marked so take products and sums in one where the processor can. */
+
+/* a b + c */
+#undef FUSE
+#ifdef SPARI_FUSED
+#define FUSE(a, b, c) MADD(a, b, c)
+#else
+#define FUSE(a, b, c) ((a) * (b) + (c))
+#endif
 
 /* ---- to and from nodes ---- */
 
@@ -171,12 +180,12 @@ HERE double NAME(largest)(double so_far, L x) {
 /* ---- vectors and rotations ---- */
 
 HERE void NAME(cross)(const L *a, const L *b, L *c) {
-    L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    L x = FUSE(a[1], b[2], -(a[2] * b[1])), y = FUSE(a[2], b[0], -(a[0] * b[2])), z = FUSE(a[0], b[1], -(a[1] * b[0]));
     c[0] = x, c[1] = y, c[2] = z; /* c may be a or b */
 }
 
 HERE L NAME(dot)(const L *a, const L *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return FUSE(a[2], b[2], FUSE(a[1], b[1], a[0] * b[0]));
 }
 
 HERE L NAME(quat_dot)(const L *a, const L *b) {
@@ -194,7 +203,7 @@ HERE void NAME(rotate)(const L *q, const L *x, L *y) {
     t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
     NAME(cross)(q + 1, t, s);
     for (int i = 0; i < 3; i++) {
-        y[i] = x[i] + q[0] * t[i] + s[i];
+        y[i] = FUSE(q[0], t[i], x[i]) + s[i];
     }
 }
 
@@ -226,12 +235,12 @@ HERE void NAME(quat_mul)(const L *a, const L *b, L *c) {
     c[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
 }
 
-/* Im(a* b) */
+/* Im(a* b), fused */
 HERE void NAME(imag_conj_mul)(const L *a, const L *b, L *c) {
     SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        c[i] = a[0] * b[1 + i] - b[0] * a[1 + i] - (a[1 + j] * b[1 + k] - a[1 + k] * b[1 + j]);
+        c[i] = FUSE(-b[0], a[1 + i], a[0] * b[1 + i]) - FUSE(a[1 + j], b[1 + k], -(a[1 + k] * b[1 + j]));
     }
 }
 
@@ -243,10 +252,10 @@ HERE void NAME(vec_quat)(const L *s, const L *q, L *c) {
     c[3] = s[0] * q[2] - s[1] * q[1] + s[2] * q[0];
 }
 
-/* quaternion product of q and the pure quaternion s */
+/* quaternion product of q and the pure quaternion s, fused */
 HERE void NAME(quat_vec)(const L *q, const L *s, L *c) {
-    c[0] = -q[1] * s[0] - q[2] * s[1] - q[3] * s[2];
-    c[1] = q[0] * s[0] + q[2] * s[2] - q[3] * s[1];
-    c[2] = q[0] * s[1] - q[1] * s[2] + q[3] * s[0];
-    c[3] = q[0] * s[2] + q[1] * s[1] - q[2] * s[0];
+    c[0] = FUSE(-q[3], s[2], FUSE(-q[2], s[1], -q[1] * s[0]));
+    c[1] = FUSE(-q[3], s[1], FUSE(q[2], s[2], q[0] * s[0]));
+    c[2] = FUSE(q[3], s[0], FUSE(-q[1], s[2], q[0] * s[1]));
+    c[3] = FUSE(-q[2], s[0], FUSE(q[1], s[1], q[0] * s[2]));
 }

@@ -2,7 +2,8 @@
    macros of math/width.h. With W = 1 it is plain C for one point. No include guard: this is a body, not an interface.
    docs/theory.md, "The beam".
 
-   Lanes do not see each other and nothing is fused: a point's numbers have the same bits at every width. */
+   Lanes do not see each other. What is most of the work is fused where the processor can: a point's numbers are the
+   same to rounding at every width. */
 #include "../math/rotation_lanes.h"
 
 /* Row i of a block: fields of points, or their properties. */
@@ -22,9 +23,9 @@ HERE void NAME(rows)(const int n, const double *block, L *x) {
 HERE void NAME(symmetric_times)(const double *J, const L *x, L *y) {
     L j[6];
     NAME(rows)(6, J, j);
-    y[0] = j[0] * x[0] + j[1] * x[1] + j[2] * x[2];
-    y[1] = j[1] * x[0] + j[3] * x[1] + j[4] * x[2];
-    y[2] = j[2] * x[0] + j[4] * x[1] + j[5] * x[2];
+    y[0] = FUSE(j[2], x[2], FUSE(j[1], x[1], j[0] * x[0]));
+    y[1] = FUSE(j[4], x[2], FUSE(j[3], x[1], j[1] * x[0]));
+    y[2] = FUSE(j[5], x[2], FUSE(j[4], x[1], j[2] * x[0]));
 }
 
 /* s = C e with the 36 rows of a block */
@@ -34,7 +35,7 @@ HERE void NAME(matrix6_times)(const double *C, const L *e, L *s) {
         s[i] = ROW_OF(C, 6 * i) * e[0];
         SPARI_UNROLL
         for (int j = 1; j < 6; j++) {
-            s[i] += ROW_OF(C, 6 * i + j) * e[j];
+            s[i] = FUSE(ROW_OF(C, 6 * i + j), e[j], s[i]);
         }
     }
 }
@@ -149,7 +150,7 @@ HERE void NAME(elastic_forces)(const NAME(point) * s, L *value, L *slope) {
     L dots = NAME(dot)(s->e + 3, s->s + 3);
     for (int i = 0; i < 4; i++) {
         slope[3 + i] = 2.0 * k4[i] * s->over;
-        value[3 + i] = 2.0 * (n4[i] - pk[i] - dots * s->r[i]) * s->over;
+        value[3 + i] = 2.0 * FUSE(-dots, s->r[i], n4[i] - pk[i]) * s->over;
     }
 }
 
@@ -218,7 +219,7 @@ HERE void NAME(mass_forces)(const double *mass, const NAME(point) * s, const NAM
                             L *value) {
     L m4[4];
     for (int i = 0; i < 3; i++) {
-        force[i] = n->y[i] + ROW_OF(mass, 0) * n->h[i];
+        force[i] = FUSE(ROW_OF(mass, 0), n->h[i], n->y[i]);
     }
     NAME(rotate)(s->r, force, force);
     NAME(quat_vec)(s->r, n->mb, m4);
