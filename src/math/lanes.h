@@ -2,6 +2,7 @@
 #ifndef SPARI_LANES_H
 #define SPARI_LANES_H
 
+#include <stdint.h>
 #include <string.h>
 
 #if defined(__GNUC__)
@@ -24,6 +25,12 @@
 #define SPARI_X86 1
 #endif
 #endif
+
+/* Doubles from x on to where a cache line of eight begins: vectors that lie across two take twice as long. */
+static inline int64_t spari_to_line(const double *x) {
+    uintptr_t off = (uintptr_t)x % 64;
+    return off == 0 ? 0 : (int64_t)((64 - off) / sizeof *x);
+}
 
 /* How wide the vectors are that this processor has kernels for, `most` at most: 8, 4, or 0 for the portable ones. */
 static inline int spari_lanes_here(int most) {

@@ -45,6 +45,7 @@ typedef struct spari_body {
     double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
     double *pull;      /* linear members: forces [unique][6] of `pre` at the reference; NULL: none */
     double *at_rest;   /* linear members: the reference as a state, [unique][7] */
+    double *lines;     /* the memory of what is in blocks but for `pre`, and of the work space of an element */
     int64_t room;      /* doubles of work space that an element takes */
     double *scratch;   /* work space of one element, and of 6 doubles a node at least */
     double *matrix;    /* [6P][6P] work space: an element's tangent */

@@ -3,6 +3,7 @@
 
 #include "../base/crew.h"
 #include "../base/status.h"
+#include "../math/lanes.h"
 
 #include <stdlib.h>
 
@@ -15,6 +16,41 @@ static int number_points(spari_body *body, const int *points) {
         most = points[e] > most ? points[e] : most;
     }
     return most;
+}
+
+/* So many doubles, from the beginning of a cache line on; NULL: none. */
+static double *carve_aligned(double **room, int64_t n) {
+    double *at = *room;
+    *room += (n + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
+    return n > 0 ? at : NULL;
+}
+
+/* What vectors are loaded from, in one piece. 0, or 1: no memory. */
+static int create_blocks(spari_body *body, int64_t slots, int elastic, int damped, int massive) {
+    enum { PARTS = 8 };
+    const int64_t P = body->per_element, nodes = 12 * (int64_t)body->unique;
+    const int64_t count[PARTS] = {slots * P * 2,
+                                  slots,
+                                  slots * 3,
+                                  elastic ? slots * 36 : 0,
+                                  damped ? slots * 36 : 0,
+                                  massive ? slots * 10 : 0,
+                                  36 * P * P,
+                                  body->room > nodes ? body->room : nodes};
+    double **part[PARTS] = {&body->shape, &body->weight, &body->tangent, &body->C,
+                            &body->D,     &body->mass,   &body->matrix,  &body->scratch};
+    int64_t all = SPARI_LANES;
+    for (int k = 0; k < PARTS; k++) {
+        all += count[k] + SPARI_LANES;
+    }
+    if (!(body->lines = spari_zalloc(all, sizeof *body->lines))) {
+        return 1;
+    }
+    double *room = body->lines + spari_to_line(body->lines);
+    for (int k = 0; k < PARTS; k++) {
+        *part[k] = carve_aligned(&room, count[k]);
+    }
+    return 0;
 }
 
 spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive) {
@@ -35,16 +71,8 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (body->phi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->phi));
     ok = ok && (body->dphi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->dphi));
     ok = ok && (body->place = spari_zalloc(n * 3, sizeof *body->place));
-    ok = ok && (body->shape = spari_zalloc(slots * P * 2, sizeof *body->shape));
-    ok = ok && (body->weight = spari_zalloc(slots, sizeof *body->weight));
-    ok = ok && (body->tangent = spari_zalloc(slots * 3, sizeof *body->tangent));
-    ok = ok && (!elastic || (body->C = spari_zalloc(slots * 36, sizeof *body->C)));
-    ok = ok && (!damped || (body->D = spari_zalloc(slots * 36, sizeof *body->D)));
-    ok = ok && (!massive || (body->mass = spari_zalloc(slots * 10, sizeof *body->mass)));
-    int64_t element = spari_body_scratch(per_element, most, damped), nodes = 12 * (int64_t)body->unique;
-    body->room = element;
-    ok = ok && (body->scratch = spari_zalloc(element > nodes ? element : nodes, sizeof *body->scratch));
-    ok = ok && (body->matrix = spari_zalloc(36 * P * P, sizeof *body->matrix));
+    body->room = spari_body_scratch(per_element, most, damped);
+    ok = ok && create_blocks(body, slots, elastic, damped, massive) == 0;
     ok = ok && (body->tally = spari_zalloc(2 * (int64_t)spari_body_tiles(body), sizeof *body->tally));
     if (!ok) {
         spari_body_free(body);
@@ -156,22 +184,15 @@ void spari_body_free(spari_body *body) {
     free(body->slot);
     free(body->phi);
     free(body->dphi);
-    free(body->shape);
-    free(body->weight);
-    free(body->tangent);
     free(body->place);
-    free(body->C);
-    free(body->D);
     free(body->pre);
-    free(body->mass);
     for (int k = 0; k < 3; k++) {
         free(body->linear[k]);
     }
     free(body->weights);
     free(body->pull);
     free(body->at_rest);
-    free(body->scratch);
-    free(body->matrix);
+    free(body->lines);
     free(body->tally);
     free(body);
 }

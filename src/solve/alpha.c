@@ -452,7 +452,6 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     s->newton++;
     it->correction = size.by;
     it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);
-    s->mixing->enough = it->tolerance;
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
     return NULL;

@@ -64,16 +64,10 @@ struct spari_linear {
     spari_crew *const *crew; /* spari_linear_share; NULL: nobody */
 };
 
-/* Doubles from x on to where a cache line of eight begins: vectors that lie across two take twice as long. */
-static size_t to_alignment(const double *x) {
-    size_t off = (uintptr_t)x % 64;
-    return off == 0 ? 0 : (64 - off) / sizeof *x;
-}
-
 /* Columns of n that begin with a cache line, `step` apart. */
 static gsl_matrix *make_aligned(size_t n, size_t step) {
     gsl_block *block = gsl_block_calloc(n * step + SPARI_CORNER);
-    gsl_matrix *m = block ? gsl_matrix_alloc_from_block(block, to_alignment(block->data), n, n, step) : NULL;
+    gsl_matrix *m = block ? gsl_matrix_alloc_from_block(block, (size_t)spari_to_line(block->data), n, n, step) : NULL;
     if (!m) {
         gsl_block_free(block);
         return NULL;
@@ -90,7 +84,7 @@ static spari_linear *with_room(spari_linear *s, int dense) {
         s->swap = spari_zalloc(2 * n, sizeof *s->swap);
         s->order = s->swap ? s->swap + n : NULL;
         s->room = spari_zalloc((SPARI_CORNERS * SPARI_CORNER + 1) * eights + SPARI_CORNER, sizeof *s->room);
-        s->corners = s->room ? s->room + to_alignment(s->room) : NULL;
+        s->corners = s->room ? s->room + spari_to_line(s->room) : NULL;
         s->y = s->room ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
     } else {
         s->A = gsl_matrix_calloc(s->size, 3 * s->band + 1);
@@ -770,8 +764,11 @@ static int solve_left(spari_linear *s, double *x) {
         poison += 0 * x[i];
     }
     x += s->lead;
+    double *y = s->y;
+    const int *order = s->order;
+    SPARI_UNROLL
     for (int64_t i = 0; i < left; i++) {
-        s->y[i] = x[s->order[i]];
+        y[i] = x[order[i]];
     }
     memset(s->y + left, 0, (size_t)(n - left) * sizeof *x);
     int bad = kernels_here()->dense(n, s->A->data, (int64_t)s->A->tda, s->corners, s->y);

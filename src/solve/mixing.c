@@ -42,11 +42,13 @@ static int64_t spans_of(int64_t unknowns) {
 spari_mixing *spari_mixing_create(int64_t nodes) {
     spari_mixing *m = spari_zalloc(1, sizeof *m);
     int64_t n = spari_mixed_unknowns(nodes);
-    if (!m || !(m->z = spari_zalloc(VECTORS * n + SPARI_MIXED_SUMS * spans_of(n), sizeof *m->z))) {
+    int64_t all = VECTORS * n + SPARI_MIXED_SUMS * spans_of(n) + 8;
+    if (!m || !(m->room = spari_zalloc(all, sizeof *m->room))) {
         free(m);
         return NULL;
     }
     m->unknowns = n;
+    m->z = m->room + spari_to_line(m->room);
     m->c = m->z + n;
     m->d[0] = m->c + n, m->d[1] = m->d[0] + n;
     m->w[0] = m->d[1] + n, m->w[1] = m->w[0] + n;
@@ -56,7 +58,7 @@ spari_mixing *spari_mixing_create(int64_t nodes) {
 
 void spari_mixing_free(spari_mixing *m) {
     if (m) {
-        free(m->z);
+        free(m->room);
         free(m);
     }
 }
@@ -102,15 +104,12 @@ static void exchange(double **a) {
 }
 
 /* The sums over the spans in their order. */
-static void add_up(const spari_mixing *m, double length, double *sums) {
-    double part[SPARI_MIXED_SUMS] = {0}, over = 1 / (length * length);
-    for (int64_t k = 0; k < spans_of(m->unknowns); k++) {
+static void add_up(const spari_mixing *m, double sums[SPARI_MIXED_SUMS]) {
+    memcpy(sums, m->sums, SPARI_MIXED_SUMS * sizeof *sums);
+    for (int64_t k = 1; k < spans_of(m->unknowns); k++) {
         for (int i = 0; i < SPARI_MIXED_SUMS; i++) {
-            part[i] += m->sums[SPARI_MIXED_SUMS * k + i];
+            sums[i] += m->sums[SPARI_MIXED_SUMS * k + i];
         }
-    }
-    for (int i = 0; i < SPARI_MIXED_SUMS / 2; i++) {
-        sums[i] = over * part[2 * i] + part[2 * i + 1];
     }
 }
 
@@ -124,9 +123,9 @@ static int is_within_a_pair(double x) {
 
 /* by: the least |z - by[0] d[0] - by[1] d[1]|. With the newer pair alone where both say the same, or that they would
    take back more than a pair, which is not what a tangent that contracts asks for; with none where it says so too. */
-static void find_parts(const spari_mixing *m, double length, double by[2]) {
-    double sums[SPARI_MIXED_SUMS / 2];
-    add_up(m, length, sums);
+static void find_parts(const spari_mixing *m, double by[2]) {
+    double sums[SPARI_MIXED_SUMS];
+    add_up(m, sums);
     double newer = sums[0], both = sums[1], older = sums[2], z_newer = sums[3], z_older = sums[4];
     double area = newer * older - both * both, least = m->seen == 2 ? slow_at_first : slow;
     by[0] = by[1] = 0;
@@ -144,6 +143,9 @@ static void find_parts(const spari_mixing *m, double length, double by[2]) {
 }
 
 void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double length, double *x) {
+    for (int i = 0; i < STRIPE; i++) {
+        m->weight[i] = i % 6 < 3 ? 1 / (length * length) : 1;
+    }
     mixing_pass t = {.m = m, .x = x};
     if (m->seen < 2) { /* a pair of +-lambda is not seen in one change: two corrections are taken as they come */
         spari_crew_spread(crew, m->unknowns, SPAN, keep_span, &t);
@@ -154,7 +156,7 @@ void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double leng
     spari_crew_spread(crew, m->unknowns, SPAN, look_at_span, &t);
     exchange(m->d);
     exchange(m->w);
-    find_parts(m, length, t.by);
+    find_parts(m, t.by);
     spari_crew_spread(crew, m->unknowns, SPAN, mix_span, &t);
     m->seen++;
 }

@@ -8,21 +8,22 @@
 
 #include "../base/crew.h"
 
-typedef struct spari_mixing {
-    int64_t unknowns; /* six of a node, in whole stripes */
-    int64_t seen;     /* corrections since the beginning */
-    double *z, *c;    /* the last as the tangent has it, and as it was taken */
-    double *d[2];     /* of the last two pairs, the newer first: by how much z changed, */
-    double *w[2];     /* and that and what was taken in between */
-    double enough;
-    double *sums; /* [spans][SPARI_MIXED_SUMS] */
-} spari_mixing;
-
 /* Unknowns of four nodes: lanes of every width begin with the same component. */
-enum { SPARI_MIXED_SUMS = 12, SPARI_MIXED_STRIPE = 24 };
+enum { SPARI_MIXED_SUMS = 6, SPARI_MIXED_STRIPE = 24 };
 static inline int64_t spari_mixed_unknowns(int64_t nodes) {
     return (6 * nodes + SPARI_MIXED_STRIPE - 1) / SPARI_MIXED_STRIPE * SPARI_MIXED_STRIPE;
 }
+
+typedef struct spari_mixing {
+    int64_t unknowns;                  /* six of a node, in whole stripes */
+    int64_t seen;                      /* corrections since the beginning */
+    double *z, *c;                     /* the last as the tangent has it, and as it was taken */
+    double *d[2];                      /* of the last two pairs, the newer first: by how much z changed, */
+    double *w[2];                      /* and that and what was taken in between */
+    double weight[SPARI_MIXED_STRIPE]; /* of squares of displacements and turns */
+    double *room;                      /* the memory of all */
+    double *sums;                      /* [spans][SPARI_MIXED_SUMS] */
+} spari_mixing;
 
 /* Of so many nodes; NULL: no memory. */
 spari_mixing *spari_mixing_create(int64_t nodes);

@@ -3,23 +3,23 @@
 
    Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */
 
-/* The sum of a b over the unknowns from..to, whole stripes: displacements, turns. */
-HERE void NAME(dot)(const double *a, const double *b, int64_t from, int64_t to, double *out) {
+/* The sum of a b over the unknowns from..to, whole stripes, each by its weight [24]. */
+HERE double NAME(weighed)(const double *a, const double *b, const double *weight, int64_t from, int64_t to) {
+    enum { EIGHT = STRIPE / 3, THIRD = EIGHT / W };
     L sum[STRIPE / W] = {0};
-    double part[STRIPE];
+    double p[EIGHT];
     for (int64_t i = from; i < to; i += STRIPE) {
         SPARI_UNROLL
         for (int v = 0; v < STRIPE / W; v++) {
             sum[v] = sum[v] + NAME(get)(a + i + W * v) * NAME(get)(b + i + W * v);
         }
     }
-    for (int v = 0; v < STRIPE / W; v++) {
-        NAME(put)(part + W * v, sum[v]);
+    SPARI_UNROLL
+    for (int v = 0; v < THIRD; v++) {
+        L x = NAME(get)(weight + W * v) * sum[v], y = NAME(get)(weight + W * (v + THIRD)) * sum[v + THIRD];
+        NAME(put)(p + W * v, x + y + NAME(get)(weight + W * (v + 2 * THIRD)) * sum[v + 2 * THIRD]);
     }
-    for (int side = 0; side < 2; side++) {
-        const double *p = part + 3 * side;
-        out[side] = ((p[0] + p[1] + p[2]) + (p[6] + p[7] + p[8])) + ((p[12] + p[13] + p[14]) + (p[18] + p[19] + p[20]));
-    }
+    return ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
 }
 
 /* d[1], which is not needed any more, becomes the change of z, z what it is now. Sums of products:
@@ -32,12 +32,12 @@ TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t fr
         NAME(put)(d + i, now - NAME(get)(z + i));
         NAME(put)(z + i, now);
     }
-    NAME(dot)(d, d, from, to, sums);
-    NAME(dot)(d, old, from, to, sums + 2);
-    NAME(dot)(old, old, from, to, sums + 4);
-    NAME(dot)(d, x, from, to, sums + 6);
-    NAME(dot)(old, x, from, to, sums + 8);
-    NAME(dot)(x, x, from, to, sums + 10);
+    sums[0] = NAME(weighed)(d, d, m->weight, from, to);
+    sums[1] = NAME(weighed)(d, old, m->weight, from, to);
+    sums[2] = NAME(weighed)(old, old, m->weight, from, to);
+    sums[3] = NAME(weighed)(d, x, m->weight, from, to);
+    sums[4] = NAME(weighed)(old, x, m->weight, from, to);
+    sums[5] = NAME(weighed)(x, x, m->weight, from, to);
 }
 
 /* x less by[0] times the newer pair and by[1] times the older one; neither: x itself, whatever they are. */
