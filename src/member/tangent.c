@@ -34,7 +34,8 @@ int64_t spari_body_scratch(int P, int points, int damped) {
     int64_t slots = ((int64_t)points + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
     int64_t forces = ROW * SPARI_MAX_NODES + BACK * SPARI_MAX_NODES + SPARI_LANES * POINT_ROWS + slots * BACK_ROWS;
     int64_t matrices = slots * (damped ? WHOLE_ROWS + HALF_ROWS + MASS_ROWS : HALF_ROWS + SLOPE_BY_Q + MASS_ROWS);
-    int64_t pairs = (int64_t)PRODUCTS * points + (damped ? WHOLE_SUMS + HALF_SUMS : HALF_SUMS + SLOPE_BY_Q) + MASS_ROWS;
+    int64_t pairs =
+        (int64_t)PRODUCTS * points + (damped ? WHOLE_SUMS + HALF_SUMS : HALF_SUMS + SLOPE_BY_Q) + MASS_ROWS + 72;
     return forces + matrices + pairs * row_of_pairs(P) + 36 * (P + (int64_t)SPARI_LANES);
 }
 
@@ -76,6 +77,8 @@ static spari_tangent_work begin_tangent(const spari_body *body, int e, const spa
     t.of_B = take_sums(&room, t.stride, t.damped, 0);
     t.of_M = take_room(&room, MASS_ROWS * t.stride);
     t.maps = take_room(&room, 36 * t.map_stride);
+    t.ends[0] = take_room(&room, 36 * t.stride);
+    t.ends[1] = take_room(&room, 36 * t.stride);
     assert(room - body->scratch <= spari_body_scratch(P, points, body->D != NULL));
     return t;
 }

@@ -47,6 +47,7 @@ typedef struct spari_tangent_work {
     double *of_M;                 /* [MASS_ROWS][stride] */
     double *maps;                 /* [3][4][3][map_stride] E, F, H of the nodes */
     int64_t map_stride;
+    double *ends[2]; /* [3][4][3][stride] the same of the first and of the second node of each pair */
 } spari_tangent_work;
 
 /* The matrices of all points of element e, and what they give back, as spari_lanes_forces. */

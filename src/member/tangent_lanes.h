@@ -487,16 +487,30 @@ TARGET static void NAME(sum_pairs)(const spari_tangent_work *t, int rows, const 
     }
 }
 
-/* ---- to the unknowns of the nodes: lanes are nodes j of pairs (i, j) ---- */
+/* ---- to the unknowns of the nodes: lanes are pairs ---- */
 
-/* One of the maps 4 x 3: of the nodes from j on, or (spread) of node j. */
-HERE void NAME(map_of)(const spari_tangent_work *t, int which, int j, int spread, L (*map)[3]) {
-    const double *from = t->maps + 12 * t->map_stride * which + j;
-    for (int i = 0; i < 12; i++, from += t->map_stride) {
-        if (spread) {
-            map[i / 3][i % 3] = SPLAT(from);
-        } else {
-            map[i / 3][i % 3] = NAME(get)(from);
+/* The maps of the first and of the second node of each pair; what a row of j writes beyond its end the next overwrites.
+ */
+HERE void NAME(spread_maps)(const spari_tangent_work *t) {
+    const double *from = t->maps;
+    for (int row = 0; row < 36; row++, from += t->map_stride) {
+        double *first = t->ends[0] + t->stride * row, *second = t->ends[1] + t->stride * row;
+        for (int i = 0; i < t->P; first += t->P - i, second += t->P - i, i++) {
+            for (int j = i; j < t->P; j += W) {
+                NAME(put)(first + j - i, SPLAT(from + i));
+                NAME(put)(second + j - i, NAME(get)(from + j));
+            }
+        }
+    }
+}
+
+/* One of the maps 4 x 3: of the first (0) or second nodes of the pairs from `at` on. */
+HERE void NAME(map_of)(const spari_tangent_work *t, int which, int end, int64_t at, L (*map)[3]) {
+    const double *from = t->ends[end] + 12 * t->stride * which + at;
+    SPARI_UNROLL
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++, from += t->stride) {
+            map[i][k] = NAME(get)(from);
         }
     }
 }
@@ -556,12 +570,11 @@ HERE void NAME(add_columns)(const L *x, double c, const L (*map)[3], L *y) {
     }
 }
 
-/* The pairs (i, j...) from `at` on, or with side 1 (j..., i), against the unknowns of the second: 7 x 6. */
-TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int i, int j, int side,
-                                                L (*y)[6]) {
+/* The pairs (i, j) from `at` on, or with side 1 (j, i), against the unknowns of the second: 7 x 6. */
+TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int side, L (*y)[6]) {
     L map[3][4][3];
     for (int k = 0; k < 3; k++) {
-        NAME(map_of)(t, k, side ? i : j, side, map[k]);
+        NAME(map_of)(t, k, !side, at, map[k]);
     }
     for (int r = 0; r < 7; r++) {
         L x[7], sum[6] = {0};
@@ -579,45 +592,45 @@ TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int
     }
 }
 
-/* The 6 x 6 blocks of n pairs: rows of Q by the map of the first of the pair. */
-TARGET SPARI_APART static void NAME(put_blocks)(const spari_tangent_work *t, int i, int j, int side, const L (*y)[6],
-                                                double *S) {
-    double block[6][6][W];
-    L map[4][3];
-    int n = t->P - j < W ? t->P - j : W;
-    int64_t row = 6 * (int64_t)t->P;
-    NAME(map_of)(t, 0, side ? j : i, !side, map);
+/* Their 6 x 6 blocks: rows of Q by the map of the first. where: of each block in S. */
+TARGET SPARI_APART static void NAME(put_blocks)(const spari_tangent_work *t, int64_t at, int side, const int64_t *where,
+                                                const L (*y)[6], double *S) {
+    const int64_t row = 6 * (int64_t)t->P;
+    L map[4][3], x[6];
+    NAME(map_of)(t, 0, side, at, map);
+    SPARI_UNROLL
     for (int a = 0; a < 6; a++) {
+        SPARI_UNROLL
         for (int b = 0; b < 6; b++) {
-            L x = y[a][b];
+            x[b] = y[a][b];
             if (a >= 3) {
-                x = y[3][b] * map[0][a - 3];
+                x[b] = y[3][b] * map[0][a - 3];
+                SPARI_UNROLL
                 for (int k = 1; k < 4; k++) {
-                    x = MADD(y[3 + k][b], map[k][a - 3], x);
+                    x[b] = MADD(y[3 + k][b], map[k][a - 3], x[b]);
                 }
             }
-            memcpy(block[a][b], &x, sizeof x);
         }
-    }
-    for (int l = 0; l < n; l++) {
-        double *to = S + 6 * (side ? row * (j + l) + i : row * i + j + l);
-        for (int a = 0; a < 6; a++, to += row) {
-            for (int b = 0; b < 6; b++) {
-                to[b] = block[a][b][l];
-            }
-        }
+        NAME(drop_rows)(0, where, 1, 6, S + row * a, x);
     }
 }
 
 TARGET static void NAME(project)(const spari_tangent_work *t, double *S) {
-    int64_t first = 0;
-    for (int i = 0; i < t->P; first += t->P - i, i++) {
-        for (int j = i; j < t->P; j += W) {
-            for (int side = 0; side < 2; side++) {
-                L y[7][6];
-                NAME(columns_of)(t, first + j - i, i, j, side, y);
-                NAME(put_blocks)(t, i, j, side, (const L(*)[6])y, S);
+    const int64_t row = 6 * (int64_t)t->P;
+    int64_t where[2][W];
+    int i = 0, j = 0;
+    NAME(spread_maps)(t);
+    for (int64_t at = 0; at < t->pairs; at += W) {
+        for (int l = 0; l < W; l++) { /* lanes beyond the last pair go where it goes, before it */
+            where[0][l] = 6 * (row * i + j), where[1][l] = 6 * (row * j + i);
+            if (at + l + 1 < t->pairs && ++j == t->P) {
+                j = ++i;
             }
+        }
+        for (int side = 0; side < 2; side++) {
+            L y[7][6];
+            NAME(columns_of)(t, at, side, y);
+            NAME(put_blocks)(t, at, side, where[side], (const L(*)[6])y, S);
         }
     }
 }
