@@ -224,6 +224,106 @@ static void test_long_beam(void **state) {
     }
 }
 
+/* So many members that steps begin and end for several at once: beams held, driven and free, rigid bodies, two tied,
+   one with an added mass, a fluid on each third; accounts of their energy are kept. */
+enum { FARM = 50, FARM_NODES = 3, FARM_RECORD = 19 * FARM_NODES + 1 };
+
+typedef struct farm_scene {
+    spar_session *s;
+    spar_member *m[FARM];
+    spar_fluid *fluid[FARM];
+} farm_scene;
+
+static void farm_member(farm_scene *w, int i) {
+    double K[36], M[36], mass[36];
+    const double at[3] = {0, i, 0}, rest[4] = {1, 0, 0, 0}, omega[3] = {0.1 * i, 1, 0};
+    char name[8];
+    (void)snprintf(name, sizeof name, "m%d", i);
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    scene_mass(mass, 3, (const double[3]){0.1, 0, 0}, (const double[3]){1, 2, 3});
+    if (i % 7 == 6) {
+        OK(w->s, spar_rigid_create(w->s, name, at, rest, mass, &w->m[i]));
+        OK(w->s, spar_member_set_initial_velocity(w->m[i], NULL, NULL, omega));
+    } else {
+        w->m[i] = scene_beam(w->s, name, 1, FARM_NODES, 1 + 0.1 * i, K, M);
+        OK(w->s, spar_member_set_placement(w->m[i], at, rest));
+        if (i % 5 == 1) {
+            OK(w->s, spar_member_set_root(w->m[i], i % 2 ? SPAR_ROOT_DRIVEN : SPAR_ROOT_FREE));
+        }
+    }
+    if (i == 3) {
+        const double eta[1] = {0};
+        scene_diagonal(mass, 0.2, 0.2, 0.2, 0, 0, 0);
+        OK(w->s, spar_member_set_added_mass(w->m[i], 1, eta, mass));
+    }
+    if (i % 4 == 1) {
+        OK(w->s, spar_member_set_effects(w->m[i], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    }
+    OK(w->s, spar_member_commit(w->m[i]));
+    if (i % 3 == 0) {
+        const double x[3] = {0.5, i, 0.1};
+        OK(w->s, spar_fluid_create(w->m[i], name, &w->fluid[i]));
+        OK(w->s, spar_fluid_set_motion_nodes(w->fluid[i], 1, x));
+        OK(w->s, spar_fluid_set_force_nodes(w->fluid[i], 1, x));
+        OK(w->s, spar_fluid_map(w->fluid[i]));
+    }
+}
+
+static int farm_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    const farm_scene *w = context;
+    int status = SPAR_OK;
+    for (int i = 0; i < FARM && status == SPAR_OK; i += 3) {
+        double x[3], v[3] = {0}, force[3];
+        status = spar_fluid_pull_motion(w->fluid[i], 1, x, v);
+        for (int k = 0; k < 3; k++) {
+            force[k] = sin(20 * (t + dt) + i + k) - 0.4 * v[k];
+        }
+        status = status == SPAR_OK ? spar_fluid_push_forces(w->fluid[i], force, NULL) : status;
+    }
+    (void)s, (void)iteration;
+    return status;
+}
+
+static void farm_run(int threads, double record[FARM][FARM_RECORD]) {
+    farm_scene w = {.s = scene_session()};
+    const double g[3] = {0, 0, -9.81}, rate[6] = {0, 0, 0, 0, 1, 0}, none[6] = {0};
+    spar_joint *tie = NULL;
+    OK(w.s, spar_session_set_threads(w.s, threads));
+    OK(w.s, spar_session_set_gravity(w.s, g));
+    for (int i = 0; i < FARM; i++) {
+        farm_member(&w, i);
+    }
+    OK(w.s, spar_joint_create(w.s, "tie", w.m[8], FARM_NODES - 1, w.m[16], 0, SPAR_FREE_RY, &tie));
+    const double place[3] = {0.9, 12, 0};
+    OK(w.s, spar_joint_set_frame(tie, place, NULL));
+    for (int step = 1; step <= STEPS; step++) {
+        const double turned[7] = {0, 0, 0, cos(0.005 * step), 0, sin(0.005 * step), 0};
+        OK(w.s, spar_member_drive_root(w.m[11], turned, rate, none));
+        OK(w.s, spar_step(w.s, 0.01, farm_fluid, &w, NULL));
+    }
+    for (int i = 0; i < FARM; i++) {
+        int64_t nodes;
+        double *to = record[i];
+        OK(w.s, spar_member_get_count(w.m[i], &nodes));
+        OK(w.s, spar_member_get_motion(w.m[i], to, to + 7 * nodes, to + 13 * nodes));
+        if (i % 4 == 1) {
+            OK(w.s, spar_member_get_work(w.m[i], 1, to + 19 * nodes));
+        }
+    }
+    spar_session_destroy(&w.s);
+}
+
+static void test_farm(void **state) {
+    (void)state;
+    static double one[FARM][FARM_RECORD], more[FARM][FARM_RECORD];
+    farm_run(1, one);
+    for (int i = 1; i < COUNTS; i++) {
+        farm_run(counts[i], more);
+        assert_memory_equal(one, more, sizeof one);
+    }
+}
+
 /* ---- maps ---- */
 
 static void test_same_feet(void **state) {
@@ -459,6 +559,7 @@ int main(void) {
         cmocka_unit_test(test_failures),    cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_past_caches), cmocka_unit_test(test_singles_past_caches),
         cmocka_unit_test(test_long_beam),   cmocka_unit_test(test_rounding_of_the_host),
+        cmocka_unit_test(test_farm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,6 +30,8 @@ struct spari_own {
     double *motion;          /* several ranks: motion of all solved members, by owner */
     struct spari_unit *unit; /* what the threads solve, one each (threads.h); NULL: not made, room for unit_room */
     int64_t unit_room;
+    spar_member **member; /* all members, of a step that several threads work on, `listed` of them; room likewise */
+    int64_t listed;
     struct spari_spread *spread; /* option ranks.state = touched, while the clock runs (spread.h); else NULL */
     spari_coupling *coupling;    /* from the first step on */
     spari_coupling *aside; /* that of the steps, while a solution is under way that is none; NULL: there was none */

@@ -109,6 +109,22 @@ static void hold_root(spar_member *m) {
     }
 }
 
+/* A step as it begins for a member. */
+typedef struct step_begun {
+    const spar_session *s;
+    int order;
+    double dt;
+} step_begun;
+
+static void begin_member(spar_member *m, const void *context) {
+    const step_begun *t = context;
+    hold_root(m);
+    if (!t->s->aside) {
+        predict_loads(m, t->order, t->dt, t->s->dt_last);
+    }
+    spari_learned_begin(m);
+}
+
 /* Memory for what the ranks exchange in the steps to come. In trials each rank has all of the state. */
 static int prepare_exchange(spar_session *s) {
     if (s->apart || (s->touched && !s->trial && spari_comm_size(s->comm) > 1)) {
@@ -152,13 +168,7 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(begin_loads(s));
     }
     int order = s->past > 0 ? s->past : 0;
-    for (spar_member *m = s->members; m; m = m->next) {
-        hold_root(m);
-        if (!s->aside) {
-            predict_loads(m, order, dt, s->dt_last);
-        }
-        spari_learned_begin(m);
-    }
+    spari_threads_each(s, begin_member, &(step_begun){s, order, dt});
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_hold(j);
     }
@@ -185,22 +195,16 @@ int spar_step_begin_start(spar_session *session, double dt) {
 
 /* ---- solve ---- */
 
-/* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
-static int check_finite(const spar_member *m) {
-    const spari_motion *x = &m->after;
-    const struct {
-        const double *value;
-        int width;
-    } all[] = {{x->q, 7}, {x->v, 6}, {x->a, 6}};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        int64_t bad = spari_first_nonfinite(all[k].value, all[k].width * m->nodes);
-        SPARI_REQUIRE(
-            m->session, bad < 0, SPAR_ERR_NUMERIC,
-            "member '%s': the motion of node %lld is beyond the range of numbers in the step from t = %g; look "
-            "at its loads, gravity and the motion of its root, or at their units",
-            m->name, (long long)(bad / all[k].width), m->session->time);
+static void solved_member(spar_member *m, const void *unused) {
+    (void)unused;
+    spari_member_solved(m, m->load_used);
+    if (m->means) {
+        spari_means_find(m);
     }
-    return SPAR_OK;
+    if (m->added) {
+        spari_added_see(m);
+        spari_added_correct(m, -1, m->load_solved[1]);
+    }
 }
 
 int spar_step_solve(spar_session *session) {
@@ -215,9 +219,6 @@ int spar_step_solve(spar_session *session) {
     }
     s->newton_share = spari_coupling_share(s);
     status = spari_threads_solve(s);
-    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = status == SPAR_OK && m->row->moves ? check_finite(m) : status;
-    }
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
         for (spar_member *m = s->members; m; m = m->next) {
@@ -231,15 +232,8 @@ int spar_step_solve(spar_session *session) {
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
-    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
-        spari_member_solved(m, m->load_used);
-        if (m->means) {
-            spari_means_find(m);
-        }
-        if (m->added) {
-            spari_added_see(m);
-            spari_added_correct(m, -1, m->load_solved[1]);
-        }
+    if (!s->aside) {
+        spari_threads_each(s, solved_member, NULL);
     }
     s->failed = 0;
     s->phase = SPARI_SOLVED;
@@ -317,7 +311,8 @@ static int has_joints_alone(const spar_member *m) {
     return alone;
 }
 
-static void shift_history(spar_session *s, spar_member *m) {
+static void shift_history(spar_member *m, const void *session) {
+    const spar_session *s = session;
     /* a step that was never checked had no loads but those it was solved with, and the joints' */
     if (s->phase != SPARI_CHECKED && has_joints_alone(m)) {
         memset(m->load_pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
@@ -338,9 +333,12 @@ static void accept_loads(spar_session *s) {
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_work_of_joint(j);
     }
-    for (spar_member *m = s->members; m; m = m->next) {
-        shift_history(s, m);
-    }
+    spari_threads_each(s, shift_history, s);
+}
+
+static void accept_member(spar_member *m, const void *unused) {
+    (void)unused;
+    spari_member_accept(m);
 }
 
 /* Where the iterations have shown enough of the fluid's added mass it stands in the equations of the next step. */
@@ -384,9 +382,7 @@ int spar_step_accept(spar_session *session) {
         accept_loads(s);
     }
     spari_pace_accept(s);
-    for (spar_member *m = s->members; m; m = m->next) {
-        spari_member_accept(m);
-    }
+    spari_threads_each(s, accept_member, NULL);
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_accept(j);
     }

@@ -21,11 +21,30 @@ typedef struct spari_unit {
     char message[SPARI_MESSAGE_SIZE]; /* of a failure */
 } spari_unit;
 
+/* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
+static int check_finite(const spar_member *m) {
+    const spari_motion *x = &m->after;
+    const struct {
+        const double *value;
+        int width;
+    } all[] = {{x->q, 7}, {x->v, 6}, {x->a, 6}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        int64_t bad = spari_first_nonfinite(all[k].value, all[k].width * m->nodes);
+        SPARI_REQUIRE(
+            m->session, bad < 0, SPAR_ERR_NUMERIC,
+            "member '%s': the motion of node %lld is beyond the range of numbers in the step from t = %g; look "
+            "at its loads, gravity and the motion of its root, or at their units",
+            m->name, (long long)(bad / all[k].width), m->session->time);
+    }
+    return SPAR_OK;
+}
+
 static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
     if (a) {
         return spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
     }
-    return m->row->advance(m, s->dt);
+    SPARI_TRY(m->row->advance(m, s->dt));
+    return m->row->moves ? check_finite(m) : SPAR_OK;
 }
 
 static int is_unit(const spar_member *m) {
@@ -82,7 +101,7 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
 }
 
 /* With fewer of them than threads the elements of each are shared out instead (spari_body_sweep). */
-int spari_threads_solve(spar_session *s) {
+static int solve_units(spar_session *s) {
     int64_t n = s->crew ? list_units(s, s->own->unit) : 0;
     if (n < 2 || n < spari_crew_threads(s->crew)) {
         return solve_in_turn(s);
@@ -94,23 +113,75 @@ int spari_threads_solve(spar_session *s) {
     return SPAR_OK;
 }
 
+int spari_threads_solve(spar_session *s) {
+    SPARI_TRY(solve_units(s));
+    for (spar_member *m = s->members; m && s->assemblies; m = m->next) {
+        SPARI_TRY(m->assembly ? check_finite(m) : SPAR_OK);
+    }
+    return SPAR_OK;
+}
+
+static int make_unit_room(spar_session *s, int64_t most) {
+    spari_unit *unit = spari_zalloc(most, sizeof *unit);
+    spar_member **member = spari_zalloc(most, sizeof *member);
+    if (!unit || !member) {
+        free(unit);
+        free(member);
+        return spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the threads solve");
+    }
+    free(s->own->unit);
+    free(s->own->member);
+    s->own->unit = unit, s->own->member = member, s->own->unit_room = most;
+    return SPAR_OK;
+}
+
 int spari_threads_prepare(spar_session *s) {
     int64_t most = (int64_t)s->member_count + s->joint_count; /* a joint between nodes that all are driven is one */
-    if (!s->crew || most <= s->own->unit_room) {
+    s->own->listed = 0;
+    if (!s->crew) {
         return SPAR_OK;
     }
-    spari_unit *unit = spari_zalloc(most, sizeof *unit);
-    SPARI_REQUIRE(s, unit, SPAR_ERR_MEMORY, "no memory for what the threads solve");
-    free(s->own->unit);
-    s->own->unit = unit, s->own->unit_room = most;
+    SPARI_TRY(most > s->own->unit_room ? make_unit_room(s, most) : SPAR_OK);
+    for (spar_member *m = s->members; m; m = m->next) {
+        s->own->member[s->own->listed++] = m;
+    }
     return SPAR_OK;
+}
+
+/* ---- each member by itself ---- */
+
+/* So many members are worth waking a thread for. */
+enum { BATCH = 16 };
+
+typedef struct members_alike {
+    spar_member **member;
+    spari_member_task task;
+    const void *context;
+} members_alike;
+
+static void do_batch(void *context, int64_t from, int64_t to) {
+    const members_alike *t = context;
+    for (int64_t k = from; k < to; k++) {
+        t->task(t->member[k], t->context);
+    }
+}
+
+void spari_threads_each(spar_session *s, spari_member_task task, const void *context) {
+    if (s->crew && s->own->listed == s->member_count && s->own->listed > BATCH) {
+        spari_crew_spans(s->crew, s->own->listed, BATCH, do_batch, &(members_alike){s->own->member, task, context});
+        return;
+    }
+    for (spar_member *m = s->members; m; m = m->next) {
+        task(m, context);
+    }
 }
 
 void spari_threads_free(spar_session *s) {
     spari_crew_free(s->crew);
     free(s->own->unit);
+    free(s->own->member);
     s->crew = NULL;
-    s->own->unit = NULL, s->own->unit_room = 0;
+    s->own->unit = NULL, s->own->member = NULL, s->own->unit_room = s->own->listed = 0;
 }
 
 /* ---- the host's calls ---- */
