@@ -5,6 +5,8 @@
 #include "math/resample.h"
 #include "trial/remake.h"
 
+#include <stdio.h>
+
 enum { ELEMENTS = 2, NODES = 6 };
 
 /* A straight beam bent by dead loads at its nodes, a follower at the tip and a line load. */
@@ -75,6 +77,78 @@ static void test_loads_keep_their_sums(void **state) {
     }
 }
 
+/* Loads along the line, bent as it may be, are on other nodes what they are set there, to the bit; also where they come
+   from a file. */
+static void test_line_loads_as_set(void **state) {
+    (void)state;
+    static const int nodes[] = {3, 10, 5, 6}, elements[] = {1, 1, 4, 3};
+    const double eta[4] = {0.1, 0.4, 0.4, 0.8},
+                 line[24] = {0, 0, 0.5, 0.1, 0, 0, 0, 0, 0.2, 0, 0.3, 0, 1, 0, 0.5, 0.1, 0, 0, 0, 0.1, 0.2, 0, 0.3, 0};
+    const char *file = "remade_line_loads.spar";
+    for (size_t k = 0; k < sizeof nodes / sizeof *nodes; k++) {
+        for (int saved = 0; saved < 2; saved++) {
+            spar_session *s = scene_session(), *other = scene_session();
+            spar_member *b = bent_beam(s), old;
+            double load[2][6 * 24];
+            OK(s, spar_beam_set_line_load(b, SPAR_LOAD_FOLLOWER, 4, eta, line));
+            if (saved) {
+                OK(s, spar_session_save(s, file));
+                b = bent_beam(other);
+                OK(other, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 0, NULL, NULL));
+                OK(other, spar_session_load(other, file));
+                assert_int_equal(remove(file), 0);
+            }
+            spari_remake wish = spari_remake_of(b);
+            wish.per_element = nodes[k], wish.elements = elements[k];
+            OK(b->session, spari_member_remake(b, &wish, &old));
+            memcpy(b->after.q, b->now.q, (size_t)(7 * b->nodes) * sizeof(double));
+            OK(b->session, spar_member_get_loads(b, load[0]));
+            const double eta_of_bent[2] = {0.1, 0.8}, line_of_bent[12] = {0, 0, 0.5, 0.1, 0, 0, 0, 0, 0.2, 0, 0.3, 0};
+            OK(b->session, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 2, eta_of_bent, line_of_bent));
+            OK(b->session, spar_beam_set_line_load(b, SPAR_LOAD_FOLLOWER, 4, eta, line));
+            OK(b->session, spar_member_get_loads(b, load[1]));
+            assert_memory_equal(load[0], load[1], (size_t)(6 * b->nodes) * sizeof(double));
+            spari_member_restore(b, &old);
+            spar_session_destroy(&s);
+            spar_session_destroy(&other);
+        }
+    }
+}
+
+/* A cantilever of length L under a load p along it has the section forces p (L - x) and p (L - x)^2 / 2 with any nodes
+   that can have them: the load is no heap of points that fewer nodes had. */
+static void test_sections_under_a_line_load(void **state) {
+    (void)state;
+    enum { PLACES = 9 };
+    static const int from[][2] = {{1, 3}, {1, 10}, {8, 3}}, to[][2] = {{1, 10}, {4, 5}, {1, 10}};
+    const double L = 3, p = 1e-3, ends[2] = {0, 1}, line[12] = {[2] = p, [8] = p};
+    double K[36], M[36], eta[PLACES], force[PLACES][6];
+    scene_diagonal(K, 1e6, 1e6, 1e6, 60, 80, 80);
+    scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
+    for (int i = 0; i < PLACES; i++) {
+        eta[i] = i / (PLACES - 1.0);
+    }
+    for (size_t k = 0; k < sizeof from / sizeof *from; k++) {
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "b", from[k][0], from[k][1], L, K, M), old;
+        OK(s, spar_member_commit(b));
+        OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 2, ends, line));
+        spari_remake wish = spari_remake_of(b);
+        wish.elements = to[k][0], wish.per_element = to[k][1];
+        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spar_member_solve_static(b, 1));
+        OK(s, spar_beam_get_section(b, PLACES, eta, NULL, force[0], NULL, NULL));
+        for (int i = 0; i < PLACES; i++) {
+            double rest = L * (1 - eta[i]);
+            NEAR(fabs(force[i][2]), p * rest,
+                 1e-6 * p * L); /* what the turns of 1e-4 make of them is of second order */
+            NEAR(fabs(force[i][4]), 0.5 * p * rest * rest, 1e-6 * p * L * L);
+        }
+        spari_member_restore(b, &old);
+        spar_session_destroy(&s);
+    }
+}
+
 /* With as many nodes or more the displacement is the same polynomial: seen at the old nodes it is what it was. */
 static void test_state_goes_over(void **state) {
     (void)state;
@@ -132,6 +206,8 @@ static void test_comes_back(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_loads_keep_their_sums),
+        cmocka_unit_test(test_line_loads_as_set),
+        cmocka_unit_test(test_sections_under_a_line_load),
         cmocka_unit_test(test_state_goes_over),
         cmocka_unit_test(test_comes_back),
     };

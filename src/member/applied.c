@@ -17,10 +17,12 @@ enum { SPARI_LINE_SPRINGS = 2 };
 
 /* One load along the line, at its own quadrature points: it may jump where sections do not. */
 typedef struct line_load {
-    int *first;   /* [elements + 1] */
-    double *phi;  /* [points][P] */
-    double *load; /* [points][6] times weight and Jacobian; global axes, at the reference where they follow */
-    double *room; /* [7 P][4 P] for the tangent */
+    int *first;         /* [elements + 1] */
+    double *phi;        /* [points][P] */
+    double *load;       /* [points][6] times weight and Jacobian; global axes, at the reference where they follow */
+    double *room;       /* [7 P][4 P] for the tangent */
+    int64_t stations;   /* as it was set, for other nodes: so many, */
+    double *eta, *said; /* [stations], [stations][6] */
 } line_load;
 
 struct spari_applied {
@@ -44,6 +46,8 @@ static void line_free(line_load *line) {
     free(line->phi);
     free(line->load);
     free(line->room);
+    free(line->eta);
+    free(line->said);
     memset(line, 0, sizeof *line);
 }
 
@@ -414,7 +418,7 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
 /* ---- save and load ---- */
 
 /* Words: how many follow; then whether there are followers, and them; of each line load its points (-1: none), where
-   each element's begin, phi, load. */
+   each element's begin, phi, load, and its stations, where they are and what they are given. */
 void spari_applied_save(const spar_member *m, spari_image *image) {
     const spari_applied *a = m->applied;
     int64_t at = image->count, P = m->per_element;
@@ -431,6 +435,11 @@ void spari_applied_save(const spar_member *m, spari_image *image) {
             }
             spari_image_put(image, line->phi, points > 0 ? points * P : 0);
             spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
+            if (points >= 0) {
+                spari_image_put_int(image, line->stations);
+                spari_image_put(image, line->eta, line->stations);
+                spari_image_put(image, line->said, 6 * line->stations);
+            }
         }
     }
     if (!image->failed) {
@@ -448,6 +457,20 @@ static double *take(spari_image *image, int64_t n) {
     image->no_memory |= from && !x;
     image->failed |= !x;
     return x;
+}
+
+static void take_stations(spari_image *image, line_load *line) {
+    line->stations = spari_image_get_int(image);
+    image->failed |= line->stations < 1 || line->stations > SPARI_MOST;
+    if (image->failed) {
+        return;
+    }
+    line->eta = take(image, line->stations);
+    line->said = image->failed ? NULL : take(image, 6 * line->stations);
+    for (int64_t i = 0; i < line->stations && !image->failed; i++) {
+        const double slack = 1e-9;
+        image->failed |= !(line->eta[i] >= (i > 0 ? line->eta[i - 1] : -slack) && line->eta[i] <= 1 + slack);
+    }
 }
 
 static void take_line(const spar_member *m, spari_image *image, line_load *line) {
@@ -469,6 +492,7 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
         line->room = room_for(m);
         image->no_memory |= !line->room;
         image->failed |= !line->room;
+        take_stations(image, line);
     }
 }
 
@@ -496,60 +520,6 @@ void spari_applied_load(spar_member *m, spari_image *image) {
     spari_applied_free(m->applied);
     m->applied = m->applied_next;
     m->applied_next = NULL;
-}
-
-/* ---- other nodes ---- */
-
-/* The points stay where they are, in their order; xi = sum phi_l xi_l tells where, as the basis has all linear
-   functions. */
-static int remake_line(const spar_member *from, const line_load *line, const spar_member *m, line_load *out) {
-    int P = from->per_element, n = m->per_element, E = m->elements, points = line->first[from->elements];
-    double x[SPARI_MAX_NODES];
-    spari_gll(P, x, NULL, NULL);
-    out->first = spari_zalloc(E + 1, sizeof *out->first);
-    out->phi = spari_zalloc((int64_t)points * n, sizeof *out->phi);
-    out->load = spari_zalloc((int64_t)points * 6, sizeof *out->load);
-    out->room = room_for(m);
-    if (!out->first || !out->phi || !out->load || !out->room) {
-        return SPAR_ERR_MEMORY;
-    }
-    memcpy(out->load, line->load, (size_t)points * 6 * sizeof *out->load);
-    for (int k = 0, e = 0; k < points; k++) {
-        double xi = 0;
-        for (int l = 0; l < P; l++) {
-            xi += line->phi[(int64_t)k * P + l] * x[l];
-        }
-        while (k >= line->first[e + 1]) {
-            e++;
-        }
-        out->first[1 + spari_resample_place(from->elements, e, xi, E, &xi)]++;
-        spari_resample_basis(n, xi, out->phi + (int64_t)k * n);
-    }
-    for (int e = 0; e < E; e++) {
-        out->first[e + 1] += out->first[e];
-    }
-    return SPAR_OK;
-}
-
-int spari_applied_remake(const spar_member *from, spar_member *m) {
-    const spari_applied *a = from->applied;
-    if (!a) {
-        return SPAR_OK;
-    }
-    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
-    int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK && a->follower) {
-        b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
-        status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
-        if (status == SPAR_OK) {
-            spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), a->follower, b->follower);
-        }
-    }
-    for (int k = 0; k < 2 && status == SPAR_OK; k++) {
-        status = a->line[k].first ? remake_line(from, &a->line[k], m, &b->line[k]) : SPAR_OK;
-    }
-    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
-    return SPAR_OK;
 }
 
 /* ---- what the host says ---- */
@@ -697,6 +667,43 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     return SPAR_OK;
 }
 
+/* The same, and what is said is kept. */
+static int line_set(const spar_member *m, int kind, int64_t n, const double *eta, const double *load, line_load *line) {
+    SPARI_TRY(line_build(m, kind, n, eta, load, line));
+    line->stations = n;
+    line->eta = spari_copy(eta, n);
+    line->said = spari_copy(load, 6 * n);
+    if (!line->eta || !line->said) {
+        line_free(line);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
+    }
+    return SPAR_OK;
+}
+
+/* ---- other nodes ---- */
+
+int spari_applied_remake(const spar_member *from, spar_member *m) {
+    const spari_applied *a = from->applied;
+    if (!a) {
+        return SPAR_OK;
+    }
+    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
+    int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK && a->follower) {
+        b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
+        status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
+        if (status == SPAR_OK) {
+            spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), a->follower, b->follower);
+        }
+    }
+    for (int k = 0; k < 2 && status == SPAR_OK; k++) {
+        const line_load *line = a->line + k;
+        status = line->first ? line_set(m, k, line->stations, line->eta, line->said, &b->line[k]) : SPAR_OK;
+    }
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
+    return SPAR_OK;
+}
+
 /* ---- foundation ---- */
 
 void spari_foundation_free(spari_foundation *f) {
@@ -833,7 +840,7 @@ int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double
     SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
     int status = check_line_load(beam, __func__, kind, n, eta, load);
-    status = status == SPAR_OK && n > 0 ? line_build(beam, kind, n, eta, load, &line) : status;
+    status = status == SPAR_OK && n > 0 ? line_set(beam, kind, n, eta, load, &line) : status;
     if (status == SPAR_OK) {
         line_free(&beam->applied->line[kind]);
         beam->applied->line[kind] = line;
