@@ -3,6 +3,8 @@
      transfer [largest n]   nodes per second over n = 10^3 .. largest (10^7) and P = 4, 6, 10, 16, beside the plain loop
                             over stored weights (library flags; -O3 -march=native) and the time that the bytes alone
                             would take
+     transfer single [n]    n (10^6) nodes of a host with single precision beside one with double, and what the bytes
+                            of either would allow
      transfer point [n]     n (10^6) nodes on a point, a rigid body, and a prescribed and a rigid beam of ten nodes,
                             beside the plain loop of a rigid transfer
      transfer projection    microseconds and errors of the nearest point: bounds, RPOLY, GSL's companion matrix
@@ -229,6 +231,56 @@ static void table(int64_t largest) {
             fflush(stdout);
             unmake(&s);
         }
+    }
+}
+
+/* ---- single precision ---- */
+
+static void pull_single(scene *s) {
+    MUST(s->session, spar_fluid_pull_motion_f32(s->motion, 1, (float *)(void *)s->a, (float *)(void *)s->b));
+}
+
+static void push_single(scene *s) {
+    MUST(s->session, spar_fluid_push_forces_f32(s->loads, (const float *)(const void *)s->b, NULL));
+}
+
+/* Of 32 bytes a node in and 24 out; of 44 in. */
+static void copy_as_pull_single(scene *s) {
+    memcpy(s->a, s->node, (size_t)s->n * 24);
+    memcpy(s->b, s->force, (size_t)s->n * 4);
+}
+
+static void copy_as_push_single(scene *s) {
+    memcpy(s->a, s->node, (size_t)s->n * 22);
+}
+
+static void single(int64_t n) {
+    static const int order[] = {4, 6, 10, 16};
+    printf(
+        "Million nodes a second on one core, %lld nodes; f32: the host's arrays are single, what is computed is not.\n"
+        "bytes: what the copy speed allows for the bytes moved.\n\n"
+        "| P | out | bytes | f32 | bytes | gain | in | audited | bytes | f32 | audited | bytes | gain | gain |\n"
+        "|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        (long long)n);
+    for (int k = 0; k < 4; k++) {
+        scene s;
+        make(&s, order[k], n);
+        map(&s);
+        double out = rate(&s, pull), out_bytes = rate(&s, copy_as_pull), out1 = rate(&s, pull_single),
+               out1_bytes = rate(&s, copy_as_pull_single);
+        for (int64_t j = 0; j < 3 * n; j++) { /* the forces, as the host has them */
+            ((float *)(void *)s.b)[j] = (float)s.force[j];
+        }
+        double audited = rate(&s, push), audited1 = rate(&s, push_single);
+        check_audit(&s);
+        MUST(s.session, spar_session_set_option(s.session, "fluid.audit", "off"));
+        double in = rate(&s, push), in1 = rate(&s, push_single), in_bytes = rate(&s, copy_as_push),
+               in1_bytes = rate(&s, copy_as_push_single);
+        printf("| %d | %.0f | %.0f | %.0f | %.0f | %.2f | %.0f | %.0f | %.0f | %.0f | %.0f | %.0f | %.2f | %.2f |\n",
+               s.p, out, out_bytes, out1, out1_bytes, out1 / out, in, audited, in_bytes, in1, audited1, in1_bytes,
+               in1 / in, audited1 / audited);
+        fflush(stdout);
+        unmake(&s);
     }
 }
 
@@ -500,6 +552,8 @@ int main(int argc, char **argv) {
         projection();
     } else if (argc > 1 && strcmp(argv[1], "point") == 0) {
         point(argc > 2 ? (int64_t)strtod(argv[2], NULL) : 1000000);
+    } else if (argc > 1 && strcmp(argv[1], "single") == 0) {
+        single(argc > 2 ? (int64_t)strtod(argv[2], NULL) : 1000000);
     } else {
         table(argc > 1 ? (int64_t)strtod(argv[1], NULL) : 10000000);
     }

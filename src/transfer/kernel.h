@@ -189,10 +189,36 @@ TARGET static void NAME(give_singles)(double (*row)[SPARI_ROW], int count, float
     }
 }
 
+#if W == 8 && defined(STREAM)
+/* 16 triples of floats into three rows of doubles. */
+HERE void NAME(unweave_singles)(const float *in, double *x, double *y, double *z) {
+    const __m512i ab[3] = {_mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 0, 0, 0, 0, 0),
+                           _mm512_setr_epi32(1, 4, 7, 10, 13, 16, 19, 22, 25, 28, 31, 0, 0, 0, 0, 0),
+                           _mm512_setr_epi32(2, 5, 8, 11, 14, 17, 20, 23, 26, 29, 0, 0, 0, 0, 0, 0)};
+    const __m512i c[3] = {_mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 17, 20, 23, 26, 29),
+                          _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 18, 21, 24, 27, 30),
+                          _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19, 22, 25, 28, 31)};
+    const __m512 v[3] = {_mm512_loadu_ps(in), _mm512_loadu_ps(in + 16), _mm512_loadu_ps(in + 32)};
+    double *const row[3] = {x, y, z};
+    SPARI_UNROLL
+    for (int k = 0; k < 3; k++) {
+        __m512 t = _mm512_permutex2var_ps(_mm512_permutex2var_ps(v[0], ab[k], v[1]), c[k], v[2]);
+        NAME(put)(row[k], _mm512_cvtps_pd(_mm512_castps512_ps256(t)));
+        NAME(put)(row[k] + 8, _mm512_cvtps_pd(_mm512_extractf32x8_ps(t, 1)));
+    }
+}
+#endif
+
 TARGET static void NAME(load_singles)(const float *in, int count, double (*row)[SPARI_ROW]) {
     double triples[3 * NAME(PART)];
     float singles[3 * NAME(PART)];
-    for (int i = 0; i < count; i += NAME(PART)) {
+    int i = 0;
+#if W == 8 && defined(STREAM)
+    for (; i + 16 <= count; i += 16) {
+        NAME(unweave_singles)(in + 3 * (ptrdiff_t)i, row[0] + i, row[1] + i, row[2] + i);
+    }
+#endif
+    for (; i < count; i += NAME(PART)) {
         int n = count - i < NAME(PART) ? count - i : NAME(PART);
         memcpy(singles, in + 3 * (ptrdiff_t)i, 3 * (size_t)n * sizeof *in);
         for (int k = 0; k < 3 * n; k++) {
@@ -475,14 +501,14 @@ HERE void NAME(get_pair)(const double *const *from, const int n, int i, L (*to)[
     }
 }
 
-/* n rows of the nodes' own, which are long: those a tile further on than p are asked for. Each row is a stream of its
-   own that ends with its page for the processor, and a page is two tiles. */
+/* n rows of the nodes' own, which are long: those that are worked on so much later are asked for. Each row is a stream
+   of its own that ends with its page for the processor. */
 HERE void NAME(ask_ahead)(const spari_nodes *s, const double *const *from, const int n, int64_t p) {
-    if (s->n >= SPARI_FAR && p + SPARI_TILE + PAIR <= s->n) {
+    if (s->n >= SPARI_FAR && p + SPARI_ASK + PAIR <= s->n) {
         SPARI_UNROLL
         for (int f = 0; f < n; f++) {
             for (int k = 0; k < PAIR; k += 8) {
-                SPARI_AHEAD(from[f] + p + SPARI_TILE + k);
+                SPARI_AHEAD(from[f] + p + SPARI_ASK + k);
             }
         }
     }

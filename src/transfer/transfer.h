@@ -101,8 +101,9 @@ spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element);
 void spari_nodes_free(spari_nodes *nodes);
 /* Stores the feet: element [n] and local xi [n] and con [n][3] by node. */
 void spari_nodes_put(spari_nodes *nodes, const int *element, const double *xi, const double *con, const uint8_t *flags);
-/* More than the second-level cache holds: those ahead are asked for; more than any: what is written goes past them. */
-enum { SPARI_FAR = 1 << 16, SPARI_PAST = 1 << 19 };
+/* More than the second-level cache holds: those ahead are asked for; more than any: what is written goes past them. As
+   long as memory takes to answer, so many are worked on. */
+enum { SPARI_FAR = 1 << 16, SPARI_PAST = 1 << 19, SPARI_ASK = 64 };
 /* The node at a storage place, and its element. */
 static inline int64_t spari_nodes_node(const spari_nodes *s, int64_t p) {
     return s->place ? p - p % SPARI_TILE + s->place[p] : p;
