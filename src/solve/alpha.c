@@ -131,14 +131,14 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
         memset(to->v, 0, (size_t)end * sizeof *to->v);
         memset(to->a, 0, (size_t)end * sizeof *to->a);
         memset(to->b, 0, (size_t)end * sizeof *to->b);
+        memset(x, 0, (size_t)end * sizeof *x);
+        return;
     }
     for (int k = 0; k < 3; k++) {
         x[k] = to->q[k] - from->q[k];
     }
-    if (end == 6) {
-        spari_quat_between(from->q + 3, to->q + 3, p);
-        spari_quat_log(p, x + 3);
-    }
+    spari_quat_between(from->q + 3, to->q + 3, p);
+    spari_quat_log(p, x + 3);
 }
 
 static void less_loads(void *context, int64_t from, int64_t to) {

@@ -239,6 +239,47 @@ static void elements_of(const spari_linear *s, size_t i, size_t *first, size_t *
     *first = e > 0 && i - e * step < (size_t)s->overlap ? e - 1 : *last;
 }
 
+typedef struct linear_kernels {
+    void (*add)(int64_t m, const double *S, int64_t step, double *A);
+    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap, double *corners);
+    int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
+                       unsigned *swap);
+    void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
+    int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
+    void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
+    void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
+    void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
+                  double *x);
+    void (*back)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, double *x);
+    void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
+    void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);
+} linear_kernels;
+
+#define LINEAR_KERNELS(width)                                                                                          \
+    {                                                                                                                  \
+        add_by_columns_##width, factor_dense_##width, factor_band_##width, invert_corner_##width, solve_dense_##width, \
+            forth_dense_##width, back_dense_##width, forth_band_##width, back_band_##width, take_columns_##width,      \
+            add_rows_##width                                                                                           \
+    }
+static const linear_kernels plain_linear = LINEAR_KERNELS(plain);
+#ifdef SPARI_X86
+static const linear_kernels avx2_linear = LINEAR_KERNELS(avx2), avx512_linear = LINEAR_KERNELS(avx512);
+#endif
+
+static const linear_kernels *kernels_here(void) {
+#ifdef SPARI_X86
+    switch (spari_lanes_here(8)) {
+    case 8:
+        return &avx512_linear;
+    case 4:
+        return &avx2_linear;
+    default:
+        break;
+    }
+#endif
+    return &plain_linear;
+}
+
 static void add_to_element(spari_linear *s, int element, const double *S) {
     size_t m = (size_t)s->block;
     for (size_t j = 0; j < m; j++) {
@@ -265,12 +306,7 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
         }
         return;
     }
-    for (size_t j = 0; j < m; j++) {
-        double *column = entry(s, first, first + j);
-        for (size_t i = 0; i < m; i++) {
-            column[i] += S[m * i + j];
-        }
-    }
+    kernels_here()->add((int64_t)m, S, (int64_t)s->A->tda - (s->swap ? 0 : 1), entry(s, first, first));
 }
 
 /* The unknowns [from, to) that unknown i may have entries with in A */
@@ -351,45 +387,6 @@ void spari_linear_fix(spari_linear *s, int i) {
     if (s->far && at >= s->inner) {
         fix_part(s->far, s->n - 1 - at, at >= s->size);
     }
-}
-
-typedef struct linear_kernels {
-    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap, double *corners);
-    int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
-                       unsigned *swap);
-    void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
-    int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
-    void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
-    void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
-    void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
-                  double *x);
-    void (*back)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, double *x);
-    void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
-    void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);
-} linear_kernels;
-
-#define LINEAR_KERNELS(width)                                                                                          \
-    {                                                                                                                  \
-        factor_dense_##width, factor_band_##width, invert_corner_##width, solve_dense_##width, forth_dense_##width,    \
-            back_dense_##width, forth_band_##width, back_band_##width, take_columns_##width, add_rows_##width          \
-    }
-static const linear_kernels plain_linear = LINEAR_KERNELS(plain);
-#ifdef SPARI_X86
-static const linear_kernels avx2_linear = LINEAR_KERNELS(avx2), avx512_linear = LINEAR_KERNELS(avx512);
-#endif
-
-static const linear_kernels *kernels_here(void) {
-#ifdef SPARI_X86
-    switch (spari_lanes_here(8)) {
-    case 8:
-        return &avx512_linear;
-    case 4:
-        return &avx2_linear;
-    default:
-        break;
-    }
-#endif
-    return &plain_linear;
 }
 
 /* Before a dense matrix is factored: the unknowns that a root holds, where they are the first, go out of it, and the
