@@ -1,8 +1,9 @@
-# The scenes of benchmarks/scenes.h for every program that plays them.
-add_library(benchmarks_scenes STATIC EXCLUDE_FROM_ALL "${PROJECT_SOURCE_DIR}/benchmarks/scenes.c")
+# The scenes of benchmarks/scenes.h and worlds.h for every program that plays them.
+add_library(benchmarks_scenes STATIC EXCLUDE_FROM_ALL
+  "${PROJECT_SOURCE_DIR}/benchmarks/scenes.c" "${PROJECT_SOURCE_DIR}/benchmarks/worlds.c")
 target_include_directories(benchmarks_scenes PUBLIC "${PROJECT_SOURCE_DIR}/benchmarks")
 target_link_libraries(benchmarks_scenes PRIVATE spar_flags PUBLIC spar_example_parts spar m)
-foreach(program IN ITEMS benchmarks_accuracy benchmarks_advice)
+foreach(program IN ITEMS benchmarks_accuracy benchmarks_advice benchmarks_kept)
   target_link_libraries(${program} PRIVATE benchmarks_scenes)
 endforeach()
 
