@@ -2,8 +2,8 @@
 #include "check.h"
 
 #include "math/resample.h"
-#include "math/rotation.h"
 #include "scenes.h"
+#include "support/deformed.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -266,30 +266,18 @@ enum { SAMPLES = 10, FINE = 18 };
 static void watch_nodes(const scene *of, int nodes, int onto, double x[SAMPLES][3 * MOST_NODES], double *said) {
     knobs set = of->standard;
     scene_run *run;
-    double seconds = 0, q[7 * MOST_NODES], place[3 * MOST_NODES], u[3 * MOST_NODES], one;
+    double seconds = 0, u[3 * MOST_NODES], one;
     int64_t iterations = 0;
     int steps = (int)lround(of->T / set.dt);
     set.nodes = nodes;
     *said = 0;
     assert_int_equal(scene_build(of, &set, &run), SPAR_OK);
-    OK(run->session, spar_member_get_reference(run->member, place, NULL));
     for (int i = 1; i <= steps; i++) {
         OK(run->session, scene_step(run, &seconds, &iterations));
         if (i * SAMPLES % steps < SAMPLES) {
             OK(run->session, spar_member_get_error(run->member, NULL, &one));
             *said += one * one / SAMPLES;
-            OK(run->session, spar_member_get_motion(run->member, q, NULL, NULL));
-            for (int j = nodes - 1; j >= 0; j--) {
-                double arm[3], turned[3];
-                for (int c = 0; c < 3; c++) {
-                    arm[c] = place[3 * j + c] - place[c];
-                }
-                spari_rotate(q + 3, arm, turned);
-                for (int c = 0; c < 3; c++) {
-                    u[3 * j + c] = q[7 * j + c] - q[c] - turned[c] + arm[c];
-                }
-                spari_rotate_back(q + 3, u + 3 * j, u + 3 * j);
-            }
+            (void)deformed(run->session, run->member, MOST_NODES, u);
             spari_resample_values((spari_mesh){1, nodes}, (spari_mesh){1, onto}, 3, -1, u, x[i * SAMPLES / steps - 1]);
         }
     }

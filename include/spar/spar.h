@@ -1250,9 +1250,11 @@ SPAR_API int spar_session_get_pace(const spar_session *session, int64_t capacity
 SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
                               void *context, double *taken);
 
-/* What the numbers of a member leave of error in its motion now: root of the mean square over its nodes, m; over a run
-   true to a factor of 3 in the mean (docs/advice.md has what that was measured on), a single one may be off by more.
-   Each NULL: not wanted. Local, the same on all ranks.
+/* What the numbers of a member leave of error in its motion now: root of the mean square over its nodes, m. In the mean
+   over a run that of steps is true to a factor of 3, that of nodes to a factor of 4 where the run forgets within some
+   periods (docs/advice.md has what that was measured on); a single one may be off by more. Too few nodes also have
+   frequencies that are a little off: where nothing damps that adds up as phase, and only trials see it
+   (spar_session_advise). Each NULL: not wanted. Local, the same on all ranks.
      step: out, what the last step added, or what the step under way adds once it is solved, as the tolerance takes it:
            SPAR_ERR_STATE where none is set
      nodes: out, how far the motion between steps, and the loads there, would take a beam with four more nodes an
