@@ -1,9 +1,13 @@
 /* What threads gain (spar_session_set_threads): wall time of one thread over that of `threads`, the two taking turns,
-   the median of the turns (the bits are the same: tests/test_threads.c). threads [THREADS, default 2] */
+   the median of the turns (the bits are the same: tests/test_threads.c). threads [THREADS, default 2]
+   And whether the cost of a step stays linear: of an element of 4 nodes in beams of 1000 m, of a member among others,
+   one thread, median of so many steps from rest and the least. threads linear
+   threads linear MEMBERS ELEMENTS NODES STEPS: one of these, for valgrind --tool=callgrind */
 #include <math.h>
 #include <spar/spar.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 enum { TURNS = 15, MOST = 1000000 };
@@ -164,7 +168,43 @@ static void measure(size_t k, int threads) {
     }
 }
 
+/* ---- the cost of one among others ---- */
+
+enum { MOST_STEPS = 1000 };
+
+static void measure_one(int members, int elements, int nodes, int steps) {
+    scene w = {0};
+    double seconds[MOST_STEPS], each = 1e6 / members / elements;
+    make_members(&w, 1, members, elements, nodes, elements > 1 ? 1000 : 60);
+    for (int k = 0; k < steps; k++) {
+        seconds[k] = timed(&w, step);
+    }
+    qsort(seconds, (size_t)steps, sizeof *seconds, by_size);
+    printf("%8d %8d %8d %8d %10.2f %10.2f\n", members, elements, nodes, steps, each * seconds[steps / 2],
+           each * seconds[0]);
+    fflush(stdout);
+    spar_session_destroy(&w.s);
+}
+
+static int measure_linear(int argc, char **argv) {
+    static const int of[][4] = {{1, 32, 4, 100},   {1, 256, 4, 100}, {1, 512, 4, 100}, {1, 1024, 4, 100},
+                                {1, 4096, 4, 100}, {1, 1, 10, 200},  {300, 1, 10, 200}};
+    printf("%8s %8s %8s %8s %10s %10s\n", "members", "elements", "nodes", "steps", "us each", "least");
+    if (argc > 5) {
+        int steps = atoi(argv[5]);
+        measure_one(atoi(argv[2]), atoi(argv[3]), atoi(argv[4]), steps < MOST_STEPS ? steps : MOST_STEPS);
+        return 0;
+    }
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        measure_one(of[k][0], of[k][1], of[k][2], of[k][3]);
+    }
+    return 0;
+}
+
 int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "linear") == 0) {
+        return measure_linear(argc, argv);
+    }
     int threads = argc > 1 ? atoi(argv[1]) : 2;
     printf("%-46s %10s %8s\n", "", "1 thread", "gain of");
     printf("%-46s %10s %6d\n", "", "ms", threads);
