@@ -12,6 +12,7 @@
 #include "../solve/reaction.h"
 #include "rules.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -364,27 +365,55 @@ static double line_mean(double a, double b, double h) {
     return sqrt(a * a + a * b * h + b * b * h * h / 3);
 }
 
-/* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as from
-   the second third of it to the last. In the first it begins, from nothing. */
-static double error_growth(const spari_record *a, const spari_record *b, part_of which, double longer) {
-    enum { PARTS = 3 };
-    double e[PARTS] = {0}, all = 0, none = 0;
+enum { PARTS = 3 }; /* of a run */
+
+/* How much larger e, the roots of the mean squares in the parts of a run, are over `longer` times the run, if they go
+   on with the power of time that they have grown by last; over that of the motion, w, if it goes on as it is at the
+   end. */
+static double bent_growth(const double e[PARTS + 1], const double w[PARTS + 1], double longer) {
+    const double middle = (PARTS - 0.5) / PARTS, last = fmax(w[PARTS - 1], w[PARTS]);
+    double power = fmin(log(e[2] / fmax(e[1], DBL_MIN)) / log(middle / 0.5), spari_rule.bends),
+           error = pow(longer, power) * e[2] / pow(middle, power) / sqrt(2 * power + 1),
+           motion = sqrt((w[PARTS] * w[PARTS] + (longer - 1) * last * last) / longer);
+    return motion > 0 ? error / e[PARTS] * w[PARTS] / motion : error / e[PARTS];
+}
+
+/* Roots of the mean squares of the difference and of what it is relative to, in each part and at last in all. */
+static void sizes_of_parts(const spari_record *a, const spari_record *b, part_of which, double *e, double *w) {
+    memset(e, 0, (PARTS + 1) * sizeof *e);
+    memset(w, 0, (PARTS + 1) * sizeof *w);
     for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
-        add_squares(a, b, which, k, &e[PARTS * k / SPARI_SAMPLES], &none);
+        add_squares(a, b, which, k, &e[PARTS * k / SPARI_SAMPLES], &w[PARTS * k / SPARI_SAMPLES]);
     }
     for (int i = 0; i < PARTS; i++) {
-        all += e[i];
-        e[i] = sqrt(PARTS * e[i] / SPARI_SAMPLES);
+        e[PARTS] += e[i], w[PARTS] += w[i];
+        e[i] = sqrt(PARTS * e[i] / SPARI_SAMPLES), w[i] = sqrt(PARTS * w[i] / SPARI_SAMPLES);
     }
-    double middle = (PARTS - 0.5) / PARTS, slope = PARTS * (e[2] - e[1]), level = e[2] - slope * middle,
-           seen = sqrt(all / SPARI_SAMPLES);
+    e[PARTS] = sqrt(e[PARTS] / SPARI_SAMPLES), w[PARTS] = sqrt(w[PARTS] / SPARI_SAMPLES);
+}
+
+/* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as from
+   the second third of it to the last. In the first it begins, from nothing. Motion that turns goes on as it is: what it
+   is off by is phase, and grows straight. Where it does not yet turn, b shows the beginning of something, and the
+   difference goes on bending as it does. */
+static double error_growth(const spari_record *a, const spari_record *b, part_of which, double longer) {
+    double e[PARTS + 1], w[PARTS + 1];
+    sizes_of_parts(a, b, which, e, w);
+    const double middle = (PARTS - 0.5) / PARTS, slope = PARTS * (e[2] - e[1]), level = e[2] - slope * middle,
+                 seen = e[PARTS];
+    double grown;
+    if (seen <= 0) {
+        return 1;
+    }
     if (e[2] <= spari_rule.by_chance * e[1]) {
-        return seen > 0 ? fmax(e[2], seen) / seen : 1;
+        return fmax(e[2], seen) / seen;
     }
-    if (level < 0) { /* it was not there, at no time: it began with nothing */
-        level = 0, slope = e[2] / middle;
+    if (level >= 0) {
+        grown = line_mean(level, slope, longer) / seen;
+    } else { /* it was not there, at no time: it began with nothing */
+        grown = spari_record_vouches(b) ? line_mean(0, e[2] / middle, longer) / seen : bent_growth(e, w, longer);
     }
-    return seen > 0 ? fmax(line_mean(level, slope, longer) / seen, 1) : 1;
+    return fmax(grown, 1);
 }
 
 static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer, int samples) {
