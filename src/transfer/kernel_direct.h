@@ -7,11 +7,11 @@
    lines leave at once, here spread over the arithmetic of the nodes between them). */
 
 #if W == 8 && defined(STREAM)
-/* Where the triples of a run go. single: they are floats. */
+/* Where the triples of a run go. */
 typedef struct NAME(flow) {
-    char *to;           /* of the next pair of vectors; NULL: these triples are not wanted */
-    char *line;         /* which is written next; NULL: none yet, or lines cannot be made */
     __m512i last, turn; /* what is not written yet is at the end of last */
+    char *to;           /* of the next pair of vectors */
+    char *line;         /* which is written next; NULL: none yet, or lines cannot be made */
     int past;
 } NAME(flow);
 
