@@ -199,11 +199,40 @@ static void test_drive_in_step(void **state) {
     spar_session_destroy(&y.s);
 }
 
+/* Three driven rotations are a rotation vector: right up to half a turn, refused from there on, and what was driven
+   last stays; a driven hinge counts its turns. */
+static void test_half_a_turn(void **state) {
+    (void)state;
+    yard y = open_yard();
+    spar_joint *ball;
+    double q[2][7], turn[6] = {0, 0, 0, 0, 0, 3.1};
+    OK(y.s, spar_joint_create(y.s, "ball", y.body[1], 0, NULL, 0, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ, &ball));
+    OK(y.s, spar_joint_set_driven(ball, SPAR_FREE_RX | SPAR_FREE_RZ));
+    OK(y.s, spar_joint_set_driven(y.hinge, SPAR_FREE_RY));
+    for (int i = 1; i <= 31; i++) {
+        turn[5] = 0.1 * i;
+        OK(y.s, spar_joint_drive(ball, turn, (double[6]){0, 0, 0, 0, 0, 1}, NULL));
+        OK(y.s, spar_joint_drive(y.hinge, (double[6]){0, 0, 0, 0, 0.1 * i, 0}, NULL, NULL));
+        OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
+    }
+    OK(y.s, spar_member_get_motion(y.body[1], q[0], NULL, NULL));
+    NEAR(fabs(q[0][6]), sin(1.55), 1e-9);
+    turn[3] = 0.6, turn[5] = 3.1; /* 3.158 */
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'ball': a turn of 3.158 rad; where more than one rotation is free",
+            spar_joint_drive(ball, turn, NULL, NULL));
+    OK(y.s,
+       spar_joint_drive(ball, (double[6]){0, 0, 0, 0, 9, 3.1}, NULL, NULL)); /* what is not driven does not count */
+    OK(y.s, spar_joint_drive(y.hinge, (double[6]){0, 0, 0, 0, 3.2, 0}, NULL, NULL));
+    OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
+    spar_session_destroy(&y.s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_create),           cmocka_unit_test(test_describe), cmocka_unit_test(test_contradiction),
-        cmocka_unit_test(test_two_nodes_of_one), cmocka_unit_test(test_late),     cmocka_unit_test(test_short_form),
-        cmocka_unit_test(test_drive_in_step),
+        cmocka_unit_test(test_create),        cmocka_unit_test(test_describe),
+        cmocka_unit_test(test_contradiction), cmocka_unit_test(test_two_nodes_of_one),
+        cmocka_unit_test(test_late),          cmocka_unit_test(test_short_form),
+        cmocka_unit_test(test_drive_in_step), cmocka_unit_test(test_half_a_turn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

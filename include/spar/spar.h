@@ -849,7 +849,8 @@ SPAR_API int spar_member_set_spring(spar_member *member, int64_t node, int free_
 SPAR_API int spar_joint_set_driven(spar_joint *joint, int mask);
 /* Driven motions at the end of the step begun next; not driven anew, they stay where they are. Entries of what is not
    driven are not looked at. Between steps.
-     motion[6]: in, m, rad; a hinge's angle with its turns
+     motion[6]: in, m, rad; a hinge's angle with its turns; where more than one rotation is free those of the rotation
+           vector, which is below half a turn (SPAR_ERR_ARGUMENT)
      rate[6], acceleration[6]: in, of them, NULL: 0
    Local, the same on every rank. */
 SPAR_API int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6],

@@ -263,6 +263,20 @@ int spar_joint_set_driven(spar_joint *joint, int mask) {
     return SPAR_OK;
 }
 
+/* Several rotations are those of a rotation vector, which is of no use from half a turn on: the tie's own is below. */
+static int need_below_half_a_turn(const spar_joint *j, const double motion[6], const char *call) {
+    double turn[3];
+    for (int k = 0; k < 3; k++) {
+        turn[k] = j->driven >> (3 + k) & 1 ? motion[3 + k] : 0;
+    }
+    SPARI_REQUIRE(
+        j->session, j->tie.line || spari_tie_axis(j->tie.free) >= 0 || spari_norm(turn) < M_PI, SPAR_ERR_ARGUMENT,
+        "%s: '%s': a turn of %.4g rad; where more than one rotation is free they are a rotation vector, below "
+        "half a turn. Only a hinge counts its turns: drive that, or the root of the member",
+        call, j->name, spari_norm(turn));
+    return SPAR_OK;
+}
+
 int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6], const double acceleration[6]) {
     SPARI_QUIET;
     static const double rest[6] = {0};
@@ -278,6 +292,7 @@ int spar_joint_drive(spar_joint *joint, const double motion[6], const double rat
     for (int k = 0; k < 3; k++) {
         SPARI_TRY(spari_need_finite(s, __func__, joint->name, name[k], 6, in[k]));
     }
+    SPARI_TRY(need_below_half_a_turn(joint, motion, __func__));
     memcpy(joint->drive[1].z, in[0], 6 * sizeof **in);
     memcpy(joint->drive[1].rate, in[1], 6 * sizeof **in);
     memcpy(joint->drive[1].acceleration, in[2], 6 * sizeof **in);
