@@ -679,10 +679,24 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
     return SPAR_OK;
 }
 
+/* What a longer run comes to is not in the trials where the motion still grows at their end. */
+static void tell_growth(const spari_advisor *d, double T, double swells) {
+    char text[SPARI_MESSAGE_SIZE];
+    if (d->session->log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
+        (void)snprintf(
+            text, sizeof text,
+            "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
+            "last): what it comes to in %.4g s they do not show, and errors of phase alone are foreseen; give "
+            "more steps where it comes to something else",
+            SPARI_ADVISE, T, swells, T * d->longer);
+        spari_log(d->session, SPAR_LOG_WARNING, text);
+    }
+}
+
 /* What trials of this time can say of the run. */
 static int check_reference(spari_advisor *d) {
     const spar_session *s = d->session;
-    double T = d->run.dt * (double)d->run.steps, said[3] = {0};
+    double T = d->run.dt * (double)d->run.steps, said[4] = {0};
     SPARI_REQUIRE(
         s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
         "%s: no reference to compare with: with dt/%.3g and finer nodes its own error is about %.3g, and must "
@@ -693,13 +707,15 @@ static int check_reference(spari_advisor *d) {
     if (spari_comm_rank(s->comm) == 0) {
         said[0] = spari_record_shortest(&d->reference, d->tolerance);
         said[1] = d->longer > spari_rule.foreseen ? spari_record_vouches(&d->reference) : 1;
+        said[2] = spari_record_swells(&d->reference);
     }
-    SPARI_TRY(spari_comm_sum(s->comm, said, 2, SPAR_OK, d->session->message, sizeof d->session->message));
+    SPARI_TRY(spari_comm_sum(s->comm, said, 3, SPAR_OK, d->session->message, sizeof d->session->message));
     d->shortest = said[0];
     SPARI_REQUIRE(s, said[1] > 0, SPAR_ERR_NUMERIC,
                   "%s: trials of %.4g s do not tell what a run of %.4g s does: the motion neither settles in them nor "
                   "turns as often as a period does; give more steps, or the length %.4g",
                   SPARI_ADVISE, T, T * d->longer, T);
+    tell_growth(d, T, said[2]);
     return SPAR_OK;
 }
 

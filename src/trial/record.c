@@ -585,3 +585,9 @@ int spari_record_vouches(const spari_record *r) {
     }
     return crossings >= 2;
 }
+
+double spari_record_swells(const spari_record *r) {
+    double e[PARTS + 1], w[PARTS + 1];
+    sizes_of_parts(r, r, whole_of(r, SPARI_OF_MOTION), e, w);
+    return w[1] > 0 ? w[2] / w[1] : 1;
+}

@@ -80,5 +80,7 @@ double spari_record_reach(const spari_record *record);
 double spari_record_shortest(const spari_record *record, double part);
 /* Whether the run shows what goes on after it: its motion has settled, or turned as often as a period does. */
 int spari_record_vouches(const spari_record *record);
+/* How much larger its motion is in the last third than in the one before. */
+double spari_record_swells(const spari_record *record);
 
 #endif
