@@ -237,7 +237,7 @@ typedef struct farm_scene {
 static void farm_member(farm_scene *w, int i) {
     double K[36], M[36], mass[36];
     const double at[3] = {0, i, 0}, rest[4] = {1, 0, 0, 0}, omega[3] = {0.1 * i, 1, 0};
-    char name[8];
+    char name[16];
     (void)snprintf(name, sizeof name, "m%d", i);
     scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
     scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
