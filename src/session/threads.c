@@ -123,7 +123,7 @@ int spari_threads_solve(spar_session *s) {
 
 static int make_unit_room(spar_session *s, int64_t most) {
     spari_unit *unit = spari_zalloc(most, sizeof *unit);
-    spar_member **member = spari_zalloc(most, sizeof *member);
+    spar_member **member = spari_zalloc(most, sizeof(spar_member *));
     if (!unit || !member) {
         free(unit);
         free(member);

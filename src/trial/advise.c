@@ -479,7 +479,7 @@ static int begin_explicit(const spari_advisor *d, const spari_plan *structure, s
 /* Explicit coupling at a place of the grid, from one predictor on: the better of them; the second where the first does
    not keep the tolerance. */
 static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, int predictor, spari_outcome *better) {
-    better->error = better->cost = INFINITY;
+    *better = (spari_outcome){.error = INFINITY, .cost = INFINITY};
     for (; predictor <= 2 && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT) && !spari_plan_is_good(d, better); predictor++) {
         spari_outcome o;
         spari_plan p = coupled_by(structure, SPAR_COUPLING_EXPLICIT, predictor, d->session->coupling_rtol);
@@ -547,14 +547,17 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
         SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
     }
     SPARI_TRY(try_iterated(d, structure, best));
+    if (!far) {
+        return SPAR_OK;
+    }
     double order = isfinite(seen.error) && !direct.guessed ? order_of(&seen, &direct) : 2;
-    if (far && seen.error < direct.error) {
+    if (seen.error < direct.error) {
         direct = seen;
         direct.plan.newton = structure->newton;
         direct.plan.steps = spari_plan_steps(d, begin);
     }
     double cost = explicit_cost(&direct, order, goal);
-    if (far && (!isfinite(best->cost) || (cost < best->cost && spari_plan_pays(d, cost, best->cost - cost)))) {
+    if (!isfinite(best->cost) || (cost < best->cost && spari_plan_pays(d, cost, best->cost - cost))) {
         SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
     }
     return SPAR_OK;

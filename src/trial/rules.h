@@ -43,9 +43,9 @@ typedef struct spari_rules {
     double by_chance;        /* errors that are so many times as large in the last third as in the one before grow */
     double bends;            /* the power of time that they grow by at most */
     double foreseen;         /* beyond so many times the trials' time they must have shown what goes on */
-    double swells;          /* motion that is so many times as large in the last third as in the one before still grows */
-    double settled;         /* motion that in the second half of the trials changes by less than this part goes on so */
-    double resolves;        /* steps in the shortest period of what moves by more than the tolerance, at least */
+    double swells;   /* motion that is so many times as large in the last third as in the one before still grows */
+    double settled;  /* motion that in the second half of the trials changes by less than this part goes on so */
+    double resolves; /* steps in the shortest period of what moves by more than the tolerance, at least */
     double fidelity, nodes; /* shares that a lower fidelity and fewer nodes may take, */
     double elements;        /* other elements in place of those, with nodes of their own, */
     double unknowns[2];     /* and so much of the unknowns at least, in fewer elements and in more, */
