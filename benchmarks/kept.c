@@ -3,6 +3,7 @@
    steps of a sixteenth and of half that point to, on more nodes, with the coupling converged. kept [--scene name]
    [--scale factor ...] [--verbose]: asks at so many times the tolerances, for each factor; 1 where there is none. A
    table on stdout; 1: one tolerance or more is not kept. */
+#include "try.h"
 #include "worlds.h"
 
 #include <math.h>
@@ -11,14 +12,6 @@
 #include <string.h>
 
 enum { TIMES = 10, FINER = 16 };
-
-#define TRY(call)                                                                                                      \
-    do {                                                                                                               \
-        int status_ = (call);                                                                                          \
-        if (status_ != SPAR_OK) {                                                                                      \
-            return status_;                                                                                            \
-        }                                                                                                              \
-    } while (0)
 
 /* Ends of the members. */
 static int look(const world *w, double *out) {

@@ -1,4 +1,5 @@
 #include "scenes.h"
+#include "try.h"
 
 #include "nrel5mw.h"
 
@@ -9,14 +10,6 @@
 
 enum { STRIPS = 12, WING_STRIPS = 16, SECTIONS = 64 };
 static const double pi = 3.14159265358979323846;
-
-#define TRY(call)                                                                                                      \
-    do {                                                                                                               \
-        int status_ = (call);                                                                                          \
-        if (status_ != SPAR_OK) {                                                                                      \
-            return status_;                                                                                            \
-        }                                                                                                              \
-    } while (0)
 
 static int settings(spar_session *s, const knobs *k) {
     TRY(spar_session_set_integrator(s, k->rho, k->substeps));

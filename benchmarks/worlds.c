@@ -1,16 +1,9 @@
 #include "worlds.h"
+#include "try.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define TRY(call)                                                                                                      \
-    do {                                                                                                               \
-        int status_ = (call);                                                                                          \
-        if (status_ != SPAR_OK) {                                                                                      \
-            return status_;                                                                                            \
-        }                                                                                                              \
-    } while (0)
 
 int world_solve(spar_session *s, double t, double dt, int iteration, void *context) {
     world *w = context;
