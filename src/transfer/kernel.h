@@ -514,19 +514,26 @@ HERE void NAME(ask_ahead)(const spari_nodes *s, const double *const *from, const
     }
 }
 
+/* Where two vectors of nodes are, from node p of all on, the i-th of the rows. Answers the least |Q|^2. */
+HERE L NAME(move_pair)(const spari_nodes *s, const double *const *from, const double *const *row, int64_t p, int i,
+                       const double *c, const int consistent, const int what, L (*out)[SPARI_ROWS]) {
+    L in[4][2];
+    NAME(ask_ahead)(s, from, 4, p);
+    NAME(get_pair)(row, 4, i, in);
+    return NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out);
+}
+
 HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const double *c, const int consistent,
                       const int what, double (*buf)[SPARI_ROW], int at) {
     static const double huge = HUGE_VAL;
     const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     double pad[4][PAIR];
-    L least = SPLAT(&huge), in[4][2], out[2][SPARI_ROWS];
+    L least = SPLAT(&huge), out[2][SPARI_ROWS];
     for (int begin = 0, end = count - count % PAIR; begin < count; begin = end, end = count) {
         const double *row[4];
         NAME(begin_rows)(from, 4, 0, first, begin, end, pad, row);
         for (int i = begin; i < end; i += PAIR) {
-            NAME(ask_ahead)(s, from, 4, first + i);
-            NAME(get_pair)(row, 4, i - begin, in);
-            least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
+            least = NAME(less)(least, NAME(move_pair)(s, from, row, first + i, i - begin, c, consistent, what, out));
             NAME(put_rows)(what, out[0], buf, at + i);
             NAME(put_rows)(what, out[1], buf, at + i + W);
         }

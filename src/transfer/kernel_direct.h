@@ -146,15 +146,13 @@ HERE double NAME(direct)(const spari_nodes *s, int64_t first, int count, const d
     static const double huge = HUGE_VAL;
     const double *const from[4] = {s->xi, s->con[0], s->con[1], s->con[2]};
     double pad[4][PAIR];
-    L least = SPLAT(&huge), in[4][2], out[2][SPARI_ROWS];
+    L least = SPLAT(&huge), out[2][SPARI_ROWS];
     NAME(flow) places = NAME(flow_to)(x, past), rates = NAME(flow_to)(v, past);
     for (int begin = 0, end = count - count % PAIR; begin < count; begin = end, end = count) {
         const double *row[4];
         NAME(begin_rows)(from, 4, 0, first, begin, end, pad, row);
         for (int i = begin; i < end; i += PAIR) {
-            NAME(ask_ahead)(s, from, 4, first + i);
-            NAME(get_pair)(row, 4, i - begin, in);
-            least = NAME(less)(least, NAME(move)(s->per_element, c, consistent, what, (const L(*)[2])in, out));
+            least = NAME(less)(least, NAME(move_pair)(s, from, row, first + i, i - begin, c, consistent, what, out));
             if (x) {
                 const L t[2][3] = {{out[0][0], out[0][1], out[0][2]}, {out[1][0], out[1][1], out[1][2]}};
                 NAME(give_pair)(&places, single, t, end - i);
