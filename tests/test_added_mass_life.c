@@ -332,6 +332,9 @@ static void mast_create(mast *m, double mass, double guess, int fidelity) {
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12 * rough, 1e-11 * rough, 300));
 }
 
+/* With any guess the same, to what the coupling leaves; but for the steps of another length, which have a stage whose
+   loads are linear in time: the part that the guess accounts for follows the acceleration of the stage, so that the
+   answer differs by (omega dt)^2 / 8 = 1.1e-2 of the way that the load of 3 rad/s makes in steps of 0.1 s, 0.03 m. */
 static void statics_and_longer_steps(void **state) {
     (void)state;
     static const int fidelity[3] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
@@ -359,7 +362,7 @@ static void statics_and_longer_steps(void **state) {
             print_message("fidelity %d, %d: tip %g, off by %.1e\n", fidelity[f], i, q[0][i][2],
                           distance(q[0][i], q[1][i], 7));
             assert_true(fabs(q[0][i][2]) > 1e-3);
-            NEAR(distance(q[0][i], q[1][i], 7), 0, 1e-8);
+            NEAR(distance(q[0][i], q[1][i], 7), 0, i == 2 ? 1.1e-2 * 0.03 : 1e-8);
         }
     }
 }

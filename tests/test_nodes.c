@@ -130,7 +130,7 @@ typedef struct substep {
 
 /* Increments whose rotation vectors, with the term of the rates, have this angle. */
 static void random_substep(int n, double angle, int still, substep *s) {
-    s->c = (spari_scheme){.h = 0.1, .cv = 30, .rate = 30, .cm = 400, .cb = 500, .still = still};
+    s->c = (spari_scheme){.h = 0.1, .span = 0.1, .cv = 30, .rate = 30, .cm = 400, .cb = 500, .still = still};
     random_state(n, &s->from, s->room[0]);
     random_state(n, &s->to, s->room[1]);
     random_numbers(6 * n, 1, s->x);
@@ -296,7 +296,7 @@ static void check_prediction(const substep *s, const substep *own, spari_guess s
         assert_true(stays != SPARI_KEEP_ACCELERATION || a1[i] == a[i]);
         assert_true(stays != SPARI_KEEP_VELOCITY || fabs(own->x[i] - h * v[i]) <= 1e-14);
         assert_true(stays != SPARI_KEEP_PLACE || fabs(own->x[i]) <= 1e-14);
-        spari_rates from = {s->from.v + i, s->from.a + i, s->from.b + i}, to = {one, one + 1, one + 2};
+        spari_rates from = {s->from.v + i, s->from.a + i, s->from.b + i, NULL}, to = {one, one + 1, one + 2, NULL};
         spari_scheme_predict(c, stays, 1, from, one + 3, to);
         assert_true(one[0] == v1[i] && one[1] == a1[i] && one[2] == b1[i] && one[3] == own->x[i]);
     }

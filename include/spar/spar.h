@@ -186,12 +186,13 @@ SPAR_API const char *spar_session_message(const spar_session *session);
 /* g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
-/* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). dt may grow or shrink by any factor from step to
-   step: what a longer step does not resolve is damped by rho_inf a step and feeds nothing.
-     rho_inf: in, spectral radius at infinite frequency, in [0,1]; 1 keeps all, 0 damps most and has 5.4 times the error
-           of dt that 0.9 has; default 0.9. An exact beam
-           that spins at Omega without a driven root, with parts that the step does not resolve, needs 1 - rho_inf > 1.5
-           Omega dt
+/* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012) while dt stays the same within 0.1 %. Steps of
+   another length, and the one after them, are taken by TR-BDF2: two solutions with one tangent. dt may grow or shrink
+   by any factor from step to step. What a step does not resolve is damped and feeds nothing. A substep without a
+   solution, or whose solution gains energy that no load gives, is cut inside, down to 1/1024 of it (SPAR_ERR_NUMERIC).
+     rho_inf: in, spectral radius of generalised-alpha at infinite frequency, in [0,1]; 1 keeps all, 0 damps most and
+           has 5.4 times the error of dt that 0.9 has; default 0.9. An exact beam that spins at Omega without a driven
+           root is taken by TR-BDF2 where 1 - rho_inf < 1.5 Omega dt
      substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
            default 1. More than one: fluids pull means of accelerations (spar_fluid_pull_sections)
    SPAR_ERR_MEMORY: all is as before. */

@@ -12,8 +12,10 @@ static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
 /* Where messages go instead; NULL: where they belong. */
 static _Thread_local char *aside;
 
-void spari_messages_aside(char *text) {
+char *spari_messages_aside(char *text) {
+    char *before = aside;
     aside = text;
+    return before;
 }
 
 void spari_log(const spar_session *s, int level, const char *text) {

@@ -6,6 +6,8 @@
 #include "message.h"
 #include "room.h"
 
+#include <math.h>
+
 typedef struct spari_comm spari_comm; /* comm/comm.h */
 typedef struct spari_own spari_own;   /* session/own.h */
 
@@ -113,10 +115,20 @@ struct spar_session {
 double spari_setting_value(const spar_session *session, const spari_setting *of);
 
 /* While `text` [SPARI_MESSAGE_SIZE] is not NULL, what fails in this thread writes its message there, and no session and
-   no log hears of it. */
-void spari_messages_aside(char *text);
+   no log hears of it. Returns where they went before. */
+char *spari_messages_aside(char *text);
 
 /* Tells the host's log, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);
+
+/* Steps of one length: hosts' steps differ in their last bits. */
+static inline int spari_steps_alike(double h, double last) {
+    return fabs(h - last) <= 1e-3 * last;
+}
+/* Whether a step dt of the session is taken by generalised-alpha (solve/scheme.h). */
+static inline int spari_steps_even(const spar_session *s, double dt) {
+    return s->step == 0 ||
+           (spari_steps_alike(dt, s->dt_last[0]) && (s->step == 1 || spari_steps_alike(s->dt_last[0], s->dt_last[1])));
+}
 
 #endif

@@ -369,34 +369,40 @@ void spari_added_see(spar_member *m) {
     (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, m->after.a, 1, m->added->shift);
 }
 
-/* Generalised-alpha's numbers; answer: what a change of the acceleration at t^{n+1} makes of (v^{n+1} - v^n) / dt. */
+/* (v^{n+1} - v^n) / dt by the true accelerations at both ends and the algorithmic one b^n, and that one after the step
+   (solve/scheme.h). Of a step of TR-BDF2 the acceleration at its stage is taken for linear in between, and b^n stays
+   out. */
 typedef struct integration {
-    double am, af, gamma, answer;
+    double a0, b0, a1;                /* of the change of the velocity */
+    double next_a0, next_b0, next_a1; /* of b^{n+1} */
+    double stretch;                   /* of b^n - a^n, from step to step */
 } integration;
 
-static integration integration_of(const spar_session *s) {
-    double rho = s->rho_inf, am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 + af - am;
-    return (integration){am, af, gamma, gamma * (1 - af) / (1 - am)};
-}
-
-/* Of a step of another length the scheme goes on from another acceleration of its own (spari_scheme_stretch). */
-static double stretch_of(const spar_session *s, double dt) {
-    double before = s->dt_last[0];
-    return s->step > 0 && before > 0 ? fmin(dt / before, 4) : 1;
+static integration integration_of(const spar_session *s, double dt) {
+    double rho = s->rho_inf, am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 + af - am,
+           f = fmax(am - af, -0.8);
+    if (!spari_steps_even(s, dt)) {
+        return (integration){0.5, 0, 0.5, -f, 0, 1 + f, 1};
+    }
+    return (integration){.a0 = gamma * af / (1 - am),
+                         .b0 = 1 - gamma - gamma * am / (1 - am),
+                         .a1 = gamma * (1 - af) / (1 - am),
+                         .next_a0 = af / (1 - am),
+                         .next_b0 = -am / (1 - am),
+                         .next_a1 = (1 - af) / (1 - am),
+                         .stretch = s->step > 0 ? dt / s->dt_last[0] : 1};
 }
 
 /* The fluid's acceleration is the change of the velocity over dt. Of that one part follows the acceleration at t^{n+1},
    which A stands for; all of it is extrapolated, and what of it is known at t^n is taken out again. */
 static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
     const spari_added *d = m->added;
-    const integration g = integration_of(m->session);
-    double ratio = stretch_of(m->session, dt);
+    const integration g = integration_of(m->session, dt);
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        double a = m->now.a[i], b = a + ratio * (d->scheme[i] - a);
-        double known = (1 - g.gamma) * b + g.gamma * (g.af * a - g.am * b) / (1 - g.am);
-        d->shift[i] = w[0] * d->mean[0][i] + w[1] * d->mean[1][i] + w[2] * d->mean[2][i] - known;
+        double a = m->now.a[i], b = a + g.stretch * (d->scheme[i] - a);
+        d->shift[i] = w[0] * d->mean[0][i] + w[1] * d->mean[1][i] + w[2] * d->mean[2][i] - g.a0 * a - g.b0 * b;
     }
-    (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, d->shift, 1 / g.answer, m->load_used);
+    (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, d->shift, 1 / g.a1, m->load_used);
 }
 
 void spari_added_predict(spar_member *m, const double w[3], double dt) {
@@ -433,13 +439,13 @@ void spari_added_restart(spar_member *m) {
 
 static void accept_means(spar_member *m) {
     spari_added *d = m->added;
-    const integration g = integration_of(m->session);
-    double *last = d->mean[2], dt = m->session->dt, ratio = stretch_of(m->session, dt);
+    double *last = d->mean[2], dt = m->session->dt;
+    const integration g = integration_of(m->session, dt);
     d->mean[2] = d->mean[1], d->mean[1] = d->mean[0], d->mean[0] = last;
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        double a = m->now.a[i], b = a + ratio * (d->scheme[i] - a);
+        double a = m->now.a[i], b = a + g.stretch * (d->scheme[i] - a);
         last[i] = (m->after.v[i] - m->now.v[i]) / dt;
-        d->scheme[i] = ((1 - g.af) * m->after.a[i] + g.af * a - g.am * b) / (1 - g.am);
+        d->scheme[i] = g.next_a1 * m->after.a[i] + g.next_a0 * a + g.next_b0 * b;
     }
 }
 

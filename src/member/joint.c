@@ -5,6 +5,8 @@
 #include "../math/rotation.h"
 #include "edge.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -476,11 +478,13 @@ void spari_joint_drive_at(const spar_joint *j, double s, double dt, spari_driven
         *at = *b;
         return;
     }
-    double h01 = s * s * (3 - 2 * s), h00 = 1 - h01, h10 = s * (1 - s) * (1 - s), h11 = -s * s * (1 - s),
-           d01 = 6 * s * (1 - s), d10 = (1 - s) * (1 - 3 * s), d11 = s * (3 * s - 2);
+    double h01 = s * s * (3 - 2 * s), h00 = 1 - h01, h10 = s * (1 - s) * (1 - s), h11 = -s * s * (1 - s);
     for (int k = 0; k < 6; k++) {
+        double way = b->z[k] - a->z[k] - 0.5 * dt * (a->rate[k] + b->rate[k]),
+               most = fmax(fabs(a->z[k]), fabs(b->z[k]));
+        way = fabs(way) <= 8 * DBL_EPSILON * most ? 0 : way; /* rounding, by a short dt, is a rate of its own */
         at->z[k] = h00 * a->z[k] + h01 * b->z[k] + dt * (h10 * a->rate[k] + h11 * b->rate[k]);
-        at->rate[k] = d01 * (b->z[k] - a->z[k]) / dt + d10 * a->rate[k] + d11 * b->rate[k];
+        at->rate[k] = (1 - s) * a->rate[k] + s * b->rate[k] + 6 * s * (1 - s) * way / dt;
         at->acceleration[k] = (1 - s) * a->acceleration[k] + s * b->acceleration[k];
     }
 }

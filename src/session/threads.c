@@ -59,9 +59,9 @@ static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int st
     if (status == SPAR_OK) {
         return solve_unit(s, m, a);
     }
-    spari_messages_aside(unheard);
+    (void)spari_messages_aside(unheard);
     (void)solve_unit(s, m, a);
-    spari_messages_aside(NULL);
+    (void)spari_messages_aside(NULL);
     return status;
 }
 
@@ -82,9 +82,9 @@ static void solve_item(void *context, int64_t item, int worker) {
     spar_session *s = context;
     spari_unit *u = s->own->unit + item;
     (void)worker;
-    spari_messages_aside(u->message);
+    (void)spari_messages_aside(u->message);
     u->status = solve_unit(s, u->member, u->assembly);
-    spari_messages_aside(NULL);
+    (void)spari_messages_aside(NULL);
 }
 
 static int64_t list_units(const spar_session *s, spari_unit *unit) {

@@ -6,13 +6,13 @@
 #include "../member/added.h"
 #include "../member/applied.h"
 #include "alpha_nodes.h"
-#include "leap.h"
 #include "leave.h"
 #include "newton.h"
 #include "root.h"
 #include "solver.h"
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +33,7 @@ static spari_node_work alpha_work(const spari_solver *s) {
 /* The same of a substep's increments. */
 static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double *x) {
     spari_node_work work = alpha_work(s);
-    work.c = c, work.from = &e->from, work.to = &e->to, work.x = x;
+    work.c = c, work.from = &e->from, work.to = &e->to, work.x = x, work.stage = s->stage_v;
     return work;
 }
 
@@ -77,7 +77,7 @@ static void predict_span(void *context, int64_t from, int64_t to) {
 int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
                         spari_ends *e, double *x) {
     int shape = stays == SPARI_KEEP_SHAPE;
-    if (shape && !e->root) {
+    if (shape && !(e->root && member->root == SPAR_ROOT_DRIVEN)) {
         return 0;
     }
     if (shape) {
@@ -237,14 +237,14 @@ static void turn_matrix(const double q[4], double T[9]) {
     }
 }
 
-/* The rotation vector of node i from its increment, and k = h^2 cv / 12 of what it changes by with the rates. */
+/* The rotation vector of node i from its increment, and k = span^2 cv / 12 of what it changes by with the rates. */
 static double rotation_of(const spari_scheme *c, const spari_ends *e, const double *x, int i, double psi[3]) {
     double turn[3];
     spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, turn);
     for (int j = 0; j < 3; j++) {
-        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->h * c->h / 12 * turn[j]);
+        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->span * c->span / 12 * turn[j]);
     }
-    return c->still ? 0 : c->h * c->h * c->cv / 12;
+    return c->still ? 0 : c->span * c->span * c->cv / 12;
 }
 
 /* y = (I - k w~)^-1 x, in closed form (I + k w~ + k^2 w w^T) / (1 + k^2 w.w); y may be x. */
@@ -257,7 +257,7 @@ static void less_spin(double k, const double w[3], const double x[3], double y[3
 }
 
 /* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
-   d x = I - k omega^n~, k = h^2 cv / 12. */
+   d x = I - k omega^n~, k = span^2 cv / 12. */
 void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x) {
     for (int i = 0; i < s->n; i++) {
         double psi[3], t[9], *out = s->tinv + 9 * i, k = rotation_of(c, e, x, i, psi);
@@ -337,7 +337,7 @@ void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const
         double turn[3];
         spari_cross(s->dx + 6 * i + 3, e->from.v + 6 * i + 3, turn);
         for (int k = 0; k < 3; k++) {
-            s->increment[6 * i + 3 + k] += v * c->h * c->h / 12 * turn[k];
+            s->increment[6 * i + 3 + k] += v * c->span * c->span / 12 * turn[k];
         }
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             e->to.v[k] -= v * s->dx[k];
@@ -466,7 +466,7 @@ static void end_alone(void *self, int iterations, int fresh) {
     const alpha_step *t = self;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
     t->s->factored = t->s->factored && serves_on(t->s, patience(t->member->session), iterations, fresh);
-    if (!t->s->factored || t->s->h_leapt > 0) { /* for an answer (spari_solver_answer): what leaps take the room for */
+    if (!t->s->factored) { /* for an answer (spari_solver_answer) */
         spari_alpha_operators(t->s, t->c, t->e, t->x);
     }
 }
@@ -503,8 +503,7 @@ void spari_alpha_unbalance(void *self, const spar_member *member, const double *
     }
 }
 
-static int start(void *self, const spar_member *member, const spari_scheme *c) {
-    spari_solver *s = self;
+static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
     spari_state *b = &s->begin;
     int n = s->n, end = spari_member_held(member);
     if (member->root != SPAR_ROOT_DRIVEN) {
@@ -519,88 +518,48 @@ static int start(void *self, const spar_member *member, const spari_scheme *c) {
         "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia to every "
         "direction in which it can move freely",
         member->name);
-    const double *a = b->a;
-    if (s->own[0].q) {
-        const spari_pose root = spari_pose_of(b->q, b->v, b->a);
-        spari_root_look_from(s, member, &root, b, &s->own[0]);
-        a = s->own[0].a;
-    }
-    memcpy(b->b, a, (size_t)(6 * n) * sizeof *b->b);
+    spari_stage_remember(s, member, c);
+    s->steps.started = 1;
     return SPAR_OK;
 }
 
-static void swap(spari_state *a, spari_state *b) {
-    spari_state t = *a;
-    *a = *b;
-    *b = t;
+/* A member by itself, in a step. */
+typedef struct alpha_run {
+    spari_solver *s;
+    spar_member *member;
+    spari_stage stage;
+} alpha_run;
+
+static void enter_alone(void *self, const spari_part *part) {
+    const alpha_run *t = self;
+    (void)part;
+    spari_stage_enter(t->s);
 }
 
-/* Takes out of the acceleration carried along what a much longer step no longer resolves; seen from a driven root it
-   stands in the root's axes. */
-static int begin_leap(spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                      const spari_state *from) {
-    const spari_pose root = spari_pose_of(from->q, from->v, from->a);
-    double *b = e->from.b;
-    int n6 = 6 * s->n, turned = e->root != NULL;
-    if (s->h_leapt == c->h) { /* the coupling's next iteration begins where the last one did */
-        memcpy(b, s->leapt, (size_t)n6 * sizeof *b);
-        return SPAR_OK;
-    }
-    for (int i = 0; i < n6 && turned; i += 3) {
-        spari_rotate(root.q + 3, b + i, b + i);
-    }
-    int singular = spari_leap(s, member, from, c, b);
-    for (int i = 0; i < n6 && turned; i += 3) {
-        spari_rotate_back(root.q + 3, b + i, b + i);
-    }
-    SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
-                  "member '%s': found a singular tangent at t = %g, the beginning of a longer step; take a smaller dt",
-                  member->name, member->session->time);
-    s->factored = s->factored && !member->added; /* that tangent knows no added mass */
-    memcpy(s->leapt, b, (size_t)n6 * sizeof *b);
-    s->h_leapt = c->h;
-    return SPAR_OK;
+static double turning_alone(const void *self) {
+    const alpha_run *t = self;
+    return spari_stage_turning(t->s, t->member);
 }
 
-static void begin_span(void *context, int64_t from, int64_t to) {
-    const spari_solver *s = context;
-    const spari_state *b = &s->begin;
-    size_t n = (size_t)(to - from) * sizeof *b->q;
-    memcpy(s->to.q + 7 * from, b->q + 7 * from, 7 * n);
-    memcpy(s->to.v + 6 * from, b->v + 6 * from, 6 * n);
-    memcpy(s->to.a + 6 * from, b->a + 6 * from, 6 * n);
-    memcpy(s->to.b + 6 * from, b->b + 6 * from, 6 * n);
-}
-
-static double begin_step(void *self) {
-    const spari_solver *s = self;
-    spari_solver_spread(s, begin_span, self);
-    return s->power_begin;
-}
-
-static int substep(void *self, const spar_member *member, const spari_scheme *c, const spari_part *part,
-                   double *power) {
-    spari_solver *s = self;
-    double turn[4] = {1, 0, 0, 0};
-    swap(&s->from, &s->to);
-    if (s->arms) {
-        spari_arms_at(s->arms, part->s);
-    }
-    if (member->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_between(part->before.q + 3, part->root.q + 3, turn);
-    }
-    spari_ends e = spari_root_ends(s, member, c, &part->root, part->ratio, &s->from, &s->to);
-    if (part->leaps) {
-        SPARI_TRY(begin_leap(s, member, c, &e, &s->from));
-    }
-    int status = newton(&(alpha_step){s, member, c, &part->root, turn, &e, s->increment});
+static int solve_alone(void *self, const spari_scheme *c, const spari_part *part) {
+    alpha_run *t = self;
+    spari_stage *g = &t->stage;
+    spari_solver *s = t->s;
+    SPARI_TRY(spari_stage_begin(s, t->member, c, part, g));
+    int status = newton(&(alpha_step){s, t->member, c, &g->root, g->turn, &g->ends, s->increment});
     s->factored = s->factored && status == SPAR_OK;
-    *power = s->power;
     return status;
 }
 
+static int leave_alone(void *self, const spari_scheme *c, const spari_part *part) {
+    alpha_run *t = self;
+    (void)part;
+    spari_stage_leave(t->s, t->member, c, &t->stage);
+    return SPAR_OK;
+}
+
 int spari_solver_answer(spari_solver *s, const spar_member *member, double *load, double *motion) {
-    spari_scheme c = spari_scheme_of(member, s->body->D != NULL, s->steps.h_solved);
+    spari_scheme c = spari_scheme_last(member, s->body->D != NULL, &s->steps.solved);
     if (!s->factored && spari_alpha_tangent(s, member, &c, &s->to)) {
         return 1;
     }
@@ -608,12 +567,39 @@ int spari_solver_answer(spari_solver *s, const spar_member *member, double *load
     return solve_turned(s, s->to.q, load, motion);
 }
 
-static const spari_integrand by_alpha = {start, begin_step, substep};
+static int gains_alone(void *self, const spari_part *part) {
+    alpha_run *t = self;
+    double gain, size;
+    if (spari_stage_is_near(t->s, t->member, part->dt * (part->to - part->from))) {
+        return 0;
+    }
+    spari_stage_energy(t->s, t->member, part, &gain, &size);
+    return gain > SPARI_GAIN * size;
+}
+
+static void name_alone(const void *self, char *text, int size) {
+    const alpha_run *t = self;
+    (void)snprintf(text, (size_t)size, "member '%s'", t->member->name);
+}
 
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
-    return spari_scheme_advance(&by_alpha, s, &s->steps, 6 * s->n, member, s->body->D != NULL, dt);
+    static const spari_stepper how = {enter_alone, turning_alone, solve_alone, leave_alone, gains_alone, name_alone};
+    const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->substeps);
+    alpha_run t = {.s = s, .member = member};
+    if (!s->steps.started && !c.still) {
+        SPARI_TRY(start(s, member, &c));
+    }
+    s->steps.solved = s->steps.begin;
+    spari_stage_start(s, member, &t.stage);
+    return spari_scheme_run(&how, &t, &c, &s->steps.solved, member->session, dt);
 }
 
 int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {
-    return spari_scheme_balance(&by_alpha, s, &s->steps, member, dt);
+    const spari_scheme c = spari_scheme_of(member, 0, dt / member->session->substeps);
+    spari_stage at;
+    if (!s->steps.started && !c.still) {
+        SPARI_TRY(start(s, member, &c));
+    }
+    spari_stage_start(s, member, &at);
+    return SPAR_OK;
 }

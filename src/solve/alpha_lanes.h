@@ -154,7 +154,7 @@ TARGET static void NAME(turn_forth)(const spari_node_work *t, int64_t from, int6
 
 /* psi of the increment and the rates at both ends, which are not looked at without inertia. */
 HERE void NAME(rotations)(const spari_scheme *c, const L *x, const L *rate, const L *before, L *psi) {
-    const double part = c->h * c->h / 12;
+    const double part = c->span * c->span / 12;
     L turn[3];
     for (int k = 0; k < 3; k++) {
         psi[k] = x[k];
@@ -210,7 +210,7 @@ HERE void NAME(to_increments)(const int whole, const int64_t *at, const spari_no
 HERE void NAME(through_rotations)(const spari_scheme *c, const L *psi, const L *before, L *d) {
     NAME(tangent_inverse)(psi, d + 3);
     if (!c->still) {
-        NAME(without_spin)(c->h * c->h * c->cv / 12, before, d + 3);
+        NAME(without_spin)(c->span * c->span * c->cv / 12, before, d + 3);
     }
 }
 
@@ -316,7 +316,7 @@ TARGET static spari_node_size NAME(place)(const spari_node_work *t, int64_t from
     EACH_BLOCK(from, to, WORK)
 #undef WORK
     for (int64_t i = 6 * from; i < 6 * to && t->c->still; i++) {
-        t->to->v[i] = t->x[i] / t->c->h;
+        t->to->v[i] = t->x[i] / t->c->span;
         t->to->a[i] = t->to->b[i] = 0;
     }
     return NAME(size_of)(size);

@@ -115,11 +115,11 @@ spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t
 
 void spari_nodes_predict(const spari_node_work *t, spari_guess stays, int64_t from, int64_t to) {
     int64_t i = 6 * from;
-    if (stays == SPARI_KEEP_ACCELERATION) {
+    if (stays == SPARI_KEEP_ACCELERATION && t->c->rule == SPARI_ALPHA) {
         i = kernels_of(t->lanes, to - from)->predict(t, i, 6 * to);
     }
-    const spari_rates before = {t->from->v + i, t->from->a + i, t->from->b + i},
-                      after = {t->to->v + i, t->to->a + i, t->to->b + i};
+    const spari_rates before = {t->from->v + i, t->from->a + i, t->from->b + i, t->stage ? t->stage + i : NULL},
+                      after = {t->to->v + i, t->to->a + i, t->to->b + i, NULL};
     spari_scheme_predict(t->c, stays, (int)(6 * to - i), before, t->x + i, after);
 }
 

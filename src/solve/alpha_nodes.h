@@ -11,6 +11,7 @@ typedef struct spari_node_work {
     int lanes; /* nodes at once at most; 0: what the processor has (tests try all) */
     const spari_scheme *c;
     const spari_state *from, *to; /* a substep's ends as the scheme has them */
+    const double *stage;          /* [n][6] velocities at the end of a trapezoidal stage, for the next one */
     double *x, *dx;               /* [n][6] increments and their correction */
     double cut;                   /* how much of the correction is taken */
     const double *q, *kept;       /* [n][7] now; [n][4] how nodes were turned when the tangent was formed */

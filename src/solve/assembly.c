@@ -10,6 +10,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -127,7 +128,8 @@ static double tolerance(const spari_assembly *a, double largest) {
     for (int i = 0; i < a->limbs && !s->newton_strict; i++) {
         worst = fmax(worst, a->limb[i].change / fmax(a->limb[i].leave, 0.1 * most));
     }
-    double strict = s->newton_atol + s->newton_rtol * size;
+    int stage = a->limb[0].scheme.rule != SPARI_ALPHA;
+    double strict = stage ? spari_leave_stage(s, &a->limb[0].scheme, size) : s->newton_atol + s->newton_rtol * size;
     return worst > 0 ? fmax(strict, largest / worst) : strict;
 }
 
@@ -175,6 +177,17 @@ static int begin_tied(void *self, int kept) {
     return t->a->factored;
 }
 
+/* Of positions. So much of a gap is none: in a step h it would ask for an acceleration of the gap / h^2, 1 m/s^2 in
+   1e-8 s. */
+static double rounding_of(const spari_link *l) {
+    double size = 0;
+    for (int side = 0; side < 2; side++) {
+        size = fmax(size, spari_norm(l->place[side].x));
+        size = fmax(size, l->limb[side] ? spari_member_length(l->limb[side]->member) : 0);
+    }
+    return 8 * DBL_EPSILON * size;
+}
+
 static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
     const tied_step *t = self;
     spari_assembly *a = t->a;
@@ -183,8 +196,11 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
         return "met numbers that are not finite";
     }
     for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double rounding = rounding_of(l);
         for (int k = 0; k < 6; k++) {
-            a->link[i].gap[k] = a->link[i].row[k] >= 0 ? spari_link_gap(a->link + i, k) : 0;
+            double gap = l->row[k] >= 0 ? spari_link_gap(l, k) : 0;
+            l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
         }
     }
     if (!a->factored && form(a)) {
@@ -200,7 +216,8 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
         return "found a singular tangent";
     }
     a->moved += it->correction;
-    a->standing = a->standing && a->moved < near_tied;
+    /* How places go beside the scheme is not to depend on where the system was factored. */
+    a->standing = a->standing && a->moved < near_tied && a->limb[0].scheme.rule == SPARI_ALPHA;
     it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
     it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
@@ -305,9 +322,6 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
 /* The states at the end of a substep. */
 static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].begin = a->link[i].joint->after;
-    }
     const char *wrong = attempts_of(a, s, dt, &iterations);
     if (wrong && !a->violent && !a->limb[0].scheme.still) {
         a->violent = 1;
@@ -319,6 +333,48 @@ static int newton_all(spari_assembly *a, double s, double dt) {
                   "take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
                   a->link[0].joint->name, wrong, iterations, a->session->time);
     return SPAR_OK;
+}
+
+/* Generalised-alpha with constraints at position level keeps velocities that are off them by -C h^2 times the rate of
+   the acceleration, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. It
+   begins smoothly if they are put there; else accelerations and multipliers ring with an amplitude of first order.
+   Rates of the accelerations at the joints are those of what turns steadily at t^0 (time 0), later those of the time
+   that has passed since t^n. 0 or 1. */
+static int shift_for_alpha(spari_assembly *a, double cv, double time) {
+    const spari_scheme *c = &a->limb[0].alpha;
+    double C = c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6;
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double jerk[12] = {0}, rate[6];
+        for (int k = 0; k < 12; k += 3) {
+            int side = k / 6;
+            const spar_member *m = l->joint->member[side];
+            if (l->limb[side] && time > 0) {
+                for (int j = k; j < k + 3; j++) {
+                    jerk[j] = (l->a[j] - m->now.a[6 * l->joint->seat[side] + j % 6]) / time;
+                }
+            } else if (l->limb[side] && k % 6 == 0) {
+                spari_steady_rate(m, l->v + 6 * side + 3, l->a + k, jerk + k);
+            }
+        }
+        spari_link_times(l->B, jerk, rate);
+        const spari_relative found = l->joint->after;
+        if (!(time > 0)) { /* those of rigid bodies are there already */
+            spari_link_find(l, 0, 0, 1);
+        }
+        for (int k = 0; k < 6; k++) {
+            double off = time > 0 ? 0 : spari_link_rate_gap(l, k);
+            l->gap[k] = l->row[k] >= 0 ? off + C * c->h * c->h * rate[k] : 0;
+        }
+        l->joint->after = found;
+    }
+    if (spari_tied_close(a, cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
+    }
+    return 0;
 }
 
 /* ---- the start ---- */
@@ -378,14 +434,22 @@ static int start_all(spari_assembly *a) {
         }
         correct_loads(a, 1);
     }
+    for (int i = 0; i < a->limbs && !singular; i++) {
+        a->limb[i].row->end_start(a->limb + i);
+    }
+    if (a->session->step == 0) { /* later the accelerations that a trial begins with are not those of a steady motion */
+        singular = singular || shift_for_alpha(a, 0, 0);
+    }
+    for (int i = 0; i < a->limbs && !singular; i++) {
+        if (a->limb[i].row->shift_start) {
+            a->limb[i].row->shift_start(a->limb + i);
+        }
+    }
     a->factored = 0;
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
                   "the members that joint '%s' ties together: their mass and stiffness are singular at the start; give "
                   "mass or rotary inertia to every direction in which they can move freely",
                   a->link[0].joint->name);
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->end_start(a->limb + i);
-    }
     for (int i = 0; i < a->links; i++) {
         spari_joint_balance(a->link[i].joint);
     }
@@ -435,17 +499,22 @@ static int publish_all(spari_assembly *a, double dt) {
     return singular ? fail_singular(a) : SPAR_OK;
 }
 
-/* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself. */
-static const double farthest_turn = 0.1;
+/* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself: of
+   what joints turn by, and of what their nodes, and with them the directions of what is held, turn by. */
+static const double farthest_turn = 0.1, farthest_spin = 0.2;
 
-/* Joints that turn far in a substep h, by their rates at its beginning. */
+/* By the rates at the beginning of a step, in a substep h. */
 static int turns_far(const spari_assembly *a, double h) {
-    double most = 0;
+    int far = 0;
     for (int i = 0; i < a->links; i++) {
         const spar_joint *j = a->link[i].joint;
-        most = fmax(most, j->tie.line ? 0 : spari_norm(j->now.rate + 3));
+        far = far || (!j->tie.line && spari_norm(j->now.rate + 3) * h > farthest_turn);
+        for (int side = 0; side < 2 && !j->tie.line; side++) {
+            const spar_member *m = j->member[side];
+            far = far || (m && spari_norm(m->now.v + 6 * j->seat[side] + 3) * h > farthest_spin);
+        }
     }
-    return most * h > farthest_turn;
+    return far;
 }
 
 static void begin_links(spari_assembly *a) {
@@ -462,23 +531,33 @@ static void look_at_links(spari_assembly *a, double dt) {
     }
 }
 
-int spari_assembly_balance(spari_assembly *a, double dt) {
+/* A step begins at t^n, in the first one with the accelerations there. */
+static int begin_step(spari_assembly *a, double dt) {
     int started = 1;
-    if (!a->here) {
-        return SPAR_OK;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        started = p->row->take(p, dt / a->session->substeps) && started;
+        p->alpha = p->scheme;
     }
     begin_links(a);
-    for (int i = 0; i < a->limbs; i++) {
-        started = a->limb[i].row->take(a->limb + i, dt / a->session->substeps) && started;
-    }
     if (a->limbs > 0 && !started && !a->limb[0].scheme.still) {
         SPARI_TRY(start_all(a));
     }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->begin(a->limb + i);
+    }
+    return SPAR_OK;
+}
+
+int spari_assembly_balance(spari_assembly *a, double dt) {
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(begin_step(a, dt));
     for (int i = 0; i < a->links && a->limbs == 0; i++) {
         spari_link_find(a->link + i, 0, 0, 1);
     }
     for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->begin(a->limb + i);
         a->limb[i].member->row->publish(a->limb[i].member);
     }
     return SPAR_OK;
@@ -495,7 +574,131 @@ static int form_after(spari_assembly *a) {
     return form(a);
 }
 
+/* Stored in the springs of a joint and in what the host's load and the preload can give. */
+static double potential_of(const spar_joint *j, const double z[6]) {
+    double sum = 0;
+    for (int p = 0; p < 6; p++) {
+        double force = j->preload[p] + j->given[p];
+        for (int q = 0; q < 6; q++) {
+            force -= 0.5 * j->stiffness[6 * p + q] * z[q];
+        }
+        sum -= force * z[p];
+    }
+    return sum;
+}
+
+/* Of all members and joints; not known where something is driven. */
+static int gains_of_all(void *self, const spari_part *part) {
+    spari_assembly *a = self;
+    double gain = 0, size = 0;
+    int near = 1;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->arms ||
+            p->solver->body->linear[0]) {
+            return 0;
+        }
+        near = near && spari_stage_is_near(p->solver, p->member, p->scheme.h);
+    }
+    for (int i = 0; i < a->links && !near; i++) {
+        const spari_link *l = a->link + i;
+        const spar_joint *j = l->joint;
+        for (int side = 0; side < 2; side++) {
+            near = near || (!l->limb[side] && j->member[side]);
+        }
+        if (j->driven || j->tie.line || near) {
+            return 0;
+        }
+        double change = potential_of(j, j->after.z) - potential_of(j, l->begin.z);
+        gain += change;
+        size += fabs(change);
+    }
+    for (int i = 0; i < a->limbs && !near; i++) {
+        spari_limb *p = a->limb + i;
+        double more, of;
+        spari_stage_energy(p->solver, p->member, part, &more, &of);
+        gain += more;
+        size += of;
+    }
+    return !near && gain > SPARI_GAIN * size;
+}
+
+static void name_all(const void *self, char *text, int size) {
+    const spari_assembly *a = self;
+    (void)snprintf(text, (size_t)size, "the members that joint '%s' ties together", a->link[0].joint->name);
+}
+
+static void enter_all(void *self, const spari_part *part) {
+    spari_assembly *a = self;
+    (void)part;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->enter(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].begin = a->link[i].joint->after;
+    }
+}
+
+static double turning_of_all(const void *self) {
+    const spari_assembly *a = self;
+    double most = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        most = fmax(most, spari_stage_turning(p->solver, p->member));
+    }
+    return most;
+}
+
+/* Coefficients of a stage, of each member by whether it has inertia. */
+static void set_scheme(spari_assembly *a, const spari_scheme *c) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        const spari_scheme own = c->h < p->alpha.h ? spari_scheme_resize(&p->alpha, c->h) : p->alpha;
+        p->scheme = c->rule == SPARI_ALPHA ? own : spari_scheme_stage(&own, c->rule);
+    }
+}
+
+/* Constraints are held at velocity level too where dt changes (Gear, Gupta and Leimkuhler, J. Comput. Appl. Math. 12
+   (1985)): at position level alone velocities are off them by dt^2, which a shorter step pays back as an acceleration
+   of dt_old^2 / dt_new. */
+static int stage_of_all(void *self, const spari_scheme *c, const spari_part *part) {
+    spari_assembly *a = self;
+    set_scheme(a, c);
+    a->violent = a->turns_far || c->rule != SPARI_ALPHA;
+    if (c->rule == SPARI_TRAPEZOIDAL) { /* how places go beside the scheme is a matter of the tangent: one that does not
+                                           depend on what has been solved before */
+        a->factored = 0;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again) {
+            p->row->take_velocities(p);
+        }
+        SPARI_TRY(p->row->stage(p, part));
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_joint_drive_at(a->link[i].joint, part->end, part->dt, &a->link[i].drive);
+    }
+    return newton_all(a, part->end, part->dt);
+}
+
+static int leave_all(void *self, const spari_scheme *c, const spari_part *part) {
+    spari_assembly *a = self;
+    (void)c;
+    if (part->to < 1 && spari_tied_calm(a, part->to, part->dt)) {
+        return fail_singular(a);
+    }
+    if (part->to < 1 && part->last && shift_for_alpha(a, a->limb[0].scheme.cv, part->to * part->dt)) {
+        return fail_singular(a);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->end(a->limb + i);
+    }
+    return SPAR_OK;
+}
+
 int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
+    static const spari_stepper how = {enter_all, turning_of_all, stage_of_all, leave_all, gains_of_all, name_all};
     if (!a->here) {
         return SPAR_OK;
     }
@@ -503,41 +706,22 @@ int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
         look_at_links(a, dt);
         return SPAR_OK;
     }
-    int A = a->session->substeps, started = 1;
+    SPARI_TRY(begin_step(a, dt));
+    a->turns_far = !a->limb[0].scheme.still && turns_far(a, dt / a->session->substeps);
+    spari_pattern pattern = a->limb[0].solver->steps.begin;
+    int status = spari_scheme_run(&how, a, &a->limb[0].alpha, &pattern, a->session, dt);
+    if (status != SPAR_OK) {
+        a->factored = 0;
+        return status;
+    }
     for (int i = 0; i < a->limbs; i++) {
-        started = a->limb[i].row->take(a->limb + i, dt / A) && started;
-    }
-    begin_links(a);
-    if (!started && !a->limb[0].scheme.still) {
-        SPARI_TRY(start_all(a));
-    }
-    a->violent = !a->limb[0].scheme.still && turns_far(a, dt / A);
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->begin(a->limb + i);
-    }
-    for (int k = 1; k <= A; k++) {
-        for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].row->part(a->limb + i, k, A, dt);
-        }
-        for (int i = 0; i < a->links; i++) {
-            spari_joint_drive_at(a->link[i].joint, (double)k / A, dt, &a->link[i].drive);
-        }
-        int leaps = k == 1 && !a->limb[0].scheme.still &&
-                    spari_scheme_leaps(a->limb[0].solver->steps.h_begin, a->limb[0].scheme.h),
-            status = leaps ? spari_tied_leap(a, dt) : SPAR_OK;
-        status = status == SPAR_OK ? newton_all(a, (double)k / A, dt) : status;
-        if (status != SPAR_OK) {
-            a->factored = 0;
-            return status;
-        }
-        if (k < A && spari_tied_calm(a, (double)k / A, dt)) {
-            return fail_singular(a);
-        }
-        for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].row->end(a->limb + i);
-        }
+        a->limb[i].solver->steps.solved = pattern;
     }
     SPARI_TRY(publish_all(a, dt));
+    if (a->limb[0].scheme.rule == SPARI_BACKWARD && pattern.even == SPARI_EVEN - 1 &&
+        shift_for_alpha(a, a->limb[0].scheme.cv, dt)) {
+        return fail_singular(a);
+    }
     a->solved = 1;
     if (answers && !a->factored && form_after(a) == 0) {
         a->factored = LEAST_PATIENCE;

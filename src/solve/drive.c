@@ -40,6 +40,23 @@ spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double 
     return out;
 }
 
+/* Back from the end under an acceleration that is linear in time. */
+spari_pose spari_drive_stage(const spari_pose *from, const spari_pose *to, double h, double span) {
+    double r = h - span, f = span / h, way[6], turn[4];
+    spari_pose out;
+    for (int k = 0; k < 6; k++) {
+        out.a[k] = (1 - f) * from->a[k] + f * to->a[k];
+        out.v[k] = to->v[k] - 0.5 * r * (out.a[k] + to->a[k]);
+        way[k] = -r * (to->v[k] - r * (to->a[k] / 3 + out.a[k] / 6));
+    }
+    for (int k = 0; k < 3; k++) {
+        out.q[k] = to->q[k] + way[k];
+    }
+    spari_quat_exp(way + 3, turn);
+    spari_quat_mul(turn, to->q + 3, out.q + 3);
+    return out;
+}
+
 void spari_drive_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]) {
     double turn[4];
     for (int k = 0; k < 3; k++) {

@@ -178,9 +178,9 @@ static int find_frame(spari_swing *w) {
     if (alike && w->parts > 0 && spari_norm(w->part[0].own) > 0) {
         char message[SPARI_MESSAGE_SIZE];
         memcpy(w->w, w->part[0].own, sizeof w->w);
-        spari_messages_aside(message); /* that this frame does not serve is no failure */
+        (void)spari_messages_aside(message); /* that this frame does not serve is no failure */
         int status = fill_swing(w);
-        spari_messages_aside(NULL);
+        (void)spari_messages_aside(NULL);
         if (status != SPAR_ERR_UNSUPPORTED) {
             SPARI_REQUIRE(w->session, status == SPAR_OK, status, "%s", message);
             return SPAR_OK;

@@ -64,6 +64,7 @@ typedef struct spari_frame {
     spari_frame_state begin, from, to;
     spari_steps steps;
     double *r, *dx, *increment;       /* [max(n, 6 nodes)]; so are the loads of the steps */
+    double *stage_v;                  /* [n] velocities at the end of a trapezoidal stage */
     double *nodal, *turned, *element; /* [18 nodes], [19 nodes], one matrix of an element */
     int64_t factors, solves;
 } spari_frame;
@@ -124,6 +125,13 @@ void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state
 const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
 /* out [n] := nodal loads x [6 nodes], in the frame's axes, on the unknowns. */
 void spari_frame_gather(const spari_frame *f, const double *x, double *out);
+/* A stage of a substep begins, at whose end a driven root is at `root`; a root that is not driven stays. */
+void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                       const spari_pose *root);
+/* The rates of the state become those of the published motion at t^n. */
+void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state);
+/* After a substep: what generalised-alpha would go on with. */
+void spari_frame_restart_scheme(spari_frame *f, const spari_scheme *c);
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
 /* Where a driven root jumps: the state loses the jump. */
 void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,

@@ -59,7 +59,7 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
 
 static int allocate_work(spari_frame *f, const spar_member *m) {
     int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
-    double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r, &f->dx, &f->increment};
+    double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r, &f->dx, &f->increment, &f->stage_v};
     int ok = carve_states(f) == 0;
     for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
         ok = ok && (*vectors[k] = spari_zalloc(wide, sizeof(double)));
@@ -85,8 +85,8 @@ static void frame_free(void *solution) {
     }
     double *all[] = {f->basis,       f->A,           f->K,       f->M,      f->D,         f->sumK,
                      f->sumC,        f->sumf,        f->begin.y, f->from.y, f->to.y,      f->steps.load,
-                     f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->nodal,
-                     f->turned,      f->element,     f->room_A,  f->gram,   f->pull};
+                     f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->stage_v,
+                     f->nodal,       f->turned,      f->element, f->room_A, f->gram,      f->pull};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }

@@ -258,7 +258,7 @@ static double largest(const spari_frame *f, const double *x) {
 }
 
 static spari_rates rates_from(const spari_frame_state *s, int first) {
-    return (spari_rates){s->v + first, s->a + first, s->b + first};
+    return (spari_rates){s->v + first, s->a + first, s->b + first, NULL};
 }
 
 /* Starting values: the accelerations stay. */
@@ -272,7 +272,9 @@ static void predict_unknowns(const spari_frame *f, const spari_scheme *c, const 
         memset(to->a + held, 0, (size_t)n * sizeof *x);
         memset(to->b + held, 0, (size_t)n * sizeof *x);
     } else {
-        spari_scheme_predict(c, SPARI_KEEP_ACCELERATION, n, rates_from(from, held), x, rates_from(to, held));
+        spari_rates before = rates_from(from, held);
+        before.stage = f->stage_v + held;
+        spari_scheme_predict(c, SPARI_KEEP_ACCELERATION, n, before, x, rates_from(to, held));
     }
     for (int k = held; k < f->n; k++) {
         to->y[k] = from->y[k] + f->dx[k];
@@ -306,28 +308,29 @@ void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h,
     }
 }
 
-static void times_mass_of_frame(void *self, const spar_member *m, const double *y, double *r) {
-    const spari_frame *f = self;
-    (void)m;
-    memset(r, 0, (size_t)f->n * sizeof *r);
-    spari_frame_add_times(f, f->M, y, 1, r);
+void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                       const spari_pose *root) {
+    size_t size = (size_t)f->n * sizeof(double);
+    if (c->rule == SPARI_ALPHA) {
+        spari_scheme_stretch(part->ratio, f->n, f->from.a, f->from.b);
+    } else if (c->rule == SPARI_BACKWARD) {
+        memcpy(f->stage_v, f->to.v, size);
+        memcpy(f->from.b, f->to.a, size);
+    }
+    f->to.root = m->root == SPAR_ROOT_DRIVEN ? *root : f->begin.root;
+    if (c->rule != SPARI_BACKWARD && m->root == SPAR_ROOT_DRIVEN && !c->still) { /* the stage has lost it already */
+        spari_frame_take_jump(f, m, c->span, &f->from, &f->to);
+    }
 }
 
-/* Takes out of the acceleration carried along what a much longer step does not resolve, with the matrix of the step
-   itself, which is kept for it. */
-static int leap(spari_frame *f, const spar_member *m, const spari_scheme *c, spari_frame_state *from) {
-    double *y = f->increment;
-    if ((!f->factored || f->A) && factor_with(f, c, NULL)) {
-        return 1;
+void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state) {
+    from_nodes(f, m, &m->now, f->increment, state->v);
+}
+
+void spari_frame_restart_scheme(spari_frame *f, const spari_scheme *c) {
+    if (c->rule == SPARI_BACKWARD) {
+        spari_scheme_restart(c, f->n, f->from.a, f->to.a, f->to.b);
     }
-    memcpy(y, from->b, (size_t)f->n * sizeof *y);
-    memset(y, 0, (size_t)f->held * sizeof *y);
-    if (spari_scheme_filter_vector(c, f->linear, f->held, f->n, times_mass_of_frame, f, m, f->r, y)) {
-        return 1;
-    }
-    cblas_daxpy(f->n, -1, y, 1, from->b, 1);
-    f->factored = f->factored && !f->A; /* that matrix knows no added mass */
-    return 0;
 }
 
 /* out += what the guess of the fluid's added mass takes of the accelerations as they are published: those of the nodes,
@@ -351,21 +354,15 @@ static int no_solution(const spar_member *m) {
                       m->name, m->session->time);
 }
 
-/* One substep. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
+/* One stage. The equations are linear: one solution with their own matrix ends it; with the matrix of a slightly
    other turn, or with loads that follow, the corrections shrink until they are rounding. */
-static int solve_substep(spari_frame *f, const spar_member *m, const spari_scheme *c, int leaps,
-                         spari_frame_state *from, spari_frame_state *to) {
+static int solve_stage(spari_frame *f, const spar_member *m, const spari_scheme *c) {
+    const spari_frame_state *from = &f->from;
+    spari_frame_state *to = &f->to;
     double omega[3], last = 0;
     spari_rotate_back(to->root.q + 3, to->root.v + 3, omega);
     spari_frame_combine(f, omega);
-    int same = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
-    f->factored = same;
-    if (!c->still && m->root == SPAR_ROOT_DRIVEN) {
-        spari_frame_take_jump(f, m, c->h, from, to);
-    }
-    if (leaps && leap(f, m, c, from)) {
-        return 1;
-    }
+    f->factored = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     predict_unknowns(f, c, from, to);
     double *fixed = f->increment;
     for (int it = 0; it < MOST_ITERATIONS; it++) {
@@ -406,8 +403,7 @@ static void unbalance_of_frame(void *self, const spar_member *m, const double *a
 }
 
 /* Accelerations at t^0. */
-static int start_frame(void *self, const spar_member *m, const spari_scheme *c) {
-    spari_frame *f = self;
+static int start_frame(spari_frame *f, const spar_member *m, const spari_scheme *c) {
     spari_frame_state *b = &f->begin;
     double omega[3];
     int singular;
@@ -421,6 +417,7 @@ static int start_frame(void *self, const spar_member *m, const spari_scheme *c) 
         return no_solution(m);
     }
     memcpy(b->b, b->a, (size_t)f->n * sizeof *b->b);
+    f->steps.started = 1;
     return SPAR_OK;
 }
 
@@ -445,38 +442,77 @@ double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s) {
     return power;
 }
 
-static double begin_frame(void *self) {
-    spari_frame *f = self;
+/* A member by itself, in a step. */
+typedef struct frame_run {
+    spari_frame *f;
+    spar_member *member;
+    spari_pose before, root; /* of a driven root, at the beginning of the substep and at the end of the stage */
+    double power;
+} frame_run;
+
+static void start_run(frame_run *t) {
+    spari_frame *f = t->f;
     copy_state(f, &f->begin, &f->to);
-    return spari_frame_damped_power(f, &f->begin);
+    f->steps.solved = f->steps.begin;
+    t->before = t->member->drive[0];
+    t->power = spari_frame_damped_power(f, &f->begin);
+    t->member->dissipated_step = 0;
 }
 
-static int substep_of_frame(void *self, const spar_member *m, const spari_scheme *c, const spari_part *part,
-                            double *power) {
-    spari_frame *f = self;
-    swap_states(&f->from, &f->to);
-    spari_scheme_stretch(part->ratio, f->n, f->from.a, f->from.b);
-    f->to.root = m->root == SPAR_ROOT_DRIVEN ? part->root : f->begin.root; /* else it stays where it is */
-    if (solve_substep(f, m, c, part->leaps, &f->from, &f->to)) {
-        f->factored = 0;
-        return no_solution(m);
+static void enter_alone_frame(void *self, const spari_part *part) {
+    const frame_run *t = self;
+    (void)part;
+    swap_states(&t->f->from, &t->f->to);
+}
+
+static int solve_alone_frame(void *self, const spari_scheme *c, const spari_part *part) {
+    frame_run *t = self;
+    spari_frame *f = t->f;
+    spari_scheme_mix_loads(t->member, &f->steps, 6 * f->nodes, part->end);
+    t->root = spari_drive_at(t->member, part->to, part->dt);
+    if (c->rule == SPARI_TRAPEZOIDAL) {
+        t->root = spari_drive_stage(&t->before, &t->root, c->h, c->span);
     }
-    *power = spari_frame_damped_power(f, &f->to);
+    spari_frame_stage(f, t->member, c, part, &t->root);
+    if (solve_stage(f, t->member, c)) {
+        f->factored = 0;
+        return no_solution(t->member);
+    }
     return SPAR_OK;
 }
 
-static const spari_integrand in_frame = {start_frame, begin_frame, substep_of_frame};
+static int leave_alone_frame(void *self, const spari_scheme *c, const spari_part *part) {
+    frame_run *t = self;
+    (void)part;
+    spari_frame_restart_scheme(t->f, c);
+    t->before = t->root;
+    spari_scheme_dissipate(t->member, c, &t->power, spari_frame_damped_power(t->f, &t->f->to));
+    return SPAR_OK;
+}
 
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
+    static const spari_stepper how = {
+        .enter = enter_alone_frame, .solve = solve_alone_frame, .leave = leave_alone_frame};
+    const spari_scheme c = spari_scheme_of(m, m->body->D != NULL, dt / m->session->substeps);
+    frame_run t = {.f = f, .member = m};
     spari_scheme_loads(m, &f->steps);
-    SPARI_TRY(spari_scheme_advance(&in_frame, f, &f->steps, 6 * f->nodes, m, m->body->D != NULL, dt));
+    if (!f->steps.started && !c.still) {
+        SPARI_TRY(start_frame(f, m, &c));
+    }
+    start_run(&t);
+    SPARI_TRY(spari_scheme_run(&how, &t, &c, &f->steps.solved, m->session, dt));
     spari_frame_publish(f, m, &f->to);
     return SPAR_OK;
 }
 
 int spari_frame_balance(spari_frame *f, spar_member *m, double dt) {
+    const spari_scheme c = spari_scheme_of(m, 0, dt / m->session->substeps);
+    frame_run t = {.f = f, .member = m};
     spari_scheme_loads(m, &f->steps);
-    SPARI_TRY(spari_scheme_balance(&in_frame, f, &f->steps, m, dt));
+    if (!f->steps.started && !c.still) {
+        SPARI_TRY(start_frame(f, m, &c));
+    }
+    start_run(&t);
     spari_frame_publish(f, m, &f->to);
     return SPAR_OK;
 }
@@ -484,7 +520,7 @@ int spari_frame_balance(spari_frame *f, spar_member *m, double dt) {
 int spari_frame_answer(spari_frame *f, const spar_member *m, const double *load, double *motion) {
     int64_t n6 = 6 * (int64_t)f->nodes;
     const double *root = f->to.root.q, *x = f->dx;
-    spari_scheme c = spari_scheme_of(m, m->body->D != NULL, f->steps.h_solved);
+    spari_scheme c = spari_scheme_last(m, m->body->D != NULL, &f->steps.solved);
     if (!f->factored && factor_step(f, &c)) {
         return 1;
     }
@@ -562,7 +598,7 @@ void spari_frame_accept(spari_frame *f) {
     if (f->carriage) {
         spari_solver_accept(f->carriage->root);
     }
-    f->steps.h_begin = f->steps.h_solved;
+    f->steps.begin = f->steps.solved;
 }
 
 void spari_frame_restart(spari_frame *f, const spar_member *m) {
@@ -577,7 +613,7 @@ void spari_frame_restart(spari_frame *f, const spar_member *m) {
     from_nodes(f, m, &m->now, f->begin.y, f->begin.v);
     copy_state(f, &f->begin, &f->to);
     f->steps.started = 0;
-    f->steps.h_begin = 0;
+    f->steps.begin = (spari_pattern){0, SPARI_EVEN};
 }
 
 int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
@@ -630,7 +666,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     return SPAR_OK;
 }
 
-enum { STATE_HEAD = 14, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
+enum { STATE_HEAD = 16, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
 /* The head, and the states at either end of the step. */
 static int64_t own_size(const spari_frame *f) {
@@ -642,9 +678,22 @@ int64_t spari_frame_state_size(const spari_frame *f) {
 }
 
 void spari_frame_save(const spari_frame *f, double *state) {
-    const double head[STATE_HEAD] = {
-        f->n,        f->factored, f->kept_cm,  f->kept_cv,  f->steps.h_begin, f->steps.h_solved, f->steps.started,
-        f->combined, f->omega[0], f->omega[1], f->omega[2], f->kept_omega[0], f->kept_omega[1],  f->kept_omega[2]};
+    const double head[STATE_HEAD] = {f->n,
+                                     f->factored,
+                                     f->kept_cm,
+                                     f->kept_cv,
+                                     f->steps.begin.h,
+                                     f->steps.solved.h,
+                                     f->steps.started,
+                                     f->combined,
+                                     f->omega[0],
+                                     f->omega[1],
+                                     f->omega[2],
+                                     f->kept_omega[0],
+                                     f->kept_omega[1],
+                                     f->kept_omega[2],
+                                     f->steps.begin.even,
+                                     f->steps.solved.even};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
     double *at = state + STATE_HEAD;
@@ -659,7 +708,8 @@ void spari_frame_save(const spari_frame *f, double *state) {
 
 int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
     int64_t own = own_size(f);
-    if (count < own || state[0] != f->n) {
+    if (count < own || state[0] != f->n || !spari_pattern_is(state[4], state[14]) ||
+        !spari_pattern_is(state[5], state[15])) {
         return 0;
     }
     return f->carriage ? spari_carriage_is_state(f, state + own, count - own, state[1] != 0) : count == own;
@@ -682,7 +732,8 @@ void spari_frame_load(spari_frame *f, const double *state) {
     if (state[7] != 0 && !f->carriage) {
         spari_frame_combine(f, state + 8);
     }
-    f->steps.h_begin = state[4], f->steps.h_solved = state[5];
+    f->steps.begin = (spari_pattern){state[4], (int)state[14]};
+    f->steps.solved = (spari_pattern){state[5], (int)state[15]};
     f->steps.started = state[6] != 0;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
     state += STATE_HEAD;

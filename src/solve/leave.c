@@ -36,9 +36,13 @@ void spari_leave_accept(spar_member *m) {
 double spari_leave(const spar_member *m, const spari_scheme *c, double way) {
     const spar_session *s = m->session;
     double strict = s->newton_atol + s->newton_rtol * way, change = c->h * m->jerk;
+    if (c->rule != SPARI_ALPHA) {
+        return spari_leave_stage(s, c, way);
+    }
     if (s->newton_strict || c->still || !(change > 0)) {
         return strict;
     }
+    change = fmin(change, 2 * m->swing);
     double left = spari_change_error(c, change) * fmin(change / m->swing, 1);
     left *= spari_member_root_is_given(m) ? part : part_if_free;
     left = fmin(left, s->newton_share * m->swing / c->cm);

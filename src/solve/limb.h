@@ -18,9 +18,13 @@ typedef struct spari_limb_row {
 
     /* Loads and coefficients of a step in substeps h; whether accelerations at t^0 are known. */
     int (*take)(struct spari_limb *p, double h);
-    /* It begins at t^n; substep k of so many begins, and ends. */
+    /* It begins at t^n. A substep begins where the last one has ended; a stage of it, p->scheme, 0
+       or a status and a message; it ends. */
     void (*begin)(struct spari_limb *p);
-    void (*part)(struct spari_limb *p, int k, int substeps, double dt);
+    void (*enter)(struct spari_limb *p);
+    int (*stage)(struct spari_limb *p, const spari_part *part);
+    /* A step begins with the velocities that have been published. */
+    void (*take_velocities)(struct spari_limb *p);
     void (*end)(struct spari_limb *p);
     /* Its rates at the end are kept, or what was kept comes back. */
     void (*keep_rates)(struct spari_limb *p, int back);
@@ -50,14 +54,6 @@ typedef struct spari_limb_row {
     /* The corrections, times v, a and b, come off the velocities and accelerations at the end. */
     void (*shift_rates)(struct spari_limb *p, double v, double a, double b);
 
-    /* A step much longer than the last (assembly_leap.c). The tangent at its beginning is formed, and the state that
-       links see has as accelerations y those carried along, less what the turning of the member gives them; 0 or 1. Its
-       forces become M y. The corrections, times f, come off y. y comes off what is carried along. */
-    int (*leap)(struct spari_limb *p);
-    void (*push)(struct spari_limb *p);
-    void (*take_off)(struct spari_limb *p, double f);
-    void (*land)(struct spari_limb *p);
-
     /* After the step: its forces become a little more load [nodes][6] of its nodes; and the motion [nodes][6] of these
        that the corrections are, displacements and small turns, global axes. */
     void (*take_more)(struct spari_limb *p, const double *load);
@@ -71,6 +67,8 @@ typedef struct spari_limb_row {
     void (*unbalance)(struct spari_limb *p);
     void (*correct_start)(struct spari_limb *p);
     void (*end_start)(struct spari_limb *p);
+    /* Its velocities have been shifted after that; NULL: nothing is to be done. */
+    void (*shift_start)(struct spari_limb *p);
 
     /* At rest under dead and `fluid` loads [nodes][6]: from the last shape onward, else from t^n. Forces and tangent at
        the factor f of the loads; the corrections come off; places kept or put back; given up; found. */
@@ -99,10 +97,8 @@ typedef struct spari_limb {
     double *force;              /* [those nodes][6]: what is left on them, global axes */
     int at;                     /* where the unknowns of its ends begin in the system */
     const spari_state *state;   /* the motion that the links see, of those nodes */
-    spari_scheme scheme;
-    spari_ends ends;
-    spari_pose root, before; /* a driven root at the substep's ends */
-    double turn[4], power;
+    spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
+    spari_stage stage;
     const spari_turning *turning; /* equilibrium in a frame that turns; NULL: at rest */
     double change, leave;         /* of the correction under way: its size, and what may be left of it */
     int moved, owner_before;      /* while it is made: the rank that had it, and what that kept of it */

@@ -29,7 +29,7 @@ static const double *turn_of_frame(const spari_limb *p, int node) {
 }
 
 static spari_rates deformation_rates(const spari_frame_state *s) {
-    return (spari_rates){s->v + 6, s->a + 6, s->b + 6};
+    return (spari_rates){s->v + 6, s->a + 6, s->b + 6, NULL};
 }
 
 /* The root of the state and what links see of it. */
@@ -49,7 +49,7 @@ static void see_from_root(spari_limb *p, const spari_state *root, spari_frame_st
 }
 
 static void look_at_end_of_step(spari_limb *p) {
-    see_from_root(p, &p->ends.seen, &p->frame->to);
+    see_from_root(p, &p->stage.ends.seen, &p->frame->to);
 }
 
 /* What the forces r leave on the ends, in global axes. */
@@ -84,55 +84,50 @@ static void copy_to(spari_frame *f) {
 static void begin_frame_limb(spari_limb *p) {
     spari_frame *f = p->frame;
     copy_to(f);
-    p->before = p->member->drive[0];
-    f->steps.h_solved = p->solver->steps.h_solved = p->scheme.h;
+    p->stage.before = p->member->drive[0];
     p->member->dissipated_step = 0;
-    p->power = spari_frame_damped_power(f, &f->begin);
+    p->stage.power = spari_frame_damped_power(f, &f->begin);
 }
 
-static void part_of_frame(spari_limb *p, int k, int substeps, double dt) {
+static void enter_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    const spari_frame_state y = f->from;
+    spari_stage_enter(p->solver);
+    f->from = f->to, f->to = y;
+}
+
+static int stage_of_frame(spari_limb *p, const spari_part *part) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
-    spari_solver *s = p->solver;
-    double u = (double)k / substeps, ratio = k == 1 ? spari_scheme_ratio(f->steps.h_begin, p->scheme.h) : 1;
-    const spari_state t = s->from;
-    const spari_frame_state y = f->from;
-    s->from = s->to, s->to = t;
-    f->from = f->to, f->to = y;
-    for (int i = 0; i < 6 * f->nodes; i++) {
-        f->steps.load[i] = (1 - u) * f->steps.load0[i] + u * f->steps.load1[i];
-    }
-    spari_scheme_begin_added(m, u, f->steps.load);
-    p->root = spari_drive_at(m, u, dt);
-    p->turn[0] = 1;
-    memset(p->turn + 1, 0, 3 * sizeof *p->turn);
-    if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_between(p->before.q + 3, p->root.q + 3, p->turn);
-    }
-    p->ends = spari_root_ends(s, m, &p->scheme, &p->root, ratio, &s->from, &s->to);
-    spari_scheme_stretch(ratio, f->n, f->from.a, f->from.b);
-    if (m->root == SPAR_ROOT_DRIVEN && !p->scheme.still) {
-        f->to.root = p->root;
-        spari_frame_take_jump(f, m, p->scheme.h, &f->from, &f->to);
-    }
-    spari_carriage_turn(f, &f->from, p->scheme.h);
+    spari_scheme_mix_loads(m, &f->steps, 6 * f->nodes, part->end);
+    SPARI_TRY(spari_stage_root(p->solver, m, &p->scheme, part, &p->stage));
+    spari_frame_stage(f, m, &p->scheme, part, &p->stage.root);
+    spari_carriage_turn(f, &f->from, p->scheme.span);
     p->state = &f->carriage->seen;
+    return SPAR_OK;
+}
+
+static void take_velocities_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    memcpy(p->solver->from.v, p->member->now.v, 6 * sizeof(double));
+    spari_frame_take_velocities(f, p->member, &f->from);
 }
 
 static void end_frame_limb(spari_limb *p) {
-    double power = spari_frame_damped_power(p->frame, &p->frame->to);
-    p->before = p->root;
-    p->member->dissipated_step += 0.5 * p->scheme.h * (p->power + power);
-    p->power = power;
+    spari_frame *f = p->frame;
+    spari_stage_restart(p->solver, p->member, &p->scheme, &p->stage);
+    spari_frame_restart_scheme(f, &p->scheme);
+    p->stage.before = p->stage.root;
+    spari_scheme_dissipate(p->member, &p->scheme, &p->stage.power, spari_frame_damped_power(f, &f->to));
 }
 
 static void keep_rates_of_frame(spari_limb *p, int back) {
     spari_frame *f = p->frame;
-    double *kept = f->carriage->kept, *root = p->ends.to.v, *v = f->to.v;
+    double *kept = f->carriage->kept, *root = p->stage.ends.to.v, *v = f->to.v;
     memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
     memcpy(back ? v : kept, back ? kept : v, (size_t)f->n * sizeof *v);
     if (back) {
-        spari_root_show(p->solver, p->member, &p->ends);
+        spari_root_show(p->solver, p->member, &p->stage.ends);
         look_at_end_of_step(p);
     }
 }
@@ -148,12 +143,14 @@ static int predict_frame(spari_limb *p, spari_guess stays) {
         return 0;
     }
     if (p->scheme.still) {
-        spari_alpha_carry(s, p->member, &p->scheme, &p->root, p->turn, &p->ends, s->increment);
+        spari_alpha_carry(s, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, s->increment);
         memset(x, 0, (size_t)n * sizeof *x);
         memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
     } else {
-        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->ends, s->increment);
-        spari_scheme_predict(&p->scheme, stays, n, deformation_rates(&f->from), x, deformation_rates(&f->to));
+        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->stage.ends, s->increment);
+        spari_rates from = deformation_rates(&f->from);
+        from.stage = f->stage_v + 6;
+        spari_scheme_predict(&p->scheme, stays, n, from, x, deformation_rates(&f->to));
     }
     for (int k = 6; k < f->n; k++) {
         f->to.y[k] = f->from.y[k] + f->dx[k];
@@ -164,7 +161,7 @@ static int predict_frame(spari_limb *p, spari_guess stays) {
 
 static double balance_frame(spari_limb *p) {
     spari_frame *f = p->frame;
-    spari_alpha_impose_root(p->member, &p->root, &p->ends, p->solver->increment);
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
     look_at_end_of_step(p);
     double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
     show_forces(p, &f->to);
@@ -192,7 +189,7 @@ static double noise_of_frame(const spari_limb *p) {
 
 static int tangent_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
-    spari_alpha_operators(p->solver, &p->scheme, &p->ends, p->solver->increment);
+    spari_alpha_operators(p->solver, &p->scheme, &p->stage.ends, p->solver->increment);
     return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
 }
 
@@ -268,7 +265,7 @@ static void correct_frame(spari_limb *p, double cut) {
     for (int k = 0; k < 6 && cut < 1; k++) {
         s->dx[k] *= cut;
     }
-    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->ends, INFINITY, s->increment, s->dx);
+    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
     spari_scheme_correct(&p->scheme, cut, f->n - 6, f->dx + 6, f->to.y + 6, deformation_rates(&f->to));
     look_at_end_of_step(p);
 }
@@ -279,7 +276,8 @@ static double way_of_frame(const spari_limb *p) {
     for (int k = 0; k < f->n; k++) {
         step[k] = f->to.y[k] - f->from.y[k];
     }
-    return fmax(spari_alpha_size(p->solver, p->solver->increment) + p->ends.carried, size_of_deformation(p, step));
+    return fmax(spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried,
+                size_of_deformation(p, step));
 }
 
 static void clear_frame(spari_limb *p) {
@@ -290,63 +288,17 @@ static void clear_frame(spari_limb *p) {
 static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
     spari_frame *f = p->frame;
     double *dx = p->solver->dx;
-    for (int k = 0; k < 6 && p->ends.root; k += 3) {
-        spari_rotate_back(p->ends.root->q + 3, dx + k, dx + k);
+    for (int k = 0; k < 6 && p->stage.ends.root; k += 3) {
+        spari_rotate_back(p->stage.ends.root->q + 3, dx + k, dx + k);
     }
-    spari_alpha_shift_rates(p->solver, &p->scheme, &p->ends, v, a, b);
+    spari_alpha_shift_rates(p->solver, &p->scheme, &p->stage.ends, v, a, b);
     for (int k = 6; k < f->n; k++) {
         f->to.v[k] -= v * f->dx[k];
         f->to.a[k] -= a * f->dx[k];
         f->to.b[k] -= b * f->dx[k];
     }
-    spari_root_show(p->solver, p->member, &p->ends);
+    spari_root_show(p->solver, p->member, &p->stage.ends);
     look_at_end_of_step(p);
-}
-
-/* ---- a leap ---- */
-
-/* y stands in `to`, which is not in use there: the deformation's, and the root's in its solver. */
-static int leap_frame(spari_limb *p) {
-    spari_frame *f = p->frame;
-    spari_solver *s = p->solver;
-    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    memcpy(f->to.y, f->from.y, (size_t)(4 * f->n) * sizeof *f->to.y);
-    memcpy(s->to.q, s->from.q, 25 * sizeof *s->to.q);
-    see_from_root(p, &s->to, &f->to);
-    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
-    if (spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, unit, f->r)) {
-        return 1;
-    }
-    memset(s->to.v, 0, 12 * sizeof *s->to.v);
-    memset(f->to.v, 0, (size_t)(2 * f->n) * sizeof *f->to.v);
-    see_from_root(p, &s->to, &f->to);
-    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->carriage->kept); /* at rest */
-    memcpy(s->to.a, p->ends.from.b, 6 * sizeof *s->to.a);
-    memset(s->to.a, 0, (size_t)spari_member_held(p->member) * sizeof *s->to.a);
-    memcpy(f->to.a + 6, f->from.b + 6, (size_t)(f->n - 6) * sizeof *f->to.a);
-    see_from_root(p, &s->to, &f->to);
-    return 0;
-}
-
-static void push_frame(spari_limb *p) {
-    spari_frame *f = p->frame;
-    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
-    cblas_daxpy(f->n, -1, f->carriage->kept, 1, f->r, 1);
-    show_forces(p, &f->to);
-}
-
-static void take_off_frame(spari_limb *p, double by) {
-    spari_frame *f = p->frame;
-    spari_solver *s = p->solver;
-    cblas_daxpy(6, -by, s->dx, 1, s->to.a, 1);
-    cblas_daxpy(f->n - 6, -by, f->dx + 6, 1, f->to.a + 6, 1);
-    see_from_root(p, &s->to, &f->to);
-}
-
-static void land_frame(spari_limb *p) {
-    spari_frame *f = p->frame;
-    cblas_daxpy(6, -1, p->solver->to.a, 1, p->ends.from.b, 1);
-    cblas_daxpy(f->n - 6, -1, f->to.a + 6, 1, f->from.b + 6, 1);
 }
 
 /* ---- its answer ---- */
@@ -408,8 +360,8 @@ static void show_more_of_frame(spari_limb *p, double *motion) {
 
 static void look_back_at_frame(spari_limb *p) {
     spari_solver *s = p->solver;
-    p->scheme = spari_scheme_of(p->member, p->frame->D != NULL, p->frame->steps.h_solved);
-    p->ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
+    p->scheme = spari_scheme_last(p->member, p->frame->D != NULL, &p->solver->steps.solved);
+    p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
     look_at_end_of_step(p);
 }
 
@@ -426,7 +378,7 @@ static int start_of_frame(spari_limb *p) {
     }
     f->steps.started = 0;
     copy_to(f); /* the rates are shifted at the end, which is the beginning */
-    p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
+    p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
     look_at_end_of_step(p);
     spari_carriage_turn(f, &f->to, 0);
@@ -457,18 +409,17 @@ static void correct_start_of_frame(spari_limb *p) {
 static void end_start_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    const double *acceleration = s->begin.a;
-    if (s->own[0].q) {
-        const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
-        spari_root_look_from(s, p->member, &root, &s->begin, &s->own[0]);
-        acceleration = s->own[0].a;
-    }
-    memcpy(s->begin.b, acceleration, 6 * sizeof *s->begin.b);
+    spari_stage_remember(s, p->member, &p->scheme);
     memcpy(f->to.b, f->to.a, (size_t)f->n * sizeof *f->to.b);
     memcpy(f->begin.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
     f->begin.root = f->to.root;
     f->factored = 0;
     f->steps.started = s->steps.started = 1;
+}
+
+static void shift_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    memcpy(f->begin.v, f->to.v, (size_t)f->n * sizeof *f->to.v);
 }
 
 /* ---- at rest ---- */
@@ -485,7 +436,7 @@ static void rest_frame(spari_limb *p, const double *fluid, int onward) {
     }
     memset(s->to.v, 0, 18 * sizeof *s->to.v);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *f->to.v);
-    p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+    p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
     look_at_end_of_step(p);
 }
 
@@ -565,7 +516,9 @@ const spari_limb_row spari_limb_frame = {
     .make = make_frame,
     .take = take_frame,
     .begin = begin_frame_limb,
-    .part = part_of_frame,
+    .enter = enter_frame,
+    .stage = stage_of_frame,
+    .take_velocities = take_velocities_of_frame,
     .end = end_frame_limb,
     .keep_rates = keep_rates_of_frame,
     .predict = predict_frame,
@@ -580,10 +533,6 @@ const spari_limb_row spari_limb_frame = {
     .way = way_of_frame,
     .clear = clear_frame,
     .shift_rates = shift_rates_of_frame,
-    .leap = leap_frame,
-    .push = push_frame,
-    .take_off = take_off_frame,
-    .land = land_frame,
     .take_more = take_more_of_frame,
     .show_more = show_more_of_frame,
     .look_back = look_back_at_frame,
@@ -591,6 +540,7 @@ const spari_limb_row spari_limb_frame = {
     .unbalance = unbalance_frame,
     .correct_start = correct_start_of_frame,
     .end_start = end_start_of_frame,
+    .shift_start = shift_start_of_frame,
     .rest = rest_frame,
     .balance_rest = balance_frame_at_rest,
     .tangent_rest = tangent_of_frame_at_rest,

@@ -9,7 +9,6 @@
 #include "arms.h"
 #include "drive.h"
 #include "fidelity.h"
-#include "leap.h"
 #include "limb.h"
 
 #include <stdlib.h>
@@ -72,54 +71,38 @@ static int begin_loads_of_nodes(spari_limb *p, double h) {
 }
 
 static void begin_nodes(spari_limb *p) {
-    spari_solver *s = p->solver;
-    memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
-    p->before = p->member->drive[0];
-    s->steps.h_solved = p->scheme.h;
-    p->member->dissipated_step = 0;
-    p->power = s->power_begin;
+    spari_stage_start(p->solver, p->member, &p->stage);
 }
 
-static void swap_ends(spari_state *a, spari_state *b) {
-    spari_state t = *a;
-    *a = *b;
-    *b = t;
+static void enter_nodes(spari_limb *p) {
+    spari_stage_enter(p->solver);
 }
 
-static void part_of_nodes(spari_limb *p, int k, int substeps, double dt) {
+static int stage_of_nodes(spari_limb *p, const spari_part *part) {
+    SPARI_TRY(spari_stage_begin(p->solver, p->member, &p->scheme, part, &p->stage));
+    p->state = &p->stage.ends.seen;
+    return SPAR_OK;
+}
+
+static void take_velocities_of_nodes(spari_limb *p) {
     const spar_member *m = p->member;
-    spari_solver *s = p->solver;
-    double f = (double)k / substeps, ratio = k == 1 ? spari_scheme_ratio(s->steps.h_begin, p->scheme.h) : 1;
-    swap_ends(&s->from, &s->to);
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->steps.load[i] = (1 - f) * s->steps.load0[i] + f * s->steps.load1[i];
+    if (m->row->whole) {
+        memcpy(p->solver->from.v, m->now.v, 6 * sizeof(double));
+    } else {
+        spari_member_to_unique(m, 6, m->now.v, p->solver->from.v);
     }
-    spari_scheme_begin_added(m, f, s->steps.load);
-    if (s->arms) {
-        spari_arms_at(s->arms, f);
-    }
-    p->root = spari_drive_at(m, f, dt);
-    p->turn[0] = 1;
-    memset(p->turn + 1, 0, 3 * sizeof *p->turn);
-    if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_between(p->before.q + 3, p->root.q + 3, p->turn);
-    }
-    p->ends = spari_root_ends(s, m, &p->scheme, &p->root, ratio, &s->from, &s->to);
-    p->state = &p->ends.seen;
 }
 
 static void end_nodes(spari_limb *p) {
-    p->before = p->root;
-    p->member->dissipated_step += 0.5 * p->scheme.h * (p->power + p->solver->power);
-    p->power = p->solver->power;
+    spari_stage_leave(p->solver, p->member, &p->scheme, &p->stage);
 }
 
 static void keep_rates_of_nodes(spari_limb *p, int back) {
     spari_solver *s = p->solver;
-    double *v = p->ends.to.v;
+    double *v = p->stage.ends.to.v;
     memcpy(back ? v : s->best, back ? s->best : v, (size_t)(6 * s->n) * sizeof *v);
     if (back) {
-        spari_root_show(s, p->member, &p->ends);
+        spari_root_show(s, p->member, &p->stage.ends);
     }
 }
 
@@ -128,16 +111,16 @@ static void keep_rates_of_nodes(spari_limb *p, int back) {
 static int predict_nodes(spari_limb *p, spari_guess stays) {
     double *x = p->solver->increment;
     if (p->scheme.still) {
-        spari_alpha_carry(p->solver, p->member, &p->scheme, &p->root, p->turn, &p->ends, x);
+        spari_alpha_carry(p->solver, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, x);
         return stays != SPARI_KEEP_SHAPE;
     }
-    return spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->ends, x);
+    return spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->stage.ends, x);
 }
 
 static double balance_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
-    spari_alpha_impose_root(p->member, &p->root, &p->ends, s->increment);
-    return spari_alpha_balance(s, p->member, &p->scheme, &p->ends.seen, s->r);
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
+    return spari_alpha_balance(s, p->member, &p->scheme, &p->stage.ends.seen, s->r);
 }
 
 static double noise_of_nodes(const spari_limb *p) {
@@ -153,8 +136,8 @@ static double noise_of_nodes(const spari_limb *p) {
 
 static int tangent_of_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
-    spari_alpha_operators(s, &p->scheme, &p->ends, s->increment);
-    return spari_alpha_tangent(s, p->member, &p->scheme, &p->ends.seen);
+    spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
+    return spari_alpha_tangent(s, p->member, &p->scheme, &p->stage.ends.seen);
 }
 
 static int nodes_serve(const spari_limb *p) {
@@ -201,12 +184,12 @@ static void correct_nodes(spari_limb *p, double cut) {
     for (int k = 0; k < 6 * s->n && cut < 1; k++) {
         s->dx[k] *= cut;
     }
-    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->ends, INFINITY, s->increment, s->dx);
+    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
     s->newton++;
 }
 
 static double way_of_nodes(const spari_limb *p) {
-    return spari_alpha_size(p->solver, p->solver->increment) + p->ends.carried;
+    return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried;
 }
 
 static void clear_nodes(spari_limb *p) {
@@ -218,65 +201,12 @@ static void clear_nodes(spari_limb *p) {
 static void shift_rates_of_nodes(spari_limb *p, double v, double a, double b) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n; k += 3) {
-        if (p->ends.root) {
-            spari_rotate_back(p->ends.root->q + 3, s->dx + k, s->dx + k);
+        if (p->stage.ends.root) {
+            spari_rotate_back(p->stage.ends.root->q + 3, s->dx + k, s->dx + k);
         }
     }
-    spari_alpha_shift_rates(s, &p->scheme, &p->ends, v, a, b);
-    spari_root_show(s, p->member, &p->ends);
-}
-
-/* ---- a leap ---- */
-
-/* y stands in `to`, which is not in use there, with velocities of zero; the forces at rest in tinv. */
-static int leap_nodes(spari_limb *p) {
-    spari_solver *s = p->solver;
-    const spari_state *from = &s->from;
-    int n6 = 6 * s->n;
-    double *y = s->to.a;
-    memcpy(s->to.q, from->q, (size_t)(7 * s->n) * sizeof *y);
-    memset(s->to.v, 0, (size_t)n6 * sizeof *y);
-    memcpy(y, p->ends.from.b, (size_t)n6 * sizeof *y);
-    for (int i = 0; i < n6 && p->ends.root; i += 3) {
-        spari_rotate(from->q + 3, y + i, y + i);
-    }
-    if (!p->ends.root) {
-        spari_leap_take_spin(s, p->member, from, &p->scheme, y);
-    }
-    memset(y, 0, (size_t)spari_member_held(p->member) * sizeof *y);
-    p->state = &s->to;
-    spari_body_residual(s->body, from->q, s->to.v, s->to.v, 0, s->tinv, NULL);
-    return spari_solver_factor(s, p->member, from->q, from->v, from->a, 1, p->scheme.cm, p->scheme.cv, NULL);
-}
-
-static void push_nodes(spari_limb *p) {
-    spari_solver *s = p->solver;
-    spari_body_residual(s->body, s->to.q, s->to.v, s->to.a, 0, s->r, NULL);
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->r[i] -= s->tinv[i];
-    }
-    memset(s->r, 0, (size_t)spari_member_held(p->member) * sizeof *s->r);
-}
-
-static void take_off_nodes(spari_limb *p, double f) {
-    const spari_solver *s = p->solver;
-    for (int i = 0; i < 6 * s->n; i++) {
-        s->to.a[i] -= f * s->dx[i];
-    }
-}
-
-static void land_nodes(spari_limb *p) {
-    const spari_solver *s = p->solver;
-    for (int i = 0; i < 6 * s->n; i += 3) {
-        double *y = s->to.a + i;
-        if (p->ends.root) {
-            spari_rotate_back(s->from.q + 3, y, y);
-        }
-        for (int k = 0; k < 3; k++) {
-            p->ends.from.b[i + k] -= y[k];
-        }
-    }
-    p->state = &p->ends.seen;
+    spari_alpha_shift_rates(s, &p->scheme, &p->stage.ends, v, a, b);
+    spari_root_show(s, p->member, &p->stage.ends);
 }
 
 /* ---- its answer ---- */
@@ -292,9 +222,9 @@ static void show_more_of_nodes(spari_limb *p, double *motion) {
 
 static void look_back_at_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
-    p->scheme = spari_scheme_of(p->member, s->body->D != NULL, s->steps.h_solved);
-    p->ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
-    p->state = &p->ends.seen;
+    p->scheme = spari_scheme_last(p->member, s->body->D != NULL, &s->steps.solved);
+    p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
+    p->state = &p->stage.ends.seen;
 }
 
 /* ---- the start ---- */
@@ -307,7 +237,7 @@ static int start_nodes(spari_limb *p) {
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
     }
     p->state = &s->begin;
-    p->ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
+    p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     return spari_solver_factor(s, p->member, s->begin.q, NULL, NULL, 0, p->scheme.cm, 0, NULL);
 }
 
@@ -324,13 +254,7 @@ static void correct_start_of_nodes(spari_limb *p) {
 
 static void end_start_of_nodes(spari_limb *p) {
     spari_solver *s = p->solver;
-    const double *acceleration = s->begin.a;
-    if (s->own[0].q) {
-        const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
-        spari_root_look_from(s, p->member, &root, &s->begin, &s->own[0]);
-        acceleration = s->own[0].a;
-    }
-    memcpy(s->begin.b, acceleration, (size_t)(6 * s->n) * sizeof *s->begin.b);
+    spari_stage_remember(s, p->member, &p->scheme);
     s->steps.started = 1;
 }
 
@@ -344,7 +268,7 @@ static void rest_nodes(spari_limb *p, const double *fluid, int onward) {
     }
     memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof *s->to.v);
     p->state = &s->to;
-    p->ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+    p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
 }
 
 /* Rates of the places where the nodes are now, as they turn with the whole. */
@@ -426,7 +350,9 @@ const spari_limb_row spari_limb_nodes = {
     .make = make_nodes,
     .take = begin_loads_of_nodes,
     .begin = begin_nodes,
-    .part = part_of_nodes,
+    .enter = enter_nodes,
+    .stage = stage_of_nodes,
+    .take_velocities = take_velocities_of_nodes,
     .end = end_nodes,
     .keep_rates = keep_rates_of_nodes,
     .predict = predict_nodes,
@@ -441,10 +367,6 @@ const spari_limb_row spari_limb_nodes = {
     .way = way_of_nodes,
     .clear = clear_nodes,
     .shift_rates = shift_rates_of_nodes,
-    .leap = leap_nodes,
-    .push = push_nodes,
-    .take_off = take_off_nodes,
-    .land = land_nodes,
     .take_more = take_more_of_nodes,
     .show_more = show_more_of_nodes,
     .look_back = look_back_at_nodes,

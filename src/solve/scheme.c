@@ -1,4 +1,4 @@
-/* What generalised-alpha is for every member: see scheme.h. */
+/* Generalised-alpha and TR-BDF2 for every member: see scheme.h. */
 #include "scheme.h"
 
 #include "../base/scene.h"
@@ -9,11 +9,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { START_PASSES = 4, LEAP_PASSES = 2, SPAN = 4096 };
+enum { START_PASSES = 4, SPAN = 4096 };
 
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
     double rho = member->session->rho_inf;
-    spari_scheme c = {.h = h};
+    spari_scheme c = {.rule = SPARI_ALPHA, .h = h, .span = h};
     c.alpha_m = (2 * rho - 1) / (rho + 1);
     c.alpha_f = rho / (rho + 1);
     c.gamma = 0.5 + c.alpha_f - c.alpha_m;
@@ -59,71 +59,200 @@ static void mix_loads(void *context, int64_t from, int64_t to) {
     }
 }
 
-void spari_scheme_begin_added(const spar_member *m, double s, double *load) {
+void spari_scheme_mix_loads(const spar_member *m, const spari_steps *t, int loads, double s) {
+    spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, s});
     if (m->added && s < 1) {
-        (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, load);
+        (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, t->load);
     }
 }
 
-/* A much larger step gets no more than four times the distance: it is mostly what an unresolved part left there. */
-double spari_scheme_ratio(double before, double h) {
-    return before > 0 && h != before ? fmin(h / before, 4) : 1;
+void spari_scheme_dissipate(spar_member *m, const spari_scheme *c, double *before, double power) {
+    m->dissipated_step += 0.5 * c->h * (*before + power);
+    *before = power;
 }
 
-/* Below, what rho_inf = 0.9 takes out in a step is more than what a longer one brings: 1.05^2 0.9 < 1. */
-int spari_scheme_leaps(double before, double h) {
-    return before > 0 && h > 1.05 * before;
+/* ---- substeps and stages ---- */
+
+/* TR-BDF2: c, w, d. */
+#define STAGE (2 - M_SQRT2)
+#define WEIGHT (0.25 * M_SQRT2)
+#define DIAGONAL (1 - 0.5 * M_SQRT2)
+
+spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule) {
+    spari_scheme c = *alpha;
+    double g = DIAGONAL * c.h;
+    c.rule = rule;
+    c.span = rule == SPARI_TRAPEZOIDAL ? STAGE * c.h : c.h;
+    if (c.still) {
+        c.rate = 1 / c.span;
+        c.cv = c.cv > 0 ? c.rate : 0;
+    } else {
+        c.cm = c.cb = 1 / (g * g);
+        c.rate = c.cv = 1 / g;
+    }
+    return c;
 }
 
-static int start_once(const spari_integrand *how, void *self, spari_steps *t, spar_member *m, const spari_scheme *c) {
-    if (!t->started && !c->still) {
-        SPARI_TRY(how->start(self, m, c));
-        t->started = 1;
+static spari_pattern pattern_after(const spari_pattern *last, double h) {
+    if (last->h > 0 && !spari_steps_alike(h, last->h)) {
+        return (spari_pattern){h, 0};
+    }
+    return (spari_pattern){h, last->h > 0 && last->even < SPARI_EVEN ? last->even + 1 : last->even};
+}
+
+spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pattern *pattern) {
+    const spari_scheme c = spari_scheme_of(m, damped, pattern->h);
+    return pattern->even < SPARI_EVEN && !c.still ? spari_scheme_stage(&c, SPARI_BACKWARD) : c;
+}
+
+/* Of what turns freely at W, generalised-alpha feeds the parts that it does not resolve from 1 - rho_inf = 1.5 W h on
+   (docs/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
+static int exceeds_limit(double turning, const spari_scheme *c, const spar_session *session) {
+    static const double least = 0.05;
+    return 1.5 * turning * c->h > fmax(1 - session->rho_inf, least);
+}
+
+spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {
+    spari_scheme c = *alpha;
+    double r = alpha->h / h;
+    c.h = c.span = h;
+    c.cm *= r * r, c.cb *= r * r;
+    c.cv *= r, c.rate *= r;
+    return c;
+}
+
+/* A substep from the state it begins at, which stays for another try. Status and rule of the last stage. */
+static int try_part(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
+                    spari_scheme *c) {
+    *c = *alpha;
+    part->end = part->to;
+    if (even < SPARI_EVEN && !c->still) {
+        *c = spari_scheme_stage(alpha, SPARI_TRAPEZOIDAL);
+        part->end = part->from + STAGE * (part->to - part->from);
+        SPARI_TRY(how->solve(self, c, part));
+        *c = spari_scheme_stage(alpha, SPARI_BACKWARD);
+        part->end = part->to;
+    }
+    return how->solve(self, c, part);
+}
+
+/* The same; whether it has a solution that may stay. What fails is told to the session if `last`. */
+static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
+                       spari_scheme *c, const spar_session *session, int last) {
+    char text[SPARI_MESSAGE_SIZE], *before = last ? NULL : spari_messages_aside(text);
+    int status = try_part(how, self, alpha, even, part, c);
+    if (!last) {
+        (void)spari_messages_aside(before);
+    }
+    if (status == SPAR_OK && how->gains && !c->still && how->gains(self, part)) {
+        status = SPAR_ERR_NUMERIC;
+        char name[160];
+        how->name(self, name, sizeof name);
+        SPARI_REQUIRE(session, !last, status,
+                      "%s: the step from t = %g gains energy that no load gives, in 1024 parts too; take a smaller dt, "
+                      "or look at the loads",
+                      name, session->time);
+    }
+    return status;
+}
+
+/* One substep of the session, cut where that is needed. */
+static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_pattern *pattern,
+                       const spar_session *session, double dt, double from, double to) {
+    enum { PARTS = 1024 };
+    int at = 0, size = PARTS, again = 0;
+    double tried = 0;
+    while (at < PARTS) {
+        const spari_scheme alpha = size < PARTS ? spari_scheme_resize(whole, whole->h * size / PARTS) : *whole;
+        spari_pattern next = pattern_after(pattern, alpha.h);
+        spari_part part = {.dt = dt, .again = again};
+        spari_scheme c;
+        part.from = at == 0 ? from : from + (to - from) * at / PARTS;
+        part.to = at + size == PARTS ? to : from + (to - from) * (at + size) / PARTS;
+        part.alpha = again ? 0 : tried > 0 ? tried : pattern->even == SPARI_EVEN ? pattern->h : 0;
+        part.ratio = pattern->h > 0 ? alpha.h / pattern->h : 0;
+        int tries_anew = again || tried > 0; /* the first try has spent the algorithmic accelerations */
+        if (!tries_anew) {
+            how->enter(self, &part);
+        }
+        if (tries_anew || (how->turning && exceeds_limit(how->turning(self), &alpha, session))) {
+            next.even = 0;
+        }
+        part.last = next.even == SPARI_EVEN - 1;
+        int last = size == 1 || !how->gains,
+            status = try_to_stay(how, self, &alpha, next.even, &part, &c, session, last);
+        if (status == SPAR_ERR_NUMERIC && !last) {
+            again = c.rule != SPARI_ALPHA;
+            tried = again ? 0 : alpha.h;
+            size /= 2;
+            continue;
+        }
+        SPARI_TRY(status);
+        SPARI_TRY(how->leave(self, &c, &part));
+        *pattern = next;
+        at += size;
+        again = 0, tried = 0;
+        while (size < PARTS && at % (2 * size) == 0) {
+            size *= 2;
+        }
     }
     return SPAR_OK;
 }
 
-int spari_scheme_balance(const spari_integrand *how, void *self, spari_steps *t, spar_member *m, double dt) {
-    const spari_scheme c = spari_scheme_of(m, 0, dt / m->session->substeps);
-    SPARI_TRY(start_once(how, self, t, m, &c));
-    (void)how->begin(self);
-    return SPAR_OK;
-}
-
-int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *t, int loads, spar_member *m, int damped,
-                         double dt) {
-    int substeps = m->session->substeps;
-    const spari_scheme c = spari_scheme_of(m, damped, dt / substeps);
-    SPARI_TRY(start_once(how, self, t, m, &c));
-    spari_part part = {.root = m->drive[0], .ratio = spari_scheme_ratio(t->h_begin, c.h)};
-    part.leaps = !c.still && spari_scheme_leaps(t->h_begin, c.h);
-    t->h_solved = c.h;
-    m->dissipated_step = 0;
-    double before, power = how->begin(self);
+int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_pattern *pattern,
+                     const spar_session *session, double dt) {
+    int substeps = session->substeps;
     for (int k = 1; k <= substeps; k++) {
-        part.s = (double)k / substeps;
-        part.before = part.root;
-        part.root = spari_drive_at(m, part.s, dt);
-        spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, part.s});
-        spari_scheme_begin_added(m, part.s, t->load);
-        before = power;
-        SPARI_TRY(how->substep(self, m, &c, &part, &power));
-        m->dissipated_step += 0.5 * c.h * (before + power);
-        part.ratio = 1;
-        part.leaps = 0;
+        SPARI_TRY(run_substep(how, self, alpha, pattern, session, dt, (k - 1.0) / substeps, (double)k / substeps));
     }
     return SPAR_OK;
 }
 
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b) {
-    for (int i = 0; i < n && ratio != 1; i++) {
+    for (int i = 0; i < n && ratio > 0 && ratio != 1; i++) {
         b[i] = a[i] + ratio * (b[i] - a[i]);
+    }
+}
+
+/* b^n = a^n + (alpha_m - alpha_f) h a', by the change of a over the step. Motions that the step does not resolve have a
+   change that says nothing; up to a factor of 0.8 it feeds nothing after two steps of TR-BDF2, whatever rho_inf
+   (tests/stability/random_steps.c). */
+void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b) {
+    double f = fmax(c->alpha_m - c->alpha_f, -0.8);
+    for (int i = 0; i < n; i++) {
+        b[i] = a[i] + f * (a[i] - a0[i]);
+    }
+}
+
+/* Starting values of a stage of TR-BDF2: v = v_h + g a and x = x_h + g v, with v_h and x_h of what is known. */
+static void predict_stage(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x,
+                          spari_rates to) {
+    const double h = c->h, g = 1 / c->rate;
+    for (int k = 0; k < n; k++) {
+        double v0 = from.v[k], a0 = from.a[k], v = v0 + g * a0, p = g * v0, a = a0;
+        if (c->rule == SPARI_BACKWARD) {
+            double as = from.b[k];
+            v = v0 + h * WEIGHT * (a0 + as);
+            p = h * WEIGHT * (v0 + from.stage[k]);
+            a = as + (1 - STAGE) / STAGE * (as - a0);
+        }
+        if (stays != SPARI_KEEP_ACCELERATION) {
+            double way = stays == SPARI_KEEP_PLACE ? 0 : c->span * v0;
+            a = ((way - p) / g - v) / g;
+        }
+        to.a[k] = to.b[k] = a;
+        to.v[k] = v + g * a;
+        x[k] = p + g * to.v[k];
     }
 }
 
 void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x,
                           spari_rates to) {
     double h = c->h;
+    if (c->rule != SPARI_ALPHA) {
+        predict_stage(c, stays, n, from, x, to);
+        return;
+    }
     for (int k = 0; k < n; k++) {
         double b = from.b[k], a = from.a[k], v = from.v[k], next;
         if (stays == SPARI_KEEP_ACCELERATION) {
@@ -163,49 +292,4 @@ int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, 
         }
     }
     return 0;
-}
-
-int spari_scheme_filter(const spari_scheme *c, const spari_filter *how, void *self) {
-    for (int pass = 0; pass < LEAP_PASSES; pass++) {
-        how->push(self);
-        if (how->solve(self)) {
-            return 1;
-        }
-        how->take(self, c->cm);
-    }
-    return 0;
-}
-
-typedef struct filtered {
-    spari_linear *A;
-    int held, n;
-    spari_forces times_mass;
-    void *self;
-    const spar_member *member;
-    double *r, *y;
-} filtered;
-
-static void push_vector(void *self) {
-    const filtered *f = self;
-    f->times_mass(f->self, f->member, f->y, f->r);
-    memset(f->r, 0, (size_t)f->held * sizeof *f->r);
-}
-
-static int solve_vector(void *self) {
-    const filtered *f = self;
-    return spari_linear_solve(f->A, f->r);
-}
-
-static void take_vector(void *self, double by) {
-    const filtered *f = self;
-    for (int i = 0; i < f->n; i++) {
-        f->y[i] -= by * f->r[i];
-    }
-}
-
-int spari_scheme_filter_vector(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass,
-                               void *self, const spar_member *m, double *r, double *y) {
-    static const spari_filter how = {push_vector, solve_vector, take_vector};
-    filtered f = {A, held, n, times_mass, self, m, r, y};
-    return spari_scheme_filter(c, &how, &f);
 }

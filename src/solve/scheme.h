@@ -1,13 +1,6 @@
 /* Generalised-alpha: its coefficients, and all that every member integrated with it does in the same way, however its
    state looks: the substeps of a step, starting values, corrections, accelerations at t^0, steps much longer than the
-   last. The members of a session are integrated alike.
-
-   A step much longer than the last: generalised-alpha carries an acceleration from step to step; of motions that the
-   new step h no longer resolves (omega h >> 1) it would throw velocities of omega^2 h times their amplitude, which grow
-   with every longer step: the scheme's overshoot in velocity. Such motions are taken out of it, and left to the
-   scheme's own damping: of the acceleration b stays b - (I - cm S^-1 M)^2 b with S = K + cv C + cm M, in which
-   (undamped) a mode of z = omega^2 / cm keeps 1 - (z / (1 + z))^2: all but z^2, of order h^4, of what is resolved, 2 /
-   z of what is not. */
+   last. The members of a session are integrated alike. */
 #ifndef SPARI_SCHEME_H
 #define SPARI_SCHEME_H
 
@@ -16,8 +9,13 @@
 
 #include <float.h>
 
+typedef enum spari_rule { SPARI_ALPHA, SPARI_TRAPEZOIDAL, SPARI_BACKWARD } spari_rule;
+
 typedef struct spari_scheme {
-    double h, alpha_m, alpha_f, beta, gamma;
+    spari_rule rule;
+    double h;    /* of the substep */
+    double span; /* from its beginning to the end of the stage */
+    double alpha_m, alpha_f, beta, gamma;
     double cm, cv,
         cb;      /* d a / d x, d v / d x (where forces depend on rates) and d b / d x of the Newton increments x */
     double rate; /* d v / d x in any case */
@@ -34,52 +32,81 @@ static inline int spari_trace_is(const double *x) {
     return x[0] >= 0 && x[0] < 1 && x[1] >= 0 && x[1] <= DBL_MAX;
 }
 
-/* Where a member's steps stand, and its loads [unique][6] within one. */
+/* The lengths of the last (sub)steps: of the last one, 0: none yet; and how many before it had the same length, at most
+   SPARI_EVEN. With that many generalised-alpha goes on. It begins a run too: the stages of TR-BDF2 take loads as linear
+   in the step, and those at t = 0 are often not known. */
+typedef struct spari_pattern {
+    double h;
+    int even;
+} spari_pattern;
+enum { SPARI_EVEN = 2 };
+/* Whether two numbers of a file can be that. */
+static inline int spari_pattern_is(double h, double even) {
+    return h >= 0 && h <= DBL_MAX && (even == 0 || even == 1 || even == 2);
+}
+
+/* Loads [unique][6] of a member within a step, and the pattern of its steps. */
 typedef struct spari_steps {
-    double *load, *load0, *load1; /* at a substep's end, at t^n and at t^{n+1} */
-    double h_begin, h_solved;     /* the (sub)steps that led to t^n and to t^{n+1}; 0: none yet */
+    double *load, *load0, *load1; /* at the end of a stage, at t^n and at t^{n+1} */
+    spari_pattern begin, solved;  /* of the (sub)steps that led to t^n and to t^{n+1} */
     int started;                  /* accelerations at t^0 are known */
 } spari_steps;
 
-/* One substep: of n to its end. */
+/* A substep. Times are parts of the step dt, in [0, 1]. */
 typedef struct spari_part {
-    double s;                /* where in the step it ends, in (0, 1] */
-    spari_pose before, root; /* a driven root at its ends */
-    double ratio;            /* of the algorithmic accelerations it begins with: spari_scheme_stretch */
-    int leaps;               /* it is much longer than the last */
+    double dt;
+    double from, to; /* where it begins and ends, */
+    double end;      /* and where the stage under way ends */
+    double ratio;    /* of the algorithmic accelerations it begins with: spari_scheme_stretch */
+    int last;        /* generalised-alpha goes on after it, if dt stays */
+    double alpha;    /* length of the last substep, if that was generalised-alpha's; else 0 */
+    int again;       /* a longer one from here was tried by TR-BDF2, and given up */
 } spari_part;
 
-/* What differs from member to member. `self`: what is kept of it. */
-typedef struct spari_integrand {
-    /* accelerations at t^0 */
-    int (*start)(void *self, const spar_member *m, const spari_scheme *c);
-    /* begins at t^n; the power that damping takes out there */
-    double (*begin)(void *self);
-    /* to the part's end under steps->load; *power there */
-    int (*substep)(void *self, const spar_member *m, const spari_scheme *c, const spari_part *part, double *power);
-} spari_integrand;
+/* How a member, or an assembly, goes through a substep. `self`: what is kept of it. */
+typedef struct spari_stepper {
+    /* The state that was found becomes the one that the substep begins at. */
+    void (*enter)(void *self, const spari_part *part);
+    /* The largest mean angular velocity of stiff members that turn freely; NULL: there are none. */
+    double (*turning)(const void *self);
+    /* To the end of a stage. A status and a message. */
+    int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
+    /* The substep has ended. A status and a message. */
+    int (*leave)(void *self, const spari_scheme *c, const spari_part *part);
+    /* Whether the solution found has more energy than the state it came from and the work of the loads account for;
+       NULL: substeps are not cut. */
+    int (*gains)(void *self, const spari_part *part);
+    /* What it is, for messages. */
+    void (*name)(const void *self, char *text, int size);
+} spari_stepper;
+
+/* Part of the energy that a substep may gain where its motion is hardly resolved. */
+#define SPARI_GAIN 0.1
 
 /* Of substeps h, with the session's spectral radius. damped: forces depend on rates where there is no inertia. */
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h);
 /* Loads at the ends of the step, fluid and dead ones, of the nodes. */
 void spari_scheme_loads(const spar_member *member, spari_steps *steps);
-/* Accelerations at t^0, for steps dt, under load0; then as a step begins. 0, or a status and a message of start. */
-int spari_scheme_balance(const spari_integrand *how, void *self, spari_steps *steps, spar_member *member, double dt);
-/* From t^n to t^n + dt in the session's substeps, under `loads` numbers between load0 and load1; writes
-   member->dissipated_step. 0, or a status and a message of start or substep. */
-int spari_scheme_advance(const spari_integrand *how, void *self, spari_steps *steps, int loads, spar_member *member,
-                         int damped, double dt);
+/* The loads at the part s of a step, those corrected by a guess of the fluid's added mass included. */
+void spari_scheme_mix_loads(const spar_member *member, const spari_steps *steps, int loads, double s);
 
-/* Of a member with a guess of the fluid's added mass: load [unique][6] at the part s of a step, between those at t^n
-   and the corrected ones at t^{n+1}, becomes one between corrected ones. */
-void spari_scheme_begin_added(const spar_member *member, double s, double *load);
-
-/* Of a step h to the one before (0: none), for spari_scheme_stretch. */
-double spari_scheme_ratio(double before, double h);
-/* The algorithmic acceleration b^n stands for the acceleration at t^n + (alpha_m - alpha_f) h: with a new h its
-   distance from a^n is multiplied by the ratio of the steps; without this uneven steps are of first order. b := a +
-   ratio (b - a) */
+/* The same coefficients for a stage of TR-BDF2. */
+spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule);
+/* The coefficients that the last substep of a pattern has ended with. */
+spari_scheme spari_scheme_last(const spar_member *member, int damped, const spari_pattern *pattern);
+/* The same coefficients for another length. */
+spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h);
+/* From t^n to t^n + dt in the session's substeps, by the stepper. A substep without a solution, or whose solution gains
+   energy from nothing (Newton has found another equilibrium), is halved and tried again, down to 1/1024. alpha: the
+   coefficients of a substep. *pattern: of the steps that led to t^n, becomes that of those to t^{n+1}. A status and a
+   message of the stepper. */
+int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_pattern *pattern,
+                     const spar_session *session, double dt);
+/* Within 0.1 % of the last step generalised-alpha goes on, and its algorithmic acceleration b^n, which stands for the
+   acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
+/* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
+void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 
 /* What stays over the step in the starting values of Newton. Smooth motion: the acceleration. Where stiff parts ring,
    their acceleration says nothing of the next: the velocity. Where the step is longer than the motion lasts: the place.
@@ -91,15 +118,20 @@ typedef enum spari_guess {
     SPARI_KEEP_PLACE
 } spari_guess;
 
-/* Rates of n unknowns, and true and algorithmic accelerations. */
+/* Rates of n unknowns, and true and algorithmic accelerations. At the beginning of a backward-difference stage b has
+   the accelerations at the end of the trapezoidal one, and `stage` its velocities. */
 typedef struct spari_rates {
     double *v, *a, *b;
+    const double *stage;
 } spari_rates;
 
 /* Starting values with inertia: increments x and the rates they come with. */
 void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x, spari_rates to);
 /* x and what hangs on it less `cut` times the correction dx. */
 void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double *dx, double *x, spari_rates to);
+
+/* After a substep, for the energy that damping takes: *before is the power at its beginning, becomes `power`. */
+void spari_scheme_dissipate(spar_member *member, const spari_scheme *c, double *before, double power);
 
 /* A vector of the unknowns, of accelerations y or of the state, into r. */
 typedef void (*spari_forces)(void *self, const spar_member *m, const double *y, double *r);
@@ -111,17 +143,5 @@ typedef void (*spari_forces)(void *self, const spar_member *m, const double *y, 
    loads of the accelerations a. The first `held` of the n unknowns keep theirs. 0, or 1 when A is singular. */
 int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces unbalance, void *self,
                        const spar_member *m, double *r, double *a);
-/* A step to `h` after one of `before` (0: none) is much longer. */
-int spari_scheme_leaps(double before, double h);
-/* What is taken out of the accelerations that a much longer step begins with, y := (I - cm S^-1 M)^2 y. */
-typedef struct spari_filter {
-    void (*push)(void *self);           /* forces become M y */
-    int (*solve)(void *self);           /* x becomes S^-1 times them; 0, or 1 when S is singular */
-    void (*take)(void *self, double f); /* y becomes y - f x */
-} spari_filter;
-int spari_scheme_filter(const spari_scheme *c, const spari_filter *how, void *self);
-/* The same of a vector y [n], S factored in A; the first `held` stay. r [n] room. 0, or 1 when it is singular. */
-int spari_scheme_filter_vector(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces times_mass,
-                               void *self, const spar_member *m, double *r, double *y);
 
 #endif

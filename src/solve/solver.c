@@ -10,11 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void carve(double *block, int n, spari_state *s) {
-    s->q = block;
-    s->v = s->q + 7 * (int64_t)n;
-    s->a = s->v + 6 * (int64_t)n;
-    s->b = s->a + 6 * (int64_t)n;
+spari_state spari_state_in(double *block, int n) {
+    double *v = block + 7 * (int64_t)n, *a = v + 6 * (int64_t)n;
+    return (spari_state){block, v, a, a + 6 * (int64_t)n};
 }
 
 spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms) {
@@ -29,7 +27,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     for (int k = 0; k < 3; k++) {
         ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
     }
-    double **sixes[] = {&s->increment, &s->steps.load, &s->steps.load0, &s->steps.load1, &s->r, &s->dx, &s->leapt};
+    double **sixes[] = {&s->increment, &s->steps.load, &s->steps.load0, &s->steps.load1, &s->r, &s->dx, &s->stage_v};
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
         ok = ok && (*sixes[k] = spari_zalloc(spari_mixed_unknowns(n), sizeof(double))) != NULL;
     }
@@ -51,12 +49,12 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
             spari_solver_free(s);
             return NULL;
         }
-        carve(block, s->n, &s->own[k]);
+        s->own[k] = spari_state_in(block, s->n);
     }
     spari_linear_share(s->linear, body->crew);
-    carve(s->block[0], s->n, &s->begin);
-    carve(s->block[1], s->n, &s->from);
-    carve(s->block[2], s->n, &s->to);
+    s->begin = spari_state_in(s->block[0], s->n);
+    s->from = spari_state_in(s->block[1], s->n);
+    s->to = spari_state_in(s->block[2], s->n);
     return s;
 }
 
@@ -75,7 +73,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->steps.load1);
     free(s->r);
     free(s->dx);
-    free(s->leapt);
+    free(s->stage_v);
     free(s->tinv);
     free(s->kept_q);
     free(s->turn);
@@ -91,7 +89,7 @@ void spari_solver_restart(spari_solver *s) {
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
     s->steps.started = 0;
-    s->steps.h_begin = s->h_leapt = 0;
+    s->steps.begin = (spari_pattern){0, SPARI_EVEN};
     s->power = s->power_begin = 0;
 }
 
@@ -99,8 +97,7 @@ void spari_solver_accept(spari_solver *s) {
     spari_state t = s->begin;
     s->begin = s->to;
     s->to = t;
-    s->steps.h_begin = s->steps.h_solved;
-    s->h_leapt = 0;
+    s->steps.begin = s->steps.solved;
     s->power_begin = s->power;
 }
 
@@ -193,8 +190,8 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
                         .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
 }
 
-/* Of a node: 25 doubles at either end of the step, 4 of the kept turn, 6 of the leap. */
-enum { STATE_HEAD = 16, STATE_NODE = 60 };
+/* Of a node: 25 doubles at either end of the step, 4 of the kept turn. */
+enum { STATE_HEAD = 17, STATE_NODE = 54 };
 
 int64_t spari_solver_state_size(const spari_solver *s) {
     return STATE_HEAD + STATE_NODE * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
@@ -205,33 +202,34 @@ void spari_solver_save(const spari_solver *s, double *state) {
                                      s->factored,
                                      s->kept_cm,
                                      s->kept_cv,
-                                     s->steps.h_begin,
-                                     s->steps.h_solved,
+                                     s->steps.begin.h,
+                                     s->steps.solved.h,
                                      s->steps.started,
                                      (double)s->newton,
                                      (double)s->factors,
                                      s->power,
                                      s->power_begin,
-                                     s->h_leapt,
+                                     s->steps.begin.even,
                                      (double)s->served,
                                      (double)s->spent,
                                      s->trace.rate,
-                                     s->trace.left};
+                                     s->trace.left,
+                                     s->steps.solved.even};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
     memcpy(state += 25 * n, s->to.q, 25 * n * sizeof *state);
     memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
-    memcpy(state += 4 * n, s->leapt, 6 * n * sizeof *state);
     if (s->factored) {
-        spari_linear_save(s->linear, state + 6 * n);
+        spari_linear_save(s->linear, state + 4 * n);
     }
 }
 
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
     int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n, size = spari_linear_state_size(s->linear);
     if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8]) ||
-        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14)) {
+        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14) ||
+        !spari_pattern_is(state[4], state[11]) || !spari_pattern_is(state[5], state[16])) {
         return 0;
     }
     return state[1] == 0 ? count == own : count == own + size && spari_linear_is_state(s->linear, state + own);
@@ -241,18 +239,17 @@ void spari_solver_load(spari_solver *s, const double *state) {
     size_t n = (size_t)s->n;
     s->factored = state[1] != 0;
     s->kept_cm = state[2], s->kept_cv = state[3];
-    s->steps.h_begin = state[4], s->steps.h_solved = state[5];
+    s->steps.begin = (spari_pattern){state[4], (int)state[11]};
+    s->steps.solved = (spari_pattern){state[5], (int)state[16]};
     s->steps.started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
-    s->h_leapt = state[11];
     s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
     s->trace.rate = state[14], s->trace.left = state[15];
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
     memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
-    memcpy(s->leapt, state += 4 * n, 6 * n * sizeof *state);
     if (s->factored) {
-        spari_linear_load(s->linear, state + 6 * n);
+        spari_linear_load(s->linear, state + 4 * n);
     }
 }

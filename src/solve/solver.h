@@ -27,13 +27,12 @@ struct spari_solver {
     spari_state begin;    /* at t^n */
     spari_state from, to; /* a substep's ends; after a solve `to` is t^{n+1} */
     double *block[3];     /* the memory of the three */
-    spari_state own[2];   /* driven root: a substep's ends seen from it; else NULL */
+    spari_state own[2];   /* a substep's ends seen from a driven root or a rigid motion; NULL: none so far */
     double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
     double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
     spari_steps steps;
     double *r, *dx;
-    double *leapt;          /* [n][6] what a step of h_leapt from t^n begins with in place of b (leap.h) */
-    double h_leapt;         /* 0: none */
+    double *stage_v;        /* [n][6] velocities at the end of a trapezoidal stage */
     double *best;           /* static: state to go back to */
     double *most, *most_by; /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
     spari_linear *linear;
@@ -53,6 +52,8 @@ struct spari_solver {
 /* `arms`, which may be NULL, and `body` are kept. */
 spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms);
 void spari_solver_free(spari_solver *solver);
+/* A state in a block of 25 doubles for each of n nodes. */
+spari_state spari_state_in(double *block, int n);
 /* begin.q, v, a have been set anew. */
 void spari_solver_restart(spari_solver *solver);
 /* From t^n to t^n + dt in the session's substeps, under steps.load0 and load1; leaves t^n alone, writes `to` and

@@ -35,6 +35,7 @@ struct spari_assembly {
     spari_trace trace; /* of Newton; strict it forgets the rate */
     int factored;      /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
     int violent;       /* velocities are held within the step's equations */
+    int turns_far;     /* joints turn far in a substep */
     int standing;      /* the system below is factored, for the tangents there are and this cv, */
     double cv, moved;  /* and the parts' way since; only within a solution */
     double scale;      /* of the constraints' rows */
@@ -73,9 +74,6 @@ void spari_tied_keep(spari_assembly *a);
 int spari_tied_solve(spari_assembly *a, double cv);
 /* Of the gaps alone, without forces. */
 int spari_tied_close(spari_assembly *a, double cv);
-/* Takes out of the accelerations that the substep begins with what it does not resolve, where it is much longer than
-   the last; a status and a message. */
-int spari_tied_leap(spari_assembly *a, double dt);
 /* Takes down what rings along the constraints at the end of a substep, the part s of the step dt. 0 or 1. */
 int spari_tied_calm(spari_assembly *a, double s, double dt);
 /* Takes out of the joints' holds what others say already, with a word to the log; the links' B are those of the

@@ -108,7 +108,9 @@ static void test_explicit_ends_with_a_refusal(void **state) {
     spar_session_destroy(&o.session);
 }
 
-/* dt a thousand times up and down: columns of other steps rest; the free amplitude stays what it is. */
+/* dt a thousand times up and down: columns of other steps rest, and the free amplitude of 0.25 does not grow. A step of
+   1 s turns its phase by omega dt = 0.36; the stage of a step of another length takes the loads as linear, which is off
+   by (omega dt)^2 / 8 = 0.016 of the fluid's, in each of the two steps after a change. */
 static void test_jumps_of_dt(void **state) {
     (void)state;
     oscillator o;
@@ -118,7 +120,7 @@ static void test_jumps_of_dt(void **state) {
         OK(o.session, spar_step(o.session, n / 50 % 2 ? 1 : 1e-3, answer, &o, NULL));
         largest = fmax(largest, fabs(tip(&o) - 0.25));
     }
-    assert_true(largest > 0.2 && largest < 0.26);
+    assert_true(largest > 0.2 && largest < 0.27);
     spar_session_destroy(&o.session);
 }
 
