@@ -342,7 +342,7 @@ static int newton_all(spari_assembly *a, double s, double dt) {
    that has passed since t^n. 0 or 1. */
 static int shift_for_alpha(spari_assembly *a, double cv, double time) {
     const spari_scheme *c = &a->limb[0].alpha;
-    double C = c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6;
+    double C = spari_scheme_error(c);
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
         double jerk[12] = {0}, rate[6];

@@ -87,5 +87,5 @@ int spari_change_tells(const spar_session *s) {
 }
 
 double spari_change_error(const spari_scheme *c, double change) {
-    return fabs(c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6) * c->h * c->h * change;
+    return fabs(spari_scheme_error(c)) * c->h * c->h * change;
 }

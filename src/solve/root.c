@@ -286,7 +286,7 @@ void spari_steady_rate(const spar_member *m, const double w[3], const double a[3
 /* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration; and of a rigid body v^0 less C h^2 times that,
    as shift_turning has it of members that deform. */
 void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_scheme *c) {
-    double h = (c->alpha_m - c->alpha_f) * c->h, C = c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6, rate[3];
+    double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), rate[3];
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q) {
         const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
@@ -306,7 +306,7 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
 
 /* A substep begins, after one of the other scheme. */
 static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
-    double C = c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6;
+    double C = spari_scheme_error(c);
     if (!turns_stiffly(s, m) || c->still) {
         return;
     }

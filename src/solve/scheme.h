@@ -90,6 +90,10 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps);
 /* The loads at the part s of a step, those corrected by a guess of the fluid's added mass included. */
 void spari_scheme_mix_loads(const spar_member *member, const spari_steps *steps, int loads, double s);
 
+/* C of (E1): what a step of generalised-alpha leaves of a place, by h^2 and the change of the acceleration. */
+static inline double spari_scheme_error(const spari_scheme *c) {
+    return c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6;
+}
 /* The same coefficients for a stage of TR-BDF2. */
 spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule);
 /* The coefficients that the last substep of a pattern has ended with. */
