@@ -66,7 +66,7 @@ spar_jobs() {
     nproc 2>/dev/null || echo 2
 }
 
-# spar_build <source> <build> [cmake options]: configures and builds
+# spar_build <source> <build> [cmake options]: configures and builds; all, or $spar_targets
 spar_build() {
     source_dir=$1
     build_dir=$2
@@ -77,5 +77,6 @@ spar_build() {
     fi
     cmake -S "$source_dir" -B "$build_dir" "$@" || return 1
     say "building $build_dir"
-    cmake --build "$build_dir" -j "$(spar_jobs)"
+    # shellcheck disable=SC2086
+    cmake --build "$build_dir" -j "$(spar_jobs)" ${spar_targets:+--target $spar_targets}
 }

@@ -63,6 +63,12 @@ if(TARGET test_turbine AND TARGET examples_turbine)
   spar_set_test(test_turbine unit 300 ${spar_example_environment})
 endif()
 
+# A host whose dt follows a CFL condition finds what even steps find.
+add_test(NAME example_cfl COMMAND examples_cfl)
+spar_set_test(example_cfl stability 120 ${spar_example_environment})
+set_tests_properties(example_cfl PROPERTIES PASS_REGULAR_EXPRESSION
+  "force of the hinge +CFL [0-9.]+e-0[23], even [0-9.]+e-0[23].*hinge: CFL 337\\.[0-9] N, even 337\\.[0-9] N, shorter 337")
+
 # The sprung cylinder locks in at a reduced speed of 5 to 6; the floating body heaves on its water line, 8e6 kg on 5.05e5 N/m
 # (25.0 s), a little stiffer by its moorings.
 add_test(NAME example_sprung_cylinder COMMAND examples_sprung_cylinder)

@@ -4,6 +4,7 @@
    where each rank takes the air of its share of the blades. Run it with --help for what can be chosen. */
 #include "ranks.h"
 #include "rotor_report.h"
+#include "turbine_case.h"
 #include "turbine_control.h"
 #include "turbine_model.h"
 #include "turbine_report.h"
@@ -26,7 +27,8 @@ typedef struct options {
     double rpm, pitch; /* where the run begins; not finite: the published steady state of the wind */
     double blade_modes, tower_modes;
     double no_plots, quiet, help;
-    const char *out, *data, *blades, *tower;
+    double case_start;
+    const char *out, *data, *blades, *tower, *kind;
 } options;
 
 static const struct {
@@ -35,16 +37,23 @@ static const struct {
     double least, most;
     const char *help;
 } table[] = {
-    {"wind", "M/S", offsetof(options, wind), 0, 60, "wind at hub height [8]"},
+    {"case", "NAME", offsetof(options, kind), 0, 0,
+     "gust, parked, idling, pitch-step, emergency-stop [gust]; all but gust without controller"},
+    {"case-start", "S", offsetof(options, case_start), 0, 1e9,
+     "when pitch step or stop begin, and a gust beside them [2]"},
+    {"wind", "M/S", offsetof(options, wind), 0, 60, "wind at hub height [8; parked, idling 50, at full load 18]"},
     {"shear", "EXPONENT", offsetof(options, shear), -1, 1, "power law of the wind over height [0]"},
-    {"gust", "M/S", offsetof(options, gust), -60, 60, "height of a 1-cos gust on top [6: through rated wind]"},
-    {"gust-start", "S", offsetof(options, gust_start), 0, 1e9, "when it begins [20]"},
-    {"gust-length", "S", offsetof(options, gust_length), 1e-3, 1e9, "how long it lasts [20]"},
+    {"gust", "M/S", offsetof(options, gust), -60, 60,
+     "height of a 1-cos gust on top [6: through rated wind; parked 10, others 0]"},
+    {"gust-start", "S", offsetof(options, gust_start), 0, 1e9, "when it begins [20; other cases: --case-start]"},
+    {"gust-length", "S", offsetof(options, gust_length), 1e-3, 1e9, "how long it lasts [20; other cases 5]"},
     {"seconds", "S", offsetof(options, seconds), 1e-6, 1e9, "time to simulate [60]"},
     {"dt", "S", offsetof(options, dt), 1e-7, 10, "time step [0.02]"},
     {"mean", "S", offsetof(options, mean), 1e-6, 1e9, "the table's means are of the last so many seconds [20]"},
-    {"rpm", "REV/MIN", offsetof(options, rpm), 0, 100, "rotor speed at the start [published, for the wind]"},
-    {"pitch", "DEG", offsetof(options, pitch), 0, 90, "pitch at the start [published, for the wind]"},
+    {"rpm", "REV/MIN", offsetof(options, rpm), 0, 100,
+     "rotor speed at the start [published, for the wind; parked, idling 0]"},
+    {"pitch", "DEG", offsetof(options, pitch), 0, 90,
+     "pitch at the start [published, for the wind; parked, idling 90]"},
     {"elements", "N", offsetof(options, elements), 0, 1000, "beam elements of a blade, 0: rigid blades [1]"},
     {"nodes", "N", offsetof(options, nodes), 2, 24, "nodes of an element [10]"},
     {"blades", "NAME", offsetof(options, blades), 0, 0, "how blades are solved: exact, linear, modal [exact]"},
@@ -103,11 +112,29 @@ static int fidelity_of(const char *option, const char *name) {
     return -1;
 }
 
+/* What was not given is the case's. */
+static int fill_case(options *o) {
+    double wind, gust, rpm, pitch;
+    int kind = turbine_case_of(o->kind);
+    if (kind < 0) {
+        fprintf(stderr, "turbine: --case %s: gust, parked, idling, pitch-step or emergency-stop is wanted\n", o->kind);
+        return 1;
+    }
+    turbine_case_defaults(kind, &wind, &gust, &rpm, &pitch);
+    o->wind = isfinite(o->wind) ? o->wind : wind;
+    o->gust = isfinite(o->gust) ? o->gust : gust;
+    o->gust_start = isfinite(o->gust_start) ? o->gust_start : kind == TURBINE_GUST ? 20 : o->case_start;
+    o->gust_length = isfinite(o->gust_length) ? o->gust_length : kind == TURBINE_GUST ? 20 : 5;
+    o->rpm = isfinite(o->rpm) ? o->rpm : rpm;
+    o->pitch = isfinite(o->pitch) ? o->pitch : pitch;
+    return 0;
+}
+
 static int read_options(options *o, int argc, char **argv) {
-    *o = (options){.wind = 8,
-                   .gust = 6,
-                   .gust_start = 20,
-                   .gust_length = 20,
+    *o = (options){.wind = NAN,
+                   .gust = NAN,
+                   .gust_start = NAN,
+                   .gust_length = NAN,
                    .seconds = 60,
                    .dt = 0.02,
                    .mean = 20,
@@ -123,7 +150,9 @@ static int read_options(options *o, int argc, char **argv) {
                    .out = "turbine-out",
                    .data = SPAR_DATA_DIR "/nrel5mw",
                    .blades = "exact",
-                   .tower = "exact"};
+                   .tower = "exact",
+                   .kind = "gust",
+                   .case_start = 2};
     for (int k = 1; k < argc; k++) {
         int i = 0;
         while (i < OPTIONS && (strncmp(argv[k], "--", 2) != 0 || strcmp(argv[k] + 2, table[i].name) != 0)) {
@@ -141,7 +170,7 @@ static int read_options(options *o, int argc, char **argv) {
             return 1;
         }
     }
-    return fidelity_of("blades", o->blades) < 0 || fidelity_of("tower", o->tower) < 0;
+    return fidelity_of("blades", o->blades) < 0 || fidelity_of("tower", o->tower) < 0 || fill_case(o) != 0;
 }
 
 /* ---- the scene ---- */
@@ -150,7 +179,8 @@ typedef struct scene {
     options options;
     spar_session *session;
     turbine turbine;
-    turbine_control control;
+    turbine_control control; /* of the other cases: their pitch and torque now */
+    turbine_case happens;
     turbine_report report;
     turbine_view view;
     char title[160];
@@ -215,10 +245,13 @@ static int set_up(scene *s) {
     TRY(turbine_create(&s->turbine, s->session, &how));
     TRY(turbine_start(&s->turbine, rpm * pi / 30, wind_at, &s->options, 4));
     turbine_control_begin(&s->control, turbine_gear * rpm * pi / 30, pitch);
+    s->happens = (turbine_case){turbine_case_of(o->kind), o->case_start, pitch, s->control.torque};
+    TRY(turbine_brake(&s->turbine, s->happens.kind == TURBINE_PARKED));
     int64_t n = s->turbine.blade_nodes > s->turbine.tower_nodes ? s->turbine.blade_nodes : s->turbine.tower_nodes;
     s->motion = calloc((size_t)(7 * n), sizeof *s->motion);
     s->reference = calloc((size_t)(3 * n), sizeof *s->reference);
-    snprintf(s->title, sizeof s->title, "NREL 5-MW turbine, %g m/s%s", o->wind, o->gust != 0 ? " and a gust" : "");
+    snprintf(s->title, sizeof s->title, "NREL 5-MW turbine, %s%s%g m/s%s", s->happens.kind ? o->kind : "",
+             s->happens.kind ? ", " : "", o->wind, o->gust != 0 ? " and a gust" : "");
     s->report.out = o->out, s->report.scene = s->title;
     return s->motion && s->reference ? SPAR_OK : complain(s, SPAR_ERR_MEMORY);
 }
@@ -312,9 +345,17 @@ static int take_picture(scene *s, double t) {
 
 /* ---- the run ---- */
 
-/* What the controller sees at t^n decides on torque and pitch until t^{n+1}. */
-static int steer(scene *s, double dt) {
-    double angle, speed, twist;
+/* What the controller sees at t^n decides on torque and pitch until t^{n+1}. Without it: the case's pitch and torque
+   at t^{n+1}. */
+static int steer(scene *s, double t, double dt) {
+    double angle, speed, twist, acceleration;
+    if (s->happens.kind != TURBINE_GUST) {
+        turbine_case_pitch(&s->happens, t + dt, &s->control.pitch, &s->control.rate, &acceleration);
+        s->control.torque = turbine_case_torque(&s->happens, t + dt);
+        TRY(turbine_set_torque(&s->turbine, turbine_gear * s->control.torque));
+        TRY(turbine_turn_blades(&s->turbine, s->control.pitch, s->control.rate, acceleration));
+        return SPAR_OK;
+    }
     TRY(turbine_get_shaft(&s->turbine, &angle, &speed, &twist));
     turbine_control_step(&s->control, turbine_gear * speed, dt);
     TRY(turbine_set_torque(&s->turbine, turbine_gear * s->control.torque));
@@ -349,7 +390,7 @@ static int run(scene *s) {
         double t = (double)i * o->dt;
         int iterations = 0;
         if (i > 0) {
-            if (steer(s, o->dt) != SPAR_OK) {
+            if (steer(s, t - o->dt, o->dt) != SPAR_OK) {
                 return 1;
             }
             TRY(spar_step(s->session, o->dt, solve_air, s, &iterations));

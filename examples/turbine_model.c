@@ -238,13 +238,22 @@ int turbine_get_shaft(const turbine *t, double *angle, double *speed, double *tw
     return SPAR_OK;
 }
 
-int turbine_set_pitch(turbine *t, double pitch, double rate) {
-    const double to[6] = {0, 0, 0, t->rotor.pitch - pitch},
-                 by[6] = {0, 0, 0, -rate}; /* feather: minus about the span */
+int turbine_turn_blades(turbine *t, double pitch, double rate, double acceleration) {
+    const double to[6] = {0, 0, 0, t->rotor.pitch - pitch}, by[6] = {0, 0, 0, -rate},
+                 more[6] = {0, 0, 0, -acceleration}; /* feather: minus about the span */
     for (int b = 0; b < TURBINE_BLADES; b++) {
-        TRY(spar_joint_drive(t->bearing[b], to, by, NULL));
+        TRY(spar_joint_drive(t->bearing[b], to, by, more));
     }
     return SPAR_OK;
+}
+
+int turbine_set_pitch(turbine *t, double pitch, double rate) {
+    return turbine_turn_blades(t, pitch, rate, 0);
+}
+
+int turbine_brake(turbine *t, int on) {
+    const double brake[36] = {[21] = 1e12}; /* N m/rad */
+    return spar_joint_set_spring(t->shaft, on ? brake : NULL, NULL, NULL);
 }
 
 int turbine_set_torque(turbine *t, double torque) {
@@ -284,14 +293,13 @@ static int spin(turbine *t, double speed) {
 }
 
 int turbine_start(turbine *t, double speed, turbine_wind wind, void *context, int rounds) {
-    const double brake[36] = {[21] = 1e12}; /* N m/rad: nothing else holds the shaft at rest */
-    TRY(spar_joint_set_spring(t->shaft, brake, NULL, NULL));
+    TRY(turbine_brake(t, 1)); /* nothing else holds the shaft at rest */
     TRY(spin(t, speed));
     for (int k = 0; k < rounds; k++) {
         TRY(turbine_blow(t, wind, context, 0));
         TRY(spar_member_solve_static(t->tower, 4));
         TRY(spin(t, speed));
     }
-    TRY(spar_joint_set_spring(t->shaft, NULL, NULL, NULL));
+    TRY(turbine_brake(t, 0));
     return turbine_blow(t, wind, context, 0);
 }

@@ -66,6 +66,10 @@ int turbine_start(turbine *turbine, double speed, turbine_wind wind, void *conte
 int turbine_get_shaft(const turbine *turbine, double *angle, double *speed, double *twist);
 /* At the end of the step begun next: pitch of all blades, rad, positive towards feather, and its rate. */
 int turbine_set_pitch(turbine *turbine, double pitch, double rate);
+/* The same where the rate changes smoothly: with its derivative. */
+int turbine_turn_blades(turbine *turbine, double pitch, double rate, double acceleration);
+/* The brake on the shaft: a spring that holds it where it is in the reference. on 0: off. */
+int turbine_brake(turbine *turbine, int on);
 /* From now on: the generator's torque at the rotor's side, N m, positive where it brakes. */
 int turbine_set_torque(turbine *turbine, double torque);
 /* Aerodynamic loads of the blades in their latest motion, in the wind at time t. */

@@ -371,6 +371,41 @@ static void otherwise(void **state) {
     }
 }
 
+/* What may be given at any time, and is given otherwise on one rank: a spring, a load, a drive. Said before the first
+   step, between steps and for a solution at rest; given alike again, the run goes on. (A spring went unseen: the
+   owner's was solved with, and other ranks said another energy.) */
+static void given_otherwise(void **state) {
+    (void)state;
+    double spring[36] = {0}, damper[36] = {0};
+    damper[28] = 0.5;
+    for (int way = 0; way < 9 && size > 1; way++) {
+        scene c;
+        double last = rank == size - 1 ? 1e-9 : 0;
+        begin(&c, size);
+        ready(&c, rank, size, 1);
+        for (int again = 0; again < 2; again++, last = 0) {
+            drive(&c, 0);
+            if (way / 3 == 1 && again == 0) {
+                OK(c.session, spar_step(c.session, step, solve, &c, NULL));
+                drive(&c, 1);
+            }
+            spring[28] = 40 + (way % 3 == 0 ? last : 0);
+            OK(c.session, spar_joint_set_spring(c.joint[0], spring, damper, NULL));
+            OK(c.session, spar_joint_set_load(c.joint[0], (double[]){0, 0, 0, 0, 0.7 + (way % 3 == 1 ? last : 0), 0}));
+            if (way % 3 == 2) {
+                OK(c.session, spar_joint_drive(c.joint[2], (double[]){0, 0, 0, 0, 0, 0.1 + last}, NULL, NULL));
+            }
+            int status = way / 3 == 2 ? spar_session_solve_static(c.session, 1, NULL, NULL, NULL)
+                                      : spar_step(c.session, step, solve, &c, NULL);
+            assert_int_equal(status, again ? SPAR_OK : SPAR_ERR_COMM);
+            if (!again) {
+                assert_non_null(strstr(spar_session_message(c.session), "springs, loads or drives of "));
+            }
+        }
+        spar_session_destroy(&c.session);
+    }
+}
+
 /* A load beyond the range of numbers fails on the owner alone: all know, the step can be rejected, and the run goes on
    as if nothing had been. */
 static void fails_on_owner(void **state) {
@@ -431,6 +466,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(same_bits),        cmocka_unit_test(nearly_the_same), cmocka_unit_test(at_rest),
         cmocka_unit_test(from_file),        cmocka_unit_test(trials),          cmocka_unit_test(advised),
         cmocka_unit_test(all_at_rest),      cmocka_unit_test(given_owners),    cmocka_unit_test(otherwise),
-        cmocka_unit_test(lower_fidelities), cmocka_unit_test(fails_on_owner),  cmocka_unit_test(estimated)};
+        cmocka_unit_test(lower_fidelities), cmocka_unit_test(fails_on_owner),  cmocka_unit_test(estimated),
+        cmocka_unit_test(given_otherwise)};
     return RANKS_RUN(argc, argv, tests);
 }

@@ -218,6 +218,74 @@ static void other_ranks(void **state) {
     forget(file[0]);
 }
 
+/* Forces that follow the time and the velocities. */
+static int push_drag(spar_session *s, double t, double dt, int iteration, void *context) {
+    const run *r = context;
+    double *v = calloc((size_t)(3 * r->n) + 1, sizeof *v);
+    (void)iteration;
+    OK(s, spar_fluid_pull_motion(r->fluid, 1, NULL, v));
+    for (int64_t i = 0; i < 3 * r->n; i++) {
+        v[i] = (double)(i % 3) * pow(sin(3 * (t + dt)), 4) - 0.1 * v[i];
+    }
+    int status = spar_fluid_push_forces(r->fluid, v, NULL);
+    free(v);
+    return status;
+}
+
+/* For 0.4 s, in steps of dt/2 and 3 dt/2 by turns. */
+static void go_uneven(run *r, double dt) {
+    const int steps = (int)(0.4 / dt + 0.5);
+    for (int k = 0; k < steps; k++) {
+        OK(r->session, spar_step(r->session, k % 2 ? 1.5 * dt : 0.5 * dt, push_drag, r, NULL));
+    }
+}
+
+enum { FEW = 4 };
+
+/* The motion at t = 0.8. elsewhere: saved at t = 0.4, and gone on with from there on one process alone. */
+static void end_of_uneven(double dt, int elsewhere, double seen[52]) {
+    run r, other;
+    create(&r, on_all(), rank, 1, FEW, PLACES);
+    OK(r.session, spar_session_set_coupling(r.session, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
+    go_uneven(&r, dt);
+    if (elsewhere) {
+        OK(r.session, spar_session_save(r.session, file[1]));
+        create(&other, scene_session(), 0, size, FEW, PLACES);
+        OK(other.session, spar_session_set_coupling(other.session, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
+        OK(other.session, spar_session_load(other.session, file[1]));
+        spar_session_destroy(&r.session);
+        r = other;
+        MPI_Barrier(MPI_COMM_WORLD);
+        forget(file[1]);
+    }
+    go_uneven(&r, dt);
+    look(&r, seen);
+    spar_session_destroy(&r.session);
+}
+
+/* A save in the middle of uneven steps keeps order 2, on another number of ranks too. The error at t = 0.8 is taken
+   against steps of an eighth that are not interrupted. Expected: it falls with an order of 2 within 0.5 (the order
+   still changes with dt: 1.9 to 2.4 here), and is that of the run that is not saved to 1e-3. */
+static void order_in_uneven_steps(void **state) {
+    (void)state;
+    if (size > 2) { /* thousands of steps, and more ranks than processors */
+        skip();
+    }
+    double fine[52] = {0}, at[2][2][52] = {{{0}}}, error[2][2] = {{0}};
+    end_of_uneven(0.000625, 0, fine);
+    for (int i = 0; i < 4; i++) {
+        double *seen = at[i / 2][i % 2];
+        end_of_uneven(i % 2 ? 0.0025 : 0.005, i / 2, seen);
+        for (int k = 0; k < 28; k++) {
+            error[i / 2][i % 2] = fmax(error[i / 2][i % 2], fabs(seen[k] - fine[k]));
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        NEAR(log2(error[i][0] / error[i][1]), 2, 0.5);
+        NEAR(error[1][i], error[0][i], 1e-3 * error[0][i]);
+    }
+}
+
 /* No room on the disc for what one rank writes, on each in turn, and for the whole: told on all ranks, nothing is left,
    and what was there stays. */
 static void no_room(void **state) {
@@ -332,9 +400,13 @@ static void memory(void **state) {
 }
 
 int main(int argc, char **argv) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(kept_on_one_rank), cmocka_unit_test(same_file),
-                                       cmocka_unit_test(other_ranks),      cmocka_unit_test(no_room),
-                                       cmocka_unit_test(damaged),          cmocka_unit_test(memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(kept_on_one_rank),
+                                       cmocka_unit_test(same_file),
+                                       cmocka_unit_test(other_ranks),
+                                       cmocka_unit_test(order_in_uneven_steps),
+                                       cmocka_unit_test(no_room),
+                                       cmocka_unit_test(damaged),
+                                       cmocka_unit_test(memory)};
     ranks_begin(argc, argv);
     for (int k = 0; k < 2; k++) {
         snprintf(file[k], sizeof file[k], "mpi_save_%d_%d.spar", size, k);

@@ -776,6 +776,72 @@ static void settings_are_checked(void **state) {
     pistons_destroy(&p);
 }
 
+/* ---- what messages say ---- */
+
+/* Whether 30 characters of it stand in it twice. */
+static int says_twice(const char *text) {
+    enum { PIECE = 30 };
+    size_t n = strlen(text);
+    for (size_t i = 0; i + PIECE < n; i++) {
+        for (size_t j = i + 1; j + PIECE <= n; j++) {
+            if (strncmp(text + i, text + j, PIECE) == 0) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* A body free to turn, whose fluid pushes a moment of 10 N m for some steps, and then 1e56. */
+static int folding_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    spar_fluid *f = context;
+    double force[3] = {0, 0, 0}, moment[3] = {0, 10, 1};
+    (void)s, (void)iteration;
+    moment[1] *= t + dt > 0.035 ? 1e55 : 1;
+    return spar_fluid_push_forces(f, force, moment);
+}
+
+/* A cure is none that is taken already; iterations are those of several attempts, and the limit is said; loads that no
+   structure answers are the fluid's; nothing is said twice. */
+static void messages(void **state) {
+    (void)state;
+    const double ratio = 100, x[3] = {0, 0, 0}, J[3] = {1, 2, 3};
+    for (int scheme = SPAR_COUPLING_FIXED_POINT; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+        pistons p;
+        pistons_create(&p, 1, &ratio);
+        p.b[0] = 5;
+        OK(p.session, spar_session_set_coupling(p.session, scheme, 0, 1e-15, 2));
+        assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_NUMERIC);
+        const char *message = spar_session_message(p.session);
+        assert_non_null(strstr(message, "has not converged in 2 iterations"));
+        assert_true(!strstr(message, "take SPAR_COUPLING_IQN_ILS") == (scheme == SPAR_COUPLING_IQN_ILS));
+        assert_false(says_twice(message));
+        pistons_destroy(&p);
+    }
+    for (int scheme = SPAR_COUPLING_EXPLICIT; scheme <= SPAR_COUPLING_IQN_ILS; scheme += SPAR_COUPLING_IQN_ILS) {
+        spar_session *s = scene_session();
+        spar_member *b = scene_body(s, "top", x, 1, J);
+        spar_fluid *f = NULL;
+        OK(s, spar_fluid_create(b, "air", &f));
+        OK(s, spar_fluid_set_motion_nodes(f, 1, x));
+        OK(s, spar_fluid_set_force_nodes(f, 1, x));
+        OK(s, spar_fluid_map(f));
+        OK(s, spar_session_set_coupling(s, scheme, 0, 1e-9, 20));
+        int status = SPAR_OK;
+        for (int step = 0; step < 6 && status == SPAR_OK; step++) {
+            status = spar_step(s, 0.01, folding_fluid, f, NULL);
+        }
+        const char *message = spar_session_message(s);
+        assert_int_equal(status, SPAR_ERR_NUMERIC);
+        assert_non_null(strstr(message, "the fluid's loads on member 'top' have grown from 10 to "));
+        assert_non_null(strstr(message, "look at the fluid that pushes them"));
+        assert_non_null(strstr(message, "attempts, each of 50 at most"));
+        assert_null(strstr(message, "take a smaller dt"));
+        assert_false(says_twice(message));
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(explicit_limits),
@@ -799,6 +865,7 @@ int main(void) {
         cmocka_unit_test(parts_do_not_ring),
         cmocka_unit_test(moments_of_parts_come_and_go),
         cmocka_unit_test(settings_are_checked),
+        cmocka_unit_test(messages),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

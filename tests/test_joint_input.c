@@ -218,7 +218,7 @@ static void test_half_a_turn(void **state) {
     OK(y.s, spar_member_get_motion(y.body[1], q[0], NULL, NULL));
     NEAR(fabs(q[0][6]), sin(1.55), 1e-9);
     turn[3] = 0.6, turn[5] = 3.1; /* 3.158 */
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'ball': a turn of 3.158 rad; where more than one rotation is free",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'ball': a turn of 3.158 rad; where three rotations are free",
             spar_joint_drive(ball, turn, NULL, NULL));
     OK(y.s,
        spar_joint_drive(ball, (double[6]){0, 0, 0, 0, 9, 3.1}, NULL, NULL)); /* what is not driven does not count */
@@ -227,12 +227,108 @@ static void test_half_a_turn(void **state) {
     spar_session_destroy(&y.s);
 }
 
+/* Masses whose product with 1/dt^2 is beyond the range of numbers: the start of the first member tied is singular, and
+   those behind it are not begun. A status, on every call. */
+static void test_start_beyond_numbers(void **state) {
+    (void)state;
+    spar_session *s = scene_session();
+    const double heavy = 1e303, J[3] = {1, 1, 1}, ends[2][3] = {{0, 0, 0}, {1, 0, 0}};
+    double K[36], M[36];
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, heavy, heavy, heavy, 1, 1, 1);
+    spar_member *body[2], *beam = scene_beam(s, "beam", 1, 4, 1, K, M);
+    body[0] = scene_body(s, "near", ends[0], heavy, J);
+    body[1] = scene_body(s, "far", ends[1], heavy, J);
+    OK(s, spar_member_set_root(beam, SPAR_ROOT_FREE));
+    OK(s, spar_member_commit(beam));
+    (void)scene_joint(s, "j", beam, 3, body[1], 0, SPAR_FREE_RY);
+    (void)scene_joint(s, "k", beam, 0, body[0], 0, SPAR_FREE_RY);
+    for (int k = 0; k < 2; k++) {
+        OK(s, spar_step_begin(s, 2.6e-4));
+        REFUSED(s, SPAR_ERR_NUMERIC, "singular at the start", spar_step_solve(s));
+        OK(s, spar_step_reject(s));
+    }
+    spar_session_destroy(&s);
+}
+
+/* What getters say of joints before the first step is 0, as the header has it, whatever was asked before: a body that
+   turns at 2 rad/s about a hinge 1 m beside it (its point speeds up by 4 m/s^2), on a spring that is not at rest. Calls
+   that look at the joints, refused or not, place them. */
+static void test_asked_before(void **state) {
+    (void)state;
+    double K[36], seen[3][22];
+    const double x[3] = {1, 0, 0}, J[3] = {1, 1, 1};
+    scene_diagonal(K, 0, 0, 0, 0, 7, 0);
+    spar_session *s = scene_session();
+    double mass[36];
+    spar_member *b = NULL;
+    scene_mass(mass, 1, zero, J);
+    OK(s, spar_rigid_create(s, "b", x, upright, mass, &b));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_initial_velocity(b, zero, zero, (double[]){0, 2, 0}));
+    OK(s, spar_member_commit(b));
+    spar_joint *hinge = scene_joint_at(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY, zero), *line = NULL;
+    OK(s, spar_joint_set_spring(hinge, K, NULL, NULL));
+    OK(s, spar_line_create(s, "line", b, 0, x, NULL, 0, (double[]){3, 0, 0}, &line));
+    OK(s, spar_line_set_spring(line, 10, 1, 1.5, 0));
+    for (int asked = 0; asked < 3; asked++) {
+        double f;
+        memset(seen[asked], 0, sizeof seen[asked]);
+        if (asked == 1) {
+            REFUSED(s, SPAR_ERR_ARGUMENT, "modes", spar_member_solve_modes(b, 1000, K, NULL));
+        } else if (asked == 2) {
+            OK(s, spar_member_solve_modes(b, 1, &f, NULL));
+        }
+        OK(s, spar_joint_get_motion(hinge, seen[asked], seen[asked] + 6, seen[asked] + 12));
+        OK(s, spar_joint_get_motion(line, NULL, NULL, K));
+        OK(s, spar_joint_get_energy(hinge, 1, seen[asked] + 18));
+        OK(s, spar_joint_get_energy(line, 1, seen[asked] + 19));
+        seen[asked][20] = K[0];
+        for (int i = 0; i < 22; i++) {
+            assert_true(seen[asked][i] == 0);
+        }
+    }
+    OK(s, spar_step_begin(s, 1e-3));
+    OK(s, spar_step_solve(s));
+    OK(s, spar_joint_get_motion(line, NULL, NULL, K));
+    OK(s, spar_joint_get_energy(line, 1, seen[0]));
+    NEAR(seen[0][0], 0.5 * 10 * 0.25, 0.05);
+    assert_true(fabs(K[0]) > 1);
+    OK(s, spar_step_reject(s));
+    OK(s, spar_joint_get_motion(line, NULL, NULL, K));
+    assert_true(K[0] == 0);
+    spar_session_destroy(&s);
+}
+
+/* A step whose square is no number. */
+static void test_no_step(void **state) {
+    (void)state;
+    yard y = open_yard();
+    double short_one = 1e-160;
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160; give a positive number of seconds, 1e-100 or more",
+            spar_step_begin(y.s, short_one));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_step(y.s, short_one, NULL, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_session_start(y.s, short_one, NULL, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_step_within(y.s, &short_one, NULL, NULL, NULL, NULL));
+    still_sound(&y);
+    y = open_yard();
+    OK(y.s, spar_step(y.s, 1e-100, NULL, NULL, NULL));
+    spar_session_destroy(&y.s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_create),        cmocka_unit_test(test_describe),
-        cmocka_unit_test(test_contradiction), cmocka_unit_test(test_two_nodes_of_one),
-        cmocka_unit_test(test_late),          cmocka_unit_test(test_short_form),
-        cmocka_unit_test(test_drive_in_step), cmocka_unit_test(test_half_a_turn),
+        cmocka_unit_test(test_create),
+        cmocka_unit_test(test_describe),
+        cmocka_unit_test(test_contradiction),
+        cmocka_unit_test(test_two_nodes_of_one),
+        cmocka_unit_test(test_late),
+        cmocka_unit_test(test_short_form),
+        cmocka_unit_test(test_drive_in_step),
+        cmocka_unit_test(test_half_a_turn),
+        cmocka_unit_test(test_start_beyond_numbers),
+        cmocka_unit_test(test_no_step),
+        cmocka_unit_test(test_asked_before),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,7 +87,7 @@ static void test_sections_turn_with_the_root(void **state) {
     for (int c = 0; c < 6; c++) {
         NEAR(force[1][c], force[0][c], 1e-10 * 56);
     }
-    NEAR(force[0][4], -7 * 8, 1e-10 * 56);
+    NEAR(force[0][4], -7 * 8, 2e-5 * 56); /* the section turns with the deformation: of second order in it */
 }
 
 typedef struct account {
@@ -217,8 +217,8 @@ static void test_energy_accounts(void **state) {
 }
 
 /* A root that turns: linear and modal beams find the exact one's static state under centrifugal load, and its modes.
-   The turned inertia of the sections bends this beam sideways: were the stretch's stiffness counted twice on the
-   stretch itself, the tip would be off by 2 %; at rest the first frequency is off by 1.6 %. */
+   The turned inertia of the sections bends this beam sideways; at rest the first frequency is off by 1.6 %. The
+   frequencies lack the stretch itself, a strain of 5e-5. */
 static void test_static_turning(void **state) {
     (void)state;
     const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
@@ -239,7 +239,7 @@ static void test_static_turning(void **state) {
         spar_session_destroy(&s);
     }
     for (int k = 1; k < 3; k++) {
-        assert_true(apart(f[k], f[0], 6) < 1e-5);
+        assert_true(apart(f[k], f[0], 6) < 3e-5);
         assert_true(apart(tip[k], tip[0], 3) < 5e-5);
         assert_true(apart(v[k], v[0], 6 * NODES) < 1e-8);
         assert_true(apart(reaction[k], reaction[0], 6) < 1e-8);
@@ -247,11 +247,165 @@ static void test_static_turning(void **state) {
     assert_true(fabs(rest[0] - f[0][0]) > 0.015 * f[0][0]);
 }
 
+enum { BLADE_NODES = 14, GROWTHS = 4 };
+
+/* A blade of 3 m, EI 300 N m2, with two point masses, whose line leaves the plane of rotation by `cone` and is bent by
+   prebend and sweep. */
+static spar_member *bladed(spar_session *s, int fidelity, double cone, double prebend, double sweep) {
+    enum { AXIS = 7 };
+    const double length = 3, ends[2] = {0, 1}, mu[6] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3};
+    const double at[2] = {0.6, 1}, centre[3] = {0}, J[3] = {1e-4, 1e-4, 1e-4};
+    double eta[AXIS], xyz[3 * AXIS], stiffness[36], mass[36], lump[72];
+    spar_member *b = NULL;
+    scene_diagonal(stiffness, 1e7, 3e6, 3e6, 200, 300, 450);
+    scene_diagonal(mass, 0.5, 0.5, 0.5, 2e-4, 1e-4, 1e-4);
+    for (int i = 0; i < AXIS; i++) {
+        double t = eta[i] = i / (AXIS - 1.0), out = length * t, up = prebend * t * t;
+        xyz[3 * i] = out * cos(cone) - up * sin(cone);
+        xyz[3 * i + 1] = sweep * t * t;
+        xyz[3 * i + 2] = out * sin(cone) + up * cos(cone);
+    }
+    OK(s, spar_beam_create(s, "blade", 2, BLADE_NODES / 2, &b));
+    OK(s, spar_beam_set_axis(b, AXIS, eta, xyz, NULL));
+    OK(s, spar_beam_set_sections(b, 1, ends, stiffness, mass));
+    OK(s, spar_beam_set_damping(b, mu));
+    scene_mass(lump, 0.2, centre, J);
+    scene_mass(lump + 36, 0.1, centre, J);
+    OK(s, spar_beam_set_masses(b, 2, at, lump));
+    OK(s, spar_member_set_fidelity(b, fidelity, fidelity == SPAR_FIDELITY_MODAL ? 20 : 0));
+    return b;
+}
+
+/* Tip and growth rates, angular frequencies of a blade that turns with omega: its root driven, or welded to a hub. */
+static void turn_blade(int fidelity, int tied, const double line[3], const double omega[3], double tip[7],
+                       double growth[2 * GROWTHS]) {
+    const double origin[3] = {0}, inertia[3] = {1, 1, 1};
+    spar_session *s = scene_session();
+    spar_member *b = bladed(s, fidelity, line[0], line[1], line[2]);
+    OK(s, spar_member_set_root(b, tied ? SPAR_ROOT_FREE : SPAR_ROOT_DRIVEN));
+    if (tied) {
+        double mass[36];
+        const double straight[4] = {1, 0, 0, 0};
+        spar_member *hub = NULL;
+        scene_mass(mass, 1, origin, inertia);
+        OK(s, spar_rigid_create(s, "hub", origin, straight, mass, &hub));
+        OK(s, spar_member_set_root(hub, SPAR_ROOT_DRIVEN));
+        OK(s, spar_member_set_initial_velocity(hub, NULL, NULL, omega));
+        OK(s, spar_member_commit(hub));
+        (void)scene_joint(s, "weld", b, 0, hub, 0, 0);
+    } else {
+        OK(s, spar_member_set_initial_velocity(b, NULL, NULL, omega));
+    }
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_solve_static(b, 1));
+    scene_tip(b, tip);
+    OK(s, spar_member_solve_eigenvalues(b, GROWTHS, NULL, growth, NULL, NULL));
+    spar_session_destroy(&s);
+}
+
+/* A rotation that is not perpendicular to the line bends it: the tip is the exact member's within the second order of
+   the deflection (and 6e-6 m of stretch, which 20 modes lack), and so are growth rates and frequencies. Were the
+   bending part of what stiffens, cone 2.5 degrees and no point masses would give a tip of -6.3 mm linear and 15.5 mm
+   modal, for -13.0. */
+static void test_turning_off_the_line(void **state) {
+    (void)state;
+    const int fidelities[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const double degrees[] = {0, 1, 2.5, 15, 30, 45, 60, 75, 90}, bent[3][2] = {{0, 0}, {0.05, 0}, {0.05, 0.15}};
+    for (int i = 0; i < 27; i++) {
+        const double line[3] = {degrees[i / 3] * acos(-1) / 180, bent[i % 3][0], bent[i % 3][1]};
+        const double omega[3] = {0, 0, degrees[i / 3] > 2.5 ? 0.7 : 3};
+        double exact[7], tip[7], rate[2 * GROWTHS], growth[2 * GROWTHS];
+        turn_blade(SPAR_FIDELITY_EXACT, 0, line, omega, exact, rate);
+        for (int k = 0; k < 4; k++) {
+            turn_blade(fidelities[k % 2], k / 2, line, omega, tip, growth);
+            const double off = 2 * spari_dot(exact, exact) / 3 + 8e-6, part = 3 * spari_norm(exact) / 3 + 1e-4;
+            for (int c = 0; c < 3; c++) {
+                NEAR(tip[c], exact[c], off);
+            }
+            for (int c = 0; c < 2 * GROWTHS; c++) {
+                NEAR(growth[c], rate[c], part * fabs(rate[c]) + 1e-3);
+            }
+        }
+    }
+}
+
+/* A coned blade that is pitched by 0.5 rad (1 - cos 2 t) about x of the rotor while that turns with 3 rad/s: the tip
+   goes along with the exact member's, within the second order of its deflection of 16 mm. Linear members left the range
+   of numbers after 2 s, modal ones answered with tips of 1e46 m. */
+static void test_pitch_while_turning(void **state) {
+    (void)state;
+    enum { STEPS = 300 };
+    const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    static double tip[3][STEPS][7];
+    const double dt = 0.01, W = 3, omega[3] = {0, 0, W};
+    for (int k = 0; k < 3; k++) {
+        spar_session *s = scene_session();
+        spar_member *b = bladed(s, fidelities[k], 2.5 * acos(-1) / 180, 0, 0);
+        OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
+        OK(s, spar_member_set_initial_velocity(b, NULL, NULL, omega));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_solve_static(b, 1));
+        for (int i = 0; i < STEPS; i++) {
+            const double t = (i + 1) * dt, p = 0.5 * (1 - cos(2 * t)), pd = sin(2 * t), pdd = 2 * cos(2 * t);
+            const double x[3] = {cos(W * t), sin(W * t), 0}, turn[4] = {cos(W * t / 2), 0, 0, sin(W * t / 2)},
+                         pitch[4] = {cos(p / 2), sin(p / 2), 0, 0};
+            double q[7] = {0}, rate[6] = {0, 0, 0, pd * x[0], pd * x[1], W},
+                   accel[6] = {0, 0, 0, pdd * x[0] - pd * W * x[1], pdd * x[1] + pd * W * x[0], 0};
+            spari_quat_mul(turn, pitch, q + 3);
+            OK(s, spar_member_drive_root(b, q, rate, accel));
+            scene_run(s, dt, 1);
+            scene_tip(b, tip[k][i]);
+        }
+        spar_session_destroy(&s);
+    }
+    for (int i = 0; i < 2 * STEPS; i++) {
+        for (int c = 0; c < 3; c++) {
+            NEAR(tip[1 + i % 2][i / 2][c], tip[0][i / 2][c], 0.016 * 0.016 / 3);
+        }
+    }
+}
+
+/* A free beam that spins, linear about its reference: rotation vectors end at half a turn, where strain energy jumped
+   by (2 pi)^2 / 2 GA L, section strains by 2 pi, and kinetic energy grew from 0.7 to 1e7 J where LARGE_ROTATION is off.
+   Up to there nothing is strained; the step beyond is refused, and the state before stays. */
+static void test_half_a_turn(void **state) {
+    (void)state;
+    const int fidelities[] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, OFF};
+    const double spin[3] = {0, 0, 1}, rest[3] = {0}, dt = 0.1, eta = 0.5;
+    for (int k = 0; k < 3; k++) {
+        spar_session *s = scene_session();
+        spar_member *b = beam_of(s, fidelities[k], UNKNOWNS, SPAR_ROOT_FREE);
+        double energy[4], strain[6], tip[7], after[7];
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_set_initial_velocity(b, NULL, rest, spin));
+        int status = SPAR_OK, steps = 0;
+        while (status == SPAR_OK && steps < 40) {
+            scene_tip(b, tip);
+            OK(s, spar_member_get_energy(b, 4, energy));
+            OK(s, spar_beam_get_section(b, 1, &eta, strain, NULL, NULL, NULL));
+            assert_true(fabs(energy[1]) < 1e-4 * energy[0]);
+            for (int c = 0; c < 6; c++) {
+                NEAR(strain[c], 0, 1e-4);
+            }
+            OK(s, spar_step_begin(s, dt));
+            status = spar_step_solve(s);
+            OK(s, status == SPAR_OK ? spar_step_accept(s) : spar_step_reject(s));
+            steps += status == SPAR_OK;
+        }
+        assert_int_equal(status, SPAR_ERR_NUMERIC);
+        assert_true(fidelities[k] == OFF ? steps >= 25 && steps < 31 : steps == 31); /* 3.1 rad */
+        scene_tip(b, after);
+        assert_memory_equal(tip, after, sizeof tip);
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sections_are_linear), cmocka_unit_test(test_sections_turn_with_the_root),
         cmocka_unit_test(test_small_motion),        cmocka_unit_test(test_energy_accounts),
-        cmocka_unit_test(test_static_turning),
+        cmocka_unit_test(test_static_turning),      cmocka_unit_test(test_turning_off_the_line),
+        cmocka_unit_test(test_pitch_while_turning), cmocka_unit_test(test_half_a_turn),
     };
     scene_box(K, M);
     return cmocka_run_group_tests(tests, NULL, NULL);

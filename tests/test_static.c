@@ -196,6 +196,27 @@ static void test_placement_turns_the_answer(void **state) {
     }
 }
 
+/* A wheel on a torsion spring that its moment turns by 4e5 rad, of which a load step can find some 40: one load step is
+   halved until that is so, and refused when it has taken 5000 more than were asked for; 10000 find it. */
+static void work_is_bounded(void **state) {
+    (void)state;
+    const double J[3] = {1, 1, 1}, at[3] = {0, 0, 0}, turn = 4e5;
+    double K[36], z[6];
+    spar_session *s = scene_session();
+    spar_member *wheel = scene_body(s, "wheel", at, 1, J);
+    spar_joint *shaft = scene_joint(s, "shaft", wheel, 0, NULL, 0, SPAR_FREE_RY);
+    scene_diagonal(K, 0, 0, 0, 0, 1, 0);
+    OK(s, spar_joint_set_spring(shaft, K, NULL, NULL));
+    OK(s, spar_joint_set_load(shaft, (double[]){0, 0, 0, 0, turn, 0}));
+    REFUSED(s, SPAR_ERR_NUMERIC, "of the loads; take more load_steps", spar_member_solve_static(wheel, 1));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "100001 load steps; give 1 to 100000", spar_member_solve_static(wheel, 100001));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "0 load steps", spar_session_solve_static(s, 0, NULL, NULL, NULL));
+    OK(s, spar_member_solve_static(wheel, 10000));
+    OK(s, spar_joint_get_motion(shaft, z, NULL, NULL));
+    NEAR(z[4], turn, 1e-6 * turn);
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_roll_up),
@@ -205,6 +226,7 @@ int main(void) {
         cmocka_unit_test(test_elastica),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_placement_turns_the_answer),
+        cmocka_unit_test(work_is_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

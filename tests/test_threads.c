@@ -6,7 +6,9 @@
 #include <dirent.h>
 #include <fenv.h>
 #include <stdio.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 /* This process' threads, where the system says (Linux); else 0. */
 static int threads_of_process(void) {
@@ -324,6 +326,244 @@ static void test_farm(void **state) {
     }
 }
 
+/* ---- members whose motion is given, which joints tie to others ---- */
+
+/* Beams alone, which keep threads busy; driven points, prescribed beams on driven roots and the host's own bodies;
+   beams and bodies that hinges, ball joints, springs and lines tie to these and to each other. How many of each, and
+   what ties what, is drawn. */
+enum { LONE = 4, TOLD = 4, TIED = 6, TIED_STEPS = 12, SCENES = 6, TIED_RECORD = 7 * TIED };
+
+typedef struct told_scene {
+    spar_session *s;
+    uint64_t random;
+    spar_member *told[TOLD], *tied[TIED];
+    int64_t end[TIED]; /* the node that may be tied next */
+} told_scene;
+
+static int draw(told_scene *w, int n) {
+    w->random = w->random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (int)((w->random >> 33) % (uint64_t)n);
+}
+
+static spar_member *straight_beam(told_scene *w, const char *kind, int i, int count, const double at[3]) {
+    double K[36], M[36];
+    const double rest[4] = {1, 0, 0, 0};
+    char name[16];
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    (void)snprintf(name, sizeof name, "%s%d", kind, i);
+    spar_member *b = scene_beam(w->s, name, count, 4, 1, K, M);
+    OK(w->s, spar_member_set_placement(b, at, rest));
+    return b;
+}
+
+static void add_told(told_scene *w, int i) {
+    const double at[3] = {0, i, 0}, rest[4] = {1, 0, 0, 0};
+    double mass[36];
+    char name[16];
+    (void)snprintf(name, sizeof name, "told%d", i);
+    if (i % 3 == 0) {
+        OK(w->s, spar_point_create(w->s, name, at, NULL, &w->told[i]));
+    } else if (i % 3 == 1) {
+        w->told[i] = straight_beam(w, "told", i, 1, at);
+        OK(w->s, spar_member_set_root(w->told[i], SPAR_ROOT_DRIVEN));
+        OK(w->s, spar_member_set_fidelity(w->told[i], SPAR_FIDELITY_PRESCRIBED, 0));
+    } else {
+        scene_mass(mass, 1, (const double[3]){0}, (const double[3]){1, 1, 1});
+        OK(w->s, spar_rigid_create(w->s, name, at, rest, mass, &w->told[i]));
+        OK(w->s, spar_member_set_external(w->told[i], 1));
+    }
+    OK(w->s, spar_member_commit(w->told[i]));
+}
+
+/* A beam or a body, tied to one that is told or to one that is tied already. */
+static void add_tied(told_scene *w, int i) {
+    static const int hinge = SPAR_FREE_RY, ball = SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ;
+    int to = draw(w, 3) > 0 || i == 0 ? -1 - draw(w, TOLD) : draw(w, i), whole = draw(w, 3) == 0;
+    const double at[3] = {1 + 0.1 * i, 0.3 * i, 0.2};
+    char name[16];
+    spar_joint *j = NULL;
+    (void)snprintf(name, sizeof name, "body%d", i);
+    if (whole) {
+        w->tied[i] = scene_body(w->s, name, at, 2, (const double[3]){1, 2, 3});
+    } else {
+        w->tied[i] = straight_beam(w, "tied", i, 1 + draw(w, 3), at);
+        OK(w->s, spar_member_set_root(w->tied[i], SPAR_ROOT_FREE));
+        OK(w->s, spar_member_commit(w->tied[i]));
+    }
+    OK(w->s, spar_member_get_count(w->tied[i], &w->end[i]));
+    spar_member *b = to < 0 ? w->told[-1 - to] : w->tied[to];
+    int64_t node = to < 0 ? 0 : w->end[to] - 1;
+    double x[3], K[36];
+    memcpy(x, at, sizeof x);
+    (void)snprintf(name, sizeof name, "j%d", i);
+    switch (draw(w, 4)) {
+    case 0:
+        OK(w->s, spar_line_create(w->s, name, w->tied[i], 0, x, b, node, (const double[3]){0, 0, 2}, &j));
+        OK(w->s, spar_line_set_spring(j, 500, 5, 1, draw(w, 2)));
+        break;
+    case 1:
+        j = scene_joint_at(w->s, name, w->tied[i], 0, b, node, 63, x);
+        scene_diagonal(K, 500, 600, 700, 50, 60, 70);
+        OK(w->s, spar_joint_set_spring(j, K, NULL, NULL));
+        break;
+    default:
+        (void)scene_joint_at(w->s, name, w->tied[i], 0, b, node, draw(w, 2) ? hinge : ball, x);
+    }
+}
+
+static void told_move(told_scene *w, double t, int external) {
+    const double q[7] = {0.1 * sin(t), 0, 0.2 * sin(3 * t), cos(t), 0, sin(t), 0},
+                 v[6] = {0.1 * cos(t), 0, 0.6 * cos(3 * t), 0, 2, 0},
+                 a[6] = {-0.1 * sin(t), 0, -1.8 * sin(3 * t), 0, 0, 0};
+    for (int i = 0; i < TOLD; i++) {
+        if (external && i % 3 == 2) {
+            OK(w->s, spar_member_set_motion(w->told[i], q, v, a));
+        } else if (!external && i % 3 != 2) {
+            OK(w->s, spar_member_drive_root(w->told[i], q, v, a));
+        }
+    }
+}
+
+static void told_run(uint64_t seed, int threads, double record[TIED_STEPS][TIED_RECORD]) {
+    told_scene w = {.s = scene_session(), .random = seed};
+    const double g[3] = {0, 0, -9.81};
+    OK(w.s, spar_session_set_threads(w.s, threads));
+    OK(w.s, spar_session_set_gravity(w.s, g));
+    for (int i = 0; i < LONE; i++) {
+        OK(w.s, spar_member_commit(straight_beam(&w, "lone", i, 12, (const double[3]){0, 10 + i, 0})));
+    }
+    for (int i = 0; i < TOLD; i++) {
+        add_told(&w, i);
+    }
+    for (int i = 0; i < TIED; i++) {
+        add_tied(&w, i);
+    }
+    for (int step = 0; step < TIED_STEPS; step++) {
+        told_move(&w, 0.01 * (step + 1), 0);
+        OK(w.s, spar_step_begin(w.s, 0.01));
+        told_move(&w, 0.01 * (step + 1), 1);
+        OK(w.s, spar_step_solve(w.s));
+        OK(w.s, spar_step_accept(w.s));
+        for (int i = 0; i < TIED; i++) {
+            scene_tip(w.tied[i], record[step] + 7 * i);
+        }
+    }
+    spar_session_destroy(&w.s);
+}
+
+/* What is told moves before those that are tied to it are solved: with all in one round, a step differed from that of
+   one thread by up to the whole way of the step. */
+static void test_tied_to_told(void **state) {
+    (void)state;
+    static double one[TIED_STEPS][TIED_RECORD], more[TIED_STEPS][TIED_RECORD];
+    for (uint64_t seed = 1; seed <= SCENES; seed++) {
+        told_run(seed, 1, one);
+        for (int i = 1; i < COUNTS; i++) {
+            told_run(seed, counts[i], more);
+            assert_memory_equal(one, more, sizeof one);
+        }
+    }
+}
+
+/* ---- fork ---- */
+
+enum { FORK_BEAMS = 4, FORK_RECORD = 7 * FORK_BEAMS };
+
+static spar_session *fork_scene(int threads, spar_member *beam[FORK_BEAMS]) {
+    double K[36], M[36];
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_threads(s, threads));
+    OK(s, spar_session_set_gravity(s, (const double[3]){0, 1, -9.81}));
+    scene_diagonal(K, 1e7, 1e6, 1e6, 3e3, 4e3, 5e3);
+    scene_diagonal(M, 2, 2, 2, 0.02, 0.01, 0.01);
+    for (int i = 0; i < FORK_BEAMS; i++) {
+        const char name[3] = {'b', (char)('0' + i), 0};
+        beam[i] = scene_beam(s, name, i == 0 ? 130 : 2, 4, 2, K, M);
+        OK(s, spar_member_commit(beam[i]));
+    }
+    return s;
+}
+
+static void fork_steps(spar_session *s, spar_member *beam[FORK_BEAMS], double record[FORK_RECORD]) {
+    scene_run(s, 0.01, 3);
+    for (int i = 0; i < FORK_BEAMS; i++) {
+        scene_tip(beam[i], record + 7 * i);
+    }
+}
+
+/* What a child does with a session of its parent's: the bits of what the parent will have; one thread, then two of its
+   own; and lets it go. */
+static int child_goes_on(spar_session *s, spar_member *beam[FORK_BEAMS], const double expected[FORK_RECORD]) {
+    double seen[FORK_RECORD];
+    int threads = 0;
+    (void)alarm(60); /* a child that waits for threads which it does not have ends */
+    if (spar_session_get_threads(s, &threads) != SPAR_OK || threads != 1) {
+        return 2;
+    }
+    fork_steps(s, beam, seen);
+    if (memcmp(seen, expected, sizeof seen) != 0) {
+        return 3;
+    }
+    if (spar_session_set_threads(s, 2) != SPAR_OK || threads_of_process() > 2) {
+        return 4;
+    }
+    scene_run(s, 0.01, 2);
+    spar_session_destroy(&s);
+    return 0;
+}
+
+static void test_fork(void **state) {
+    (void)state;
+#if defined(__SANITIZE_THREAD__)
+    skip(); /* it ends a child that makes threads */
+#endif
+    double expected[FORK_RECORD], seen[FORK_RECORD];
+    spar_member *beam[FORK_BEAMS];
+    spar_session *s = fork_scene(1, beam);
+    scene_run(s, 0.01, 2);
+    fork_steps(s, beam, expected);
+    spar_session_destroy(&s);
+    s = fork_scene(3, beam);
+    scene_run(s, 0.01, 2);
+    pid_t child = fork();
+    if (child == 0) {
+        _exit(child_goes_on(s, beam, expected));
+    }
+    int status = -1;
+    assert_true(child > 0 && waitpid(child, &status, 0) == child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    fork_steps(s, beam, seen);
+    assert_memory_equal(seen, expected, sizeof seen);
+    spar_session_destroy(&s);
+}
+
+/* A step that is loaded in its middle, by a session that has asked for threads since its last one, is solved: the bits
+   of the run that was saved. (Nothing was there for the threads to work on: a segmentation fault.) */
+static void test_loaded_within(void **state) {
+    (void)state;
+    static const char path[] = "threads_within.spar";
+    double seen[2][FORK_RECORD];
+    spar_member *beam[FORK_BEAMS];
+    for (int loaded = 0; loaded < 2; loaded++) {
+        spar_session *s = fork_scene(1, beam);
+        OK(s, spar_step_begin(s, 0.01));
+        OK(s, loaded ? SPAR_OK : spar_session_save(s, path));
+        if (loaded) {
+            OK(s, spar_step_reject(s));
+            OK(s, spar_session_set_threads(s, 2));
+            OK(s, spar_session_load(s, path));
+        }
+        OK(s, spar_step_solve(s));
+        OK(s, spar_step_accept(s));
+        fork_steps(s, beam, seen[loaded]);
+        spar_session_destroy(&s);
+    }
+    assert_memory_equal(seen[0], seen[1], sizeof seen[0]);
+    (void)remove(path);
+}
+
 /* ---- maps ---- */
 
 static void test_same_feet(void **state) {
@@ -559,7 +799,8 @@ int main(void) {
         cmocka_unit_test(test_failures),    cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_past_caches), cmocka_unit_test(test_singles_past_caches),
         cmocka_unit_test(test_long_beam),   cmocka_unit_test(test_rounding_of_the_host),
-        cmocka_unit_test(test_farm),
+        cmocka_unit_test(test_farm),        cmocka_unit_test(test_tied_to_told),
+        cmocka_unit_test(test_fork),        cmocka_unit_test(test_loaded_within),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

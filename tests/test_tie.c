@@ -61,7 +61,14 @@ static void random_places(const spari_tie *t, const double relative[4], spari_pl
     spari_quat_mul(frame, back, a->q);
 }
 
-static const int masks[] = {0, SPAR_FREE_RX, SPAR_FREE_RY | SPAR_FREE_X, SPAR_FREE_RZ, SPAR_FREE_RX | SPAR_FREE_RZ, 63};
+static const int masks[] = {0,
+                            SPAR_FREE_RX,
+                            SPAR_FREE_RY | SPAR_FREE_X,
+                            SPAR_FREE_RZ,
+                            SPAR_FREE_RX | SPAR_FREE_RZ,
+                            63,
+                            SPAR_FREE_RX | SPAR_FREE_RY,
+                            SPAR_FREE_RY | SPAR_FREE_RZ | SPAR_FREE_X};
 enum { MASKS = sizeof masks / sizeof *masks };
 
 static double angle_apart(double a, double b) {
@@ -72,8 +79,8 @@ static double angle_apart(double a, double b) {
 static void test_changes(void **state) {
     (void)state;
     srand(3);
-    for (int trial = 0; trial < 60; trial++) {
-        spari_tie t = random_tie(masks[trial % MASKS], trial >= 48);
+    for (int trial = 0; trial < 80; trial++) {
+        spari_tie t = random_tie(masks[trial % MASKS], trial >= 64);
         spari_place a, b;
         double relative[4], z[6], B[6][12], load[6], K[12][12] = {{0}}, f[2][12];
         random_turn(0.6, relative);
@@ -166,6 +173,30 @@ static void test_hinge_turns(void **state) {
     }
 }
 
+/* A universal joint at any two angles, the first about an axis of b's, the second about one of a's: the angles are the
+   angles, the held coordinate is 0; turned about the third axis besides by 0.1, it is sin 0.1. */
+static void test_universal_turns(void **state) {
+    (void)state;
+    srand(9);
+    for (int n = 0; n < 300; n++) {
+        int without = n % 3, first = without == 0 ? 1 : 0, second = 3 - without - first, off = n % 2;
+        spari_tie t = random_tie(56 & ~(SPAR_FREE_RX << without), 0);
+        double angle[2] = {0.17 * (n - 150), 4 * uniform()}, psi[3][3] = {{0}}, turn[3][4], relative[4], z[6];
+        spari_place a, b;
+        psi[0][first] = angle[0], psi[1][second] = angle[1], psi[2][without] = 0.1 * off;
+        for (int k = 0; k < 3; k++) {
+            spari_quat_exp(psi[k], turn[k]);
+        }
+        spari_quat_mul(turn[0], turn[2], relative);
+        spari_quat_mul(relative, turn[1], relative);
+        random_places(&t, relative, &a, &b);
+        spari_tie_motion(&t, &a, &b, z, NULL);
+        assert_true(fabs(angle_apart(z[3 + first], angle[0])) < 1e-13);
+        assert_true(fabs(angle_apart(z[3 + second], angle[1])) < 1e-13);
+        assert_true(fabs(z[3 + without] - sin(0.1 * off)) < 1e-13);
+    }
+}
+
 /* Small rotations are the same three numbers to first order, whichever are free: their difference is of second order.
  */
 static void test_rotations_agree(void **state) {
@@ -218,7 +249,8 @@ static void test_drift(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_changes),         cmocka_unit_test(test_rigid_motion), cmocka_unit_test(test_hinge_turns),
+        cmocka_unit_test(test_changes),         cmocka_unit_test(test_rigid_motion),
+        cmocka_unit_test(test_hinge_turns),     cmocka_unit_test(test_universal_turns),
         cmocka_unit_test(test_rotations_agree), cmocka_unit_test(test_drift),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,10 +11,12 @@
 
 The headers under include/spar say what each call does; here is what is different.
 - Names. A call is a method of its first argument, without spar_ and without the name of that: spar_fluid_push_forces is
-  fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. Constants are spar.OK, ...
-  without SPAR_.
+  fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. A line is a joint whose
+  own calls keep their name: joint.line_set_spring. Constants are spar.OK, ... without SPAR_.
 - Arguments stand in the header's order. Left out are counts that an array given shows (n), capacities, contexts, and all
-  results. Arrays may be lists; what C takes as NULL is None, or left out at the end.
+  results. What C takes as NULL is None, or left out at the end.
+- Arrays may be lists, of the header's shape or flat; a 36 may be 6 x 6, a 9 be 3 x 3. Numbers are converted where nothing
+  is lost but digits: complex ones are refused.
 - Results come back: none, one, or a tuple in the header's order. An array that is given by its name is filled in place:
   fluid.pull_motion(1.0, x=x, v=v). One given as None is not wanted.
 - Failures raise spar.Error with the library's message, .status is its SPAR_ERR_*.
@@ -22,6 +24,7 @@ The headers under include/spar say what each call does; here is what is differen
   (session, t, dt), a log one of (level, text), a progress one of (done, expected), which answers 0 or None to go on. What
   they raise ends the step, or the call that tells progress, and is raised again.
 - A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints and fluids keep it.
+  What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
 The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.1.
 """
@@ -293,7 +296,7 @@ _CALLBACKS = {
     'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
-_IN_AND_OUT = {('spar_session_sum', 'x')}  # a result that is read too
+_IN_AND_OUT = {('spar_session_sum', 'x'), ('spar_step_within', 'dt')}  # results that are read too
 _OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_force_places', 'pull_forces_f32',
                    'push_forces_f32'}
 _ENOUGH = 1000  # the capacity of lists that the library cuts off at their end
@@ -331,7 +334,7 @@ class _Call:
                       and not (p.how == 'value' and p.name in ('capacity', 'rows', 'columns'))
                       and not (name == 'spar_aero_create' and p.name == 'blades')]
         self.python_name = name[len('spar_'):]
-        for prefix in {'member': ('member_', 'beam_'), 'joint': ('joint_', 'line_')}.get(self.owner, (f'{self.owner}_',)):
+        for prefix in {'member': ('member_', 'beam_')}.get(self.owner, (f'{self.owner}_',)):
             if self.python_name.startswith(prefix):
                 self.python_name = self.python_name[len(prefix):]
 
@@ -347,6 +350,15 @@ class _Call:
                 raise TypeError(f'{self.python_name} has no argument {name} left')
             given[name] = value
         return _Running(self, owner, given).run()
+
+
+def _has_shape(shape, known):
+    """Whether an array is flat, or has the sizes that are known (None: any), a square matrix in one being two."""
+    if len(shape) <= 1 < len(known):
+        return True
+    last = known[-1:]
+    forms = [known] + [known[:-1] + [root, root] for root in (3, 6) if last == [root * root]]
+    return any(len(shape) == len(form) and all(b is None or a == b for a, b in zip(shape, form)) for form in forms)
 
 
 class _Running:
@@ -396,13 +408,19 @@ class _Running:
             if not isinstance(value, numpy.ndarray) or value.dtype != c_kind or not value.flags.c_contiguous:
                 raise TypeError(f'{p.name}: a contiguous array of {numpy.dtype(c_kind)} is filled in place')
         else:
+            value = numpy.asarray(value)
+            if value.size and not numpy.can_cast(value.dtype, c_kind, 'same_kind'):
+                raise TypeError(f'{self.call.name}: {p.name} is of {value.dtype}; it must be of {numpy.dtype(c_kind)}')
             value = self.given[p.name] = numpy.ascontiguousarray(value, dtype=c_kind)
         known = [self._size(d) for d in p.dims]
         unknown = [d for d, size in zip(p.dims, known) if size is None]
         rest = int(numpy.prod([size for size in known if size is not None], dtype=numpy.int64))
-        if len(unknown) == 1 and rest and value.size % rest == 0:
+        fits = _has_shape(value.shape, known)
+        if fits and value.ndim == len(known):
+            self.sizes.update((d, size) for d, size in zip(p.dims, value.shape) if d in unknown)
+        elif fits and len(unknown) == 1 and rest and value.size % rest == 0:
             self.sizes[unknown[0]] = value.size // rest
-        elif unknown or value.size != rest:
+        elif not fits or unknown or value.size != rest:
             shape = ''.join(f'[{d}]' for d in p.dims)
             raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; it must be {p.name}{shape}')
 
@@ -422,7 +440,7 @@ class _Running:
 
     def _argument(self, p):
         if p is self.call.parameters[0] and self.call.owner:
-            return self.owner.handle
+            return self._open(self.owner)
         if p.how == 'callback':
             return self._callback(p, self.given.get(p.name))
         if p.type == 'context':
@@ -446,6 +464,13 @@ class _Running:
             raise TypeError(f'{self.call.python_name} lacks {p.name}')
         return size
 
+    def _open(self, thing):
+        """The handle of a thing, which is there; that of one which is not leads into memory that is another's."""
+        closed = thing.closed()
+        if closed:
+            raise Error(_constants['SPAR_ERR_ARGUMENT'], f'{self.call.name}: {closed}')
+        return thing.handle
+
     def _capacity(self, name):
         """What the result has room for: by a constant of the table, by the caller's array, or enough."""
         for p in self.call.parameters:
@@ -459,12 +484,12 @@ class _Running:
 
     def _handle(self, p):
         if p.how == 'list':
-            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[h.handle for h in self.given[p.name]])
+            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[self._open(h) for h in self.given[p.name]])
             self.keep.append(handles)
             return ctypes.cast(handles, ctypes.c_void_p)
         if p.how == 'value':
             value = self.given.get(p.name)
-            return value.handle if value is not None else None
+            return self._open(value) if value is not None else None
         made = ctypes.c_void_p()
         self.keep.append(made)
         of = list(self.given.get('sections', []))[:1]
@@ -497,7 +522,7 @@ class _Running:
     def _number(self, p):
         if p.name in self.given and self.given[p.name] is None:
             return None
-        number = _NUMBERS[p.type][0]()
+        number = _NUMBERS[p.type][0](*([self.given[p.name]] if p.name in self.given else []))
         self.keep.append(number)
         self.results.append(lambda: number.value)
         return ctypes.addressof(number)
@@ -540,6 +565,9 @@ class _Running:
 
 # ---- what calls belong to ----
 
+_OF_NO_SESSION = ('polar', 'aero')  # they do not go with one
+
+
 class _Thing:
     """A handle of the library; its methods are the calls that take it first."""
     kind, owned, handle, session = '', False, None, None
@@ -558,13 +586,23 @@ class _Thing:
     def __dir__(self):
         return [*super().__dir__(), *(name for kind, name in _methods if kind == self.kind)]
 
+    def __reduce_ex__(self, _protocol):
+        raise TypeError(f'a {self.kind} of spar cannot be copied or pickled: there would be two owners; save and load '
+                        'its session')
+
     def size(self, d, _call, _given):
         """How large a dimension is that no argument says."""
         return None
 
+    def closed(self):
+        """What of it is not there any more; '' if all is."""
+        if self.session is not None and self.session.handle is None:
+            return f'the session of this {self.kind} is closed' if self.kind != 'session' else 'this session is closed'
+        return '' if self.handle else f'this {self.kind} is closed'
+
     def close(self):
         """Destroys it, if it is still there; of a session with all that is made from it."""
-        if self.handle:
+        if self.handle and (self.kind in _OF_NO_SESSION or not self.closed()):
             handle = ctypes.c_void_p(self.handle)
             self.handle = None
             _calls[f'spar_{self.kind}_destroy'].function(ctypes.addressof(handle))
@@ -642,6 +680,9 @@ class Aero(_Thing):
         self.sections = list(sections)
         made.handle = None
 
+    def closed(self):
+        return super().closed() or next((fluid.closed() for fluid in self.sections if fluid.closed()), '')
+
     def size(self, d, call, given):
         if d == 'blades':
             return len(self.sections)
@@ -662,7 +703,10 @@ for _line in TABLE.split('\n'):
     _words = _line.split()
     if _line.startswith('call'):
         _calls[_words[1]] = _Call(_words[1], _words[2], _words[3:])
-_methods = {(call.owner, call.python_name): call for call in _calls.values() if call.owner}
+_methods = {}
+for _one in _calls.values():
+    if _one.owner and _methods.setdefault((_one.owner, _one.python_name), _one) is not _one:
+        raise ImportError(f'{_one.name} and {_methods[_one.owner, _one.python_name].name} have one name')
 globals().update((name[len('SPAR_'):], number) for name, number in _constants.items())
 
 

@@ -31,7 +31,9 @@
    - 6x6 matrices are row-major, 36 doubles, in the order axial force N, shear y, shear z, torsion x, bending y,
      bending z (mass: the velocities in the same order), in the section frame: x is the tangent of the reference line.
      At no twist and no placement, y = unit(z_global x tangent), which a line along global x has in the global x-y
-     plane.
+     plane. A line that comes within 10 degrees of global z at an axis point has its y carried along from the root
+     with the least turn. There y is unit(z_global x tangent); if the root is within 0.001 rad of global z, it is
+     global y less its part along the tangent. The axis points decide, never the number of nodes.
    - eta in [0,1] and xi = 2 eta - 1 in [-1,1] run along the whole beam; element e of E covers eta in [e/E, (e+1)/E]
      and is linear in its own xi. A beam's nodes are the Gauss-Lobatto-Legendre points of its elements, numbered from
      0, element by element: E*P nodes for P nodes per element. The joint of two elements stands twice; both copies
@@ -183,7 +185,9 @@ SPAR_API const char *spar_session_message(const spar_session *session);
 /* The setters below are local, made alike on every rank (see "Ranks"), and allowed between steps only (SPAR_ERR_STATE
    during one). The getter beside each gives what is set, at any time: local, each output NULL: not wanted. */
 
-/* g[3]: in, m/s^2. Default 0. */
+/* Gravity at the end of the next step: within a step it goes linearly from that of the step before, as an applied load
+   does (spar_member_set_load).
+     g[3]: in, m/s^2. Default 0. */
 SPAR_API int spar_session_set_gravity(spar_session *session, const double g[3]);
 SPAR_API int spar_session_get_gravity(const spar_session *session, double g[3]);
 /* Generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012) while dt stays the same within 0.1 %. Steps of
@@ -240,7 +244,8 @@ SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on)
    are the same with any number; with reproducible sums the nodes are summed by one. None is made unless asked for, and
    none but the calling one ever runs code of the host, or talks to other ranks: MPI_THREAD_FUNNELED is enough.
    Between calls the others sleep. They are counted in a host's plans: ranks times threads should be no more than there
-   are cores. Local, between steps; ranks may differ.
+   are cores. A child of the process (fork) has the sessions of one rank, each with one thread until it asks for more.
+   Local, between steps; ranks may differ.
      threads: in, 1 (default) to 64; out
    SPAR_ERR_MEMORY: the system gives no more threads, or there is no work space for them; all is as before. */
 SPAR_API int spar_session_set_threads(spar_session *session, int threads);
@@ -385,7 +390,7 @@ enum {
     SPAR_EFFECT_GYROSCOPIC = 2,      /* forces quadratic in the angular velocity */
     SPAR_EFFECT_GRAVITY = 4,         /* weight */
     SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping, spar_beam_set_mass_damping */
-    SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference configuration */
+    SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference, turns to 170 degrees */
     SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
     SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
     SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
@@ -421,7 +426,8 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
 /* A geometrically exact (Simo-Reissner) beam of Legendre spectral elements. Needs a line (axis or nodes) and sections
    before the commit. Default root: fixed.
      elements: in, >= 1
-     nodes_per_element: in, 2 to 24 */
+     nodes_per_element: in, 2 to 24. Fewer than 5 lock where axial or shear stiffness times length squared is large
+           beside bending stiffness: the commit tells the log (SPAR_LOG_WARNING), with the number that avoids it */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
 /* What it was created with, or, within a trial that varies nodes, has now. elements, nodes_per_element: out, NULL: not
@@ -439,7 +445,8 @@ SPAR_API int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta,
      n: in, elements*nodes_per_element, element by element (a joint stands twice, at the same place; its two
            orientations may differ: a kink)
      x[n][3]: in, m
-     q[n][4]: in, section frames, NULL: tangent and the rule of the conventions */
+     q[n][4]: in, section frames, NULL: tangent and the rule of the conventions
+   The commit refuses nodes that coincide or go back: they stand at their elements' Gauss-Lobatto-Legendre points. */
 SPAR_API int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q);
 /* Sections, linear in eta between their stations and constant beyond the first and last. Local.
      n: in, stations, >= 1
@@ -563,7 +570,8 @@ SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
                  of second order in the deformation (shortening of a bent beam; moments of loads on displaced arms),
                  stiffening by other loads. One factorisation as long as dt and the root's turning speed, in its own
                  axes, do not change. Free or pinned root: linear about the reference, LARGE_ROTATION is off; nothing
-                 holds such a beam for solve_static. Where joints tie it the root may be free or pinned and turn as far
+                 holds such a beam for solve_static. A node that turns by half a turn against root or reference ends the
+                 step: SPAR_ERR_NUMERIC. Where joints tie it the root may be free or pinned and turn as far
                  as it likes: the deformation is linear as seen from the root's node, wherever that goes, whatever
                  LARGE_ROTATION says; of the stiffening that along the line counts, by the member's own inertia
      modal       as linear, with the lowest `modes` modes of the beam with its root held; of a free or pinned beam those
@@ -622,8 +630,8 @@ SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const 
    Each out may be NULL: not wanted. */
 SPAR_API int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
                                                 int64_t capacity, double *eta, double *mass);
-/* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. Before the first step, before or after commit.
-   Local.
+/* Initial velocities of a rigid motion: v0 + omega x (x - x0) and omega. What the root condition holds has none. Before
+   the first step, before or after commit. Local.
      x0[3]: in, m; v0[3]: in, m/s; omega[3]: in, rad/s; each NULL: 0 */
 SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                               const double omega[3]);
@@ -651,7 +659,9 @@ SPAR_API const char *spar_member_get_name(const spar_member *member);
      x[n][3]: out, m
      q[n][4]: out, section frames */
 SPAR_API int spar_member_get_reference(const spar_member *member, double *x, double *q);
-/* q[n][7], v[n][6], a[n][6]: out. NULL: not wanted. */
+/* A fluid that answers to accelerations pulls them (spar_fluid_pull_sections): in uneven steps and in substeps it must
+   not answer to these. Each NULL: not wanted.
+     q[n][7], v[n][6], a[n][6]: out */
 SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a);
 /* For external members and points. During a step: the motion at t^{n+1}, may be given again in every iteration; before
    the first step: the initial motion. Local, the same on every rank.
@@ -665,6 +675,10 @@ SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], cons
 /* A load on a node, which replaces the node's earlier one of that kind and is kept; zeros take it away. A node bears
    the sum of its two kinds. With LARGE_ROTATION off a follower stays as it is in the reference configuration; otherwise
    its tangent is exact (unsymmetric). After commit.
+   The load given before a step is that at the step's end, t^{n+1}. Within the step, with any number of substeps, the
+   load goes linearly from its value in the step before; a load given for the first time goes from 0. The first step has
+   no step before it: its loads act from t = 0 on. A load that is taken off there, after a static solution, is gone at
+   once. For a jump later in a run take one short step with the new load. A static solution in the run counts as a step.
      node: in, 0 to n-1
      kind: in, SPAR_LOAD_DEAD: in global axes, does not turn; _FOLLOWER: in the node's section axes (x tangent, y, z; a
            rigid body's own axes), turns with it
@@ -672,6 +686,7 @@ SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], cons
    Local, the same on every rank. */
 SPAR_API int spar_member_set_load(spar_member *member, int64_t node, int kind, const double load[6]);
 /* Loads along a beam, per unit length of the reference line, which replace the earlier ones of that kind and are kept.
+   They are those at the end of the next step, linear in the step as those of spar_member_set_load.
      kind: in, SPAR_LOAD_DEAD (global axes) or _FOLLOWER (section axes, turning with the section)
      n: in, stations, 0: none any more
      eta[n]: in, not decreasing in [0, 1], two stations at one eta are a jump
@@ -693,17 +708,20 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
      n: in, places
      eta[n]: in, in [0, 1]; a joint belongs to the element before it
      strain[n][6]: out, stretch, shears, twist, curvatures beyond the reference (1, 1/m)
-     force[n][6]: out, N, N m, what the part beyond gives, damping included
+     force[n][6]: out, N, N m, what the part beyond gives
      x[n][3]: out, place, m
      q[n][4]: out, orientation
    Strain and force are in section axes (x tangent, y, z), in the order axial, shear y, shear z, torsion, bending y,
-   bending z. force is the section's stiffness times its strain and converges with the nodes as the strains do, one
-   order behind the displacements; the reaction and the nodal balance are exact to rounding. In static equilibrium under
-   loads at element ends, with Gauss quadrature of P - 1 points in a straight element, the forces (turned to global
-   axes) at those points balance the loads to rounding too. Of a linear or modal member, or one with LARGE_ROTATION off,
+   bending z. force is the balance of the part beyond: its loads, what joints put on it, less its inertia. It is as
+   exact as the reaction, and at the root it is the reaction less the loads at that node. A load at a node within the
+   line counts in the section there. Strains converge one order behind the displacements; stiffness and damping times
+   them is force only in the limit. force is made of them for a beam that is rigid, prescribed or external, and until a
+   first step or static solution has found a balance. Of a linear or modal member, or one with LARGE_ROTATION off,
    strains are those of linear theory, as in its strain energy: of the displacement and rotation vector seen from the
    root where that is fixed or driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0.
-   SPAR_ERR_UNSUPPORTED: force of a beam without sections. */
+   Its forces have the arms and axes of the reference where its equations stand there: fixed, pinned or free roots,
+   without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without sections. SPAR_ERR_STATE: force where the loads are
+   another rank's (option ranks.state). */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* Energies of a member, J. */
@@ -735,7 +753,8 @@ enum {
 SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, double *work);
 /* Static equilibrium of one member under gravity, all kept loads and the fluid loads in use, from the present state;
    velocities become 0. With the fluid's answer: spar_session_solve_static. Between steps. Collective.
-     load_steps: in, >= 1, in how many parts the loads come on together; a part is halved and tried again where it fails
+     load_steps: in, 1 to 100000, in how many parts the loads come on together; a part is halved and tried again where it
+           fails. No more than 5000 parts are taken besides (SPAR_ERR_NUMERIC)
    A driven root that turns (spar_member_set_initial_velocity, or driven so far): equilibrium in the frame that turns
    with it, under the centrifugal loads of its angular velocity and the acceleration of its place; velocities and
    accelerations become those of the deformed shape turning steadily. Members that joints tie to such a root, to a node
@@ -744,8 +763,11 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
    that are not alike all around are SPAR_ERR_UNSUPPORTED. Under dead forces (no moments, no followers) the result is
    the stable equilibrium that growing loads lead to: past a limit or branching point there is none, and it is refused.
    Where neighbouring nodes are turned by more than 2.2 rad against each other, more than they can follow, a log is
-   warned. SPAR_ERR_NUMERIC: not found, the message says which part of the loads was reached and what is in the way;
-   SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar does not solve for it. */
+   warned. Members that joints tie may be held by their loads alone, as a body that hangs on a hinge is: the solution goes
+   downhill from the present state to a stable equilibrium. SPAR_ERR_NUMERIC: not found, the message says which part of
+   the loads was reached and what is in the way: a motion that nothing holds, or one that would leave an unstable
+   equilibrium (a body that stands on its hinge); SPAR_ERR_STATE: nothing holds the member; SPAR_ERR_UNSUPPORTED: spar
+   does not solve for it. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
@@ -799,8 +821,13 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
 
 /* A joint ties node a of a member to node b of another (or of the same), or to the ground. In axes of its own it has
    six motions, of a relative to b, each held, free, driven, or on a spring and damper: displacements x, y, z of a's end
-   in b's axes, and rotations. These are, to first order, turns about x, y, z; of a hinge (one rotation free) the angle,
-   which counts its turns, and how far a's axis leaves b's; where more are free the rotation vector, below half a turn.
+   in b's axes, and rotations. These are, to first order, turns about x, y, z.
+   - None free: twice the vector part of the relative quaternion.
+   - One free, a hinge: its angle, which counts its turns. The other two are how far a's axis leaves b's.
+   - Two free, a universal joint: the angles about the two arms of its cross, which count their turns. The first free
+     axis, in the order x, y, z, is fixed in b, the second in a. They stay perpendicular: the held coordinate is the sine
+     of what they are off. The shafts of Hooke's joint lie along the held axis.
+   - Three free, a ball: the rotation vector, below half a turn.
    Members that joints tie are solved together, as one system, on one rank (spar_member_set_owner); members without
    joints are solved as if there were none. Constraints hold in place and velocity at the end of every step, whatever dt
    is. A hold that follows from others in a loop (four parallel hinges of a four-bar) is left out, and named to the log.
@@ -815,8 +842,8 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
      name: in, unique in the session, not empty, copied
      a, node_a: in
      b, node_b: in, b NULL: the ground, node_b unused
-     free_motions: in, SPAR_FREE_* or-ed: 0 a weld, RX a hinge, RX|RY|RZ a ball, X a slider, X|RX a cylinder, X|Y|RZ a
-           plane, all six for springs alone
+     free_motions: in, SPAR_FREE_* or-ed: 0 a weld, RX a hinge, RX|RY a universal joint, RX|RY|RZ a ball, X a slider,
+           X|RX a cylinder, X|Y|RZ a plane, all six for springs alone
      joint: out
    Local, but made on every rank alike and in the same order. SPAR_ERR_ARGUMENT: a node that is not there, or tied to
    itself; members of two sessions. */
@@ -850,13 +877,14 @@ SPAR_API int spar_member_set_spring(spar_member *member, int64_t node, int free_
 SPAR_API int spar_joint_set_driven(spar_joint *joint, int mask);
 /* Driven motions at the end of the step begun next; not driven anew, they stay where they are. Entries of what is not
    driven are not looked at. Between steps.
-     motion[6]: in, m, rad; a hinge's angle with its turns; where more than one rotation is free those of the rotation
-           vector, which is below half a turn (SPAR_ERR_ARGUMENT)
+     motion[6]: in, m, rad; angles of a hinge or universal joint with their turns; of a ball the rotation vector, which
+           is below half a turn (SPAR_ERR_ARGUMENT)
      rate[6], acceleration[6]: in, of them, NULL: 0
    Local, the same on every rank. */
 SPAR_API int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6],
                               const double acceleration[6]);
-/* A load between the two nodes, kept until it is set anew: a motor, a generator, a brake.
+/* A load between the two nodes, kept until it is set anew: a motor, a generator, a brake. It is the load at the end of
+   the next step, linear in the step as that of spar_member_set_load.
      load[6]: in, N, N m, on a from b, on the free motions
    Local, the same on every rank. */
 SPAR_API int spar_joint_set_load(spar_joint *joint, const double load[6]);
@@ -871,7 +899,9 @@ SPAR_API int spar_line_create(spar_session *session, const char *name, spar_memb
      stiffness: in, N/m, >= 0
      damping: in, N s/m, >= 0
      length: in, m, unstretched, >= 0
-     tension_only: in, 1: it pulls or is slack (a taut mooring, a rope), 0: both ways (a strut)
+     tension_only: in, 1: it pulls or is slack (a taut mooring, a rope), 0: both ways (a strut). Up to its length it is
+           slack, without load. Beyond it the pull is max(0, k (d - l) + c d'). In the step in which it comes taut, d' is
+           at most the rate at which the stretch can have grown within the step
    Local. */
 SPAR_API int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only);
 /* Relative motion of the latest iterate, t^n between steps; 0 before the first step or static solution.
@@ -886,7 +916,8 @@ SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], do
 SPAR_API int spar_joint_get_load(const spar_joint *joint, double load[6]);
 /* Energies of a joint, J. */
 enum {
-    SPAR_JOINT_ENERGY_SPRING = 0, /* stored in its springs, less what the preload has given; of the latest iterate */
+    SPAR_JOINT_ENERGY_SPRING = 0, /* stored in its springs, less what the preload has given; of the latest iterate; 0
+                                     before the first step or static solution */
     SPAR_JOINT_ENERGY_DAMPER = 1, /* taken by its dampers, up to t^n, as the next two */
     SPAR_JOINT_ENERGY_DRIVE = 2,  /* given by what drives it */
     SPAR_JOINT_ENERGY_LOAD = 3,   /* given by spar_joint_set_load */
@@ -1041,9 +1072,9 @@ SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, 
 /* At the same nodes and time. Each NULL: not wanted.
      q[n][4]: out, orientation of the section now, scalar part >= 0
      omega[n][3]: out, rad/s
-     accel[n][3]: out, acceleration of the node, m/s^2; with substeps, of a member without a guess of the added mass,
-   the mean over the step carried on to its end by the mean before, (T15), of second order too: one that an added mass
-   may answer to */
+     accel[n][3]: out, acceleration of the node, m/s^2. Of a member without a guess of the added mass, with substeps and
+           from the first step of another length on, the mean over the step carried on to its end by the mean before,
+           (T15): of second order too, and one that an added mass may answer to */
 SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
 /* All of a section's motion at once, for blade element hosts, at the motion nodes. Each NULL: not wanted.
      x[n][3]: out, m
@@ -1177,8 +1208,8 @@ SPAR_API int spar_fluid_check_total(const spar_fluid *fluid, const double point[
    A loop of the host's own may accept before spar_step_check was done, or solve, push and check again after it was: the
    motion is that of the last solution, the loads those pushed last (docs/coupling.md). */
 
-/* Step 1: predicts the loads at t^{n+1} = t^n + dt. dt: in, s, > 0, the same on every rank; may differ from step to
-   step. */
+/* Step 1: predicts the loads at t^{n+1} = t^n + dt. dt: in, s, >= 1e-100, the same on every rank; may differ from step
+   to step. */
 SPAR_API int spar_step_begin(spar_session *session, double dt);
 /* Step 2: the structure from t^n to t^{n+1} under the loads in use, in substeps; from t^n every time it is called.
    SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. */
@@ -1193,11 +1224,13 @@ SPAR_API int spar_step_accept(spar_session *session);
    that what follows is the same within Newton's tolerance and not to the bit. */
 SPAR_API int spar_step_reject(spar_session *session);
 /* The host's part of an iteration: pull, advance the fluid from t to t + dt, push. iteration: from 0. Answer 0 for
-   success; anything else ends the step with SPAR_ERR_USER. Where it moves an external member or a point that joints
-   tie, the members are solved again before the check, so that joints' loads are those of that motion; pull from the
-   others gives their motion of before, and a fluid on these converges better in the host's own loop (move,
-   spar_step_solve, pull). The step stays spar_step's: the calls that begin, solve, check, accept and reject one are
-   SPAR_ERR_STATE from here, on the rank that makes them. */
+   success; anything else ends the step with SPAR_ERR_USER. This and any other callback must return: a C++ exception or a
+   longjmp that leaves it leaves the session inside the call for good, and all that can be done is to destroy it. Catch
+   the exception in the callback, answer a number, and throw again when the call has returned.
+   Where it moves an external member or a point that joints tie, the members are solved again before the check, so that
+   joints' loads are those of that motion; pull from the others gives their motion of before, and a fluid on these
+   converges better in the host's own loop (move, spar_step_solve, pull). The step stays spar_step's: the calls that
+   begin, solve, check, accept and reject one are SPAR_ERR_STATE from here, on the rank that makes them. */
 typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int iteration, void *context);
 /* The whole step. Accepts, or after a failure of any part rejects and answers that part's status.
      dt: in, s
@@ -1247,7 +1280,8 @@ SPAR_API int spar_session_get_pace(const spar_session *session, int64_t capacity
      solve, context: in, as of spar_step; context goes to before too
      taken: out, s, of the step that was accepted, NULL: not wanted
    A host that has to meet a time (of output, of a given dt) gives the smaller of the two. Collective. SPAR_ERR_STATE:
-   no tolerance; SPAR_ERR_NUMERIC: 12 tries did not keep it. After a failure the session is at t^n, dt as it was given.
+   no tolerance. SPAR_ERR_NUMERIC: 12 tries did not keep it, or 7 in turn whose error did not fall. The message says what
+   limits it: the motion, a velocity that jumps, or rounding. After a failure the session is at t^n, dt as it was given.
  */
 SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
                               void *context, double *taken);
@@ -1306,7 +1340,7 @@ SPAR_API int spar_step_begin_start(spar_session *session, double dt);
    under the loads that came last, so that shape and loads are in balance to rounding. From then on these are the motion
    and the loads at t^n: steps begin at rest, and with loads extrapolated from there on. What is extrapolated, and what
    IQN-ILS has learned in earlier steps, is forgotten.
-     load_steps: in, >= 1, parts that the loads of the first iteration come on in
+     load_steps: in, 1 to 100000, parts that the loads of the first iteration come on in
      solve: in, NULL: no fluid on this rank, loads pushed stay. In it t is the clock, dt 0 and iteration from 0; pulls
        give the shape at any theta; it settles its flow around it. What it may not call in a step it may not call here
      context: in, handed to solve
@@ -1331,7 +1365,8 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
    has left at path.new goes with the next save. Where path is a symbolic link, all this happens where it leads, and the
    link stays; a file with several hard links is replaced under this name only; mode and owner stay as far as the system
    allows. What is no file (a pipe, a device, a folder) is SPAR_ERR_IO and stays; so is a file that another process is
-   writing. load: into a session with the same members, committed, the same joints, and the same fluids, mapped, by
+   writing. While a refused push waits for a good one, save is refused with the status of that push, as spar_step_check
+   is: push again, or destroy the fluid. load: into a session with the same members, committed, the same joints, and the same fluids, mapped, by
    name, no step under way, on any number of ranks: nodes may be spread over the ranks otherwise, node forces find them
    by their reference places, to 1e-9 of the member's length. What the host sets (gravity, integrator, tolerances) it
    sets as before. A file that is cut off or damaged or cannot be read: SPAR_ERR_IO; one of another session:

@@ -1,6 +1,7 @@
 /* A small crew of POSIX threads: see crew.h. */
 #include "crew.h"
 
+#include "poison.h"
 #include "quiet.h"
 #include "room.h"
 #include "status.h"
@@ -9,6 +10,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 /* Looks this often before it sleeps: some ten microseconds, about what going to sleep and being woken takes. */
 enum { SPIN = 4000 };
@@ -31,9 +33,10 @@ typedef struct hand {
 
 struct spari_crew {
     int threads;
-    hand *hands;  /* [threads]; the first is the caller's and has no thread of its own */
-    share *share; /* [threads] */
-    int64_t kept; /* doubles of work space that all hands have */
+    pid_t process; /* that the threads are of: a child of it has the memory, but no thread but the one that forked */
+    hand *hands;   /* [threads]; the first is the caller's and has no thread of its own */
+    share *share;  /* [threads] */
+    int64_t kept;  /* doubles of work space that all hands have */
     pthread_mutex_t lock;
     pthread_cond_t begun, ended;
     atomic_long round;  /* counts the runs */
@@ -132,17 +135,29 @@ static void wait_for_hands(spari_crew *c) {
     }
 }
 
-/* The first `threads` hands; their threads are waiting. */
-static void dismiss(spari_crew *c) {
+static int is_of_this_process(const spari_crew *c) {
+    return c->process == getpid();
+}
+
+/* The threads of the first `threads` hands, which are waiting, end. */
+static void end_hands(spari_crew *c) {
     atomic_store(&c->leave, 1);
     call_hands(c);
     for (int k = 1; k < c->threads; k++) {
         (void)pthread_join(c->hands[k].thread, NULL);
-        spari_room_free(&c->hands[k].room);
     }
     (void)pthread_cond_destroy(&c->ended);
     (void)pthread_cond_destroy(&c->begun);
     (void)pthread_mutex_destroy(&c->lock);
+}
+
+static void dismiss(spari_crew *c) {
+    if (is_of_this_process(c)) { /* in a child there is nobody to wait for */
+        end_hands(c);
+    }
+    for (int k = 1; k < c->threads; k++) {
+        spari_room_free(&c->hands[k].room);
+    }
     free(c->hands);
     free(c->share);
     free(c);
@@ -169,6 +184,7 @@ spari_crew *spari_crew_create(int threads) {
         return NULL;
     }
     c->hands = hands, c->share = shares;
+    c->process = getpid();
     (void)pthread_mutex_init(&c->lock, NULL); /* with default attributes nothing can fail where there are threads */
     (void)pthread_cond_init(&c->begun, NULL);
     (void)pthread_cond_init(&c->ended, NULL);
@@ -190,11 +206,11 @@ void spari_crew_free(spari_crew *crew) {
 }
 
 int spari_crew_threads(const spari_crew *crew) {
-    return crew ? crew->threads : 1;
+    return crew && is_of_this_process(crew) ? crew->threads : 1;
 }
 
 int spari_crew_is_free(const spari_crew *crew) {
-    return crew && !inside;
+    return crew && !inside && is_of_this_process(crew);
 }
 
 void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *context) {
@@ -204,6 +220,11 @@ void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *cont
         }
         return;
     }
+#ifdef SPAR_POISON
+    for (int k = 1; k < crew->threads; k++) { /* what a round leaves there may be read until the next */
+        spari_poison(spari_room_at(&crew->hands[k].room, crew->kept), crew->kept);
+    }
+#endif
     crew->task = task, crew->context = context;
     (void)fegetenv(&crew->surroundings);
     share_out(crew, items);

@@ -1,6 +1,7 @@
 /* Threads that a host has asked for (spar_session_set_threads), and what they do together: so many items, each done by
    whichever thread is free, by functions that write to their own item alone. What comes out may depend on the items but
-   on nothing else: the same bits with any number of threads. A crew that is NULL is the calling thread alone. */
+   on nothing else: the same bits with any number of threads. A crew that is NULL is the calling thread alone,
+   and so is one in a child of the process that made it (fork). */
 #ifndef SPARI_CREW_H
 #define SPARI_CREW_H
 

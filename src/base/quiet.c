@@ -1,6 +1,8 @@
 /* The host's floating-point traps, rounding, locale and GSL error handler, held while the library computes. */
 #include "quiet.h"
 
+#include "blas.h"
+
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
 #ifdef SPARI_X86
@@ -35,6 +37,31 @@ static void give_handler_back(void) {
         (void)gsl_set_error_handler(host_handler);
     }
     (void)pthread_mutex_unlock(&handler_lock);
+}
+
+/* fork: what other threads have locked the child would wait for, who has none of them. It is inside where the thread
+   that forked is. */
+static void before_fork(void) {
+    (void)pthread_mutex_lock(&handler_lock);
+    spari_blas_begin();
+}
+
+static void after_fork(void) {
+    spari_blas_end();
+    (void)pthread_mutex_unlock(&handler_lock);
+}
+
+static void in_child(void) {
+    if (threads_inside > 0 && host.depth == 0) {
+        (void)gsl_set_error_handler(host_handler);
+    }
+    threads_inside = host.depth > 0;
+    after_fork();
+}
+
+static void make_ready(void) {
+    make_locale();
+    (void)pthread_atfork(before_fork, after_fork, in_child);
 }
 
 #ifdef SPARI_X86
@@ -101,7 +128,7 @@ static void give_environment_back(const spari_environment *e) {
 static void hold(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     hold_environment(&host.environment);
-    pthread_once(&once, make_locale);
+    pthread_once(&once, make_ready);
     host.locale = uselocale(c_locale); /* without one: it stays */
     hold_handler();
 }

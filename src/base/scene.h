@@ -52,6 +52,7 @@ struct spar_session {
     int member_count, joint_count;
 
     double gravity[3];
+    double gravity_before[3]; /* that of the step accepted last; of the first one: none */
     double rho_inf;
     int substeps;
     double newton_atol, newton_rtol;
@@ -87,14 +88,18 @@ struct spar_session {
     spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
     int coupling_stale;      /* settings of the coupling have changed since it was made */
 
-    double time, dt, dt_last[2]; /* dt of the step under way, and of the two accepted before */
-    int64_t step;
+    double time, time_rest; /* rest: what rounding has left out of the clock, for the steps to come */
+    double dt, dt_last[2];  /* dt of the step under way, and of the two accepted before */
+    int uneven[2];       /* a step was of another length than those before it, or turned too far for generalised-alpha:
+                            one that was accepted; or the one under way */
+    int64_t step, begun; /* accepted; steps that were begun, ever */
     int iteration;
     spari_phase phase;
     int past;      /* loads before those of t^n that there are so far: the order of the next prediction; -1: nobody has
                       given those of t^n either */
     int order;     /* of the predictor in the step under way */
     int iterating; /* the last check asked for another iteration */
+    int rough;     /* the loads of the iteration under way are far from the coupling's answer */
     int started;   /* the clock has run */
     int failed;    /* the last check of the step under way failed */
     const char
@@ -124,6 +129,12 @@ void spari_log(const spar_session *session, int level, const char *text);
 /* Steps of one length: hosts' steps differ in their last bits. */
 static inline int spari_steps_alike(double h, double last) {
     return fabs(h - last) <= 1e-3 * last;
+}
+/* The clock goes on by dt: a compensated sum (Kahan), right to its last digit after any number of steps. */
+static inline void spari_clock_tick(spar_session *s, double dt) {
+    const double step = dt + s->time_rest, then = s->time + step;
+    s->time_rest = s->time >= step ? (s->time - then) + step : (step - then) + s->time;
+    s->time = then;
 }
 /* Whether a step dt of the session is taken by generalised-alpha (solve/scheme.h). */
 static inline int spari_steps_even(const spar_session *s, double dt) {

@@ -1,5 +1,6 @@
 /* The map of a fluid's nodes: where their feet are, and what the host may ask of it. */
 #include "../base/crew.h"
+#include "../base/poison.h"
 #include "../base/quiet.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"
@@ -69,7 +70,9 @@ int spari_fluid_keep_room(const spar_fluid *fluid) {
 double *spari_fluid_work(const spar_fluid *fluid, int worker) {
     const spar_session *s = fluid->member->session;
     int64_t room = spari_fluid_room(fluid);
-    return worker == 0 ? spari_room_at(&s->room, room) : spari_crew_room(s->crew, worker, room);
+    double *work = worker == 0 ? spari_room_at(&s->room, room) : spari_crew_room(s->crew, worker, room);
+    spari_poison(work, room);
+    return work;
 }
 
 void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out) {

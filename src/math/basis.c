@@ -103,3 +103,17 @@ void spari_lagrange(int n, const double *x, const double *bary, double xi, doubl
         dphi[j] = d + phi[j] * diagonal;
     }
 }
+
+/* A spread load p has the moments sum of P_k(x_j) f_j with Legendre's polynomials, since these are sums of the nodes'
+   own; and the integral of P_k beyond xi is (P_{k-1} - P_{k+1})(xi) / (2 k + 1). */
+void spari_share_beyond(int n, const double *x, double xi, double *share) {
+    for (int j = 0; j < n; j++) {
+        double before, sum = 1 - xi;
+        for (int k = 1; k < n; k++) {
+            double at = legendre(k, x[j], &before), below, above = legendre(k + 1, xi, &below);
+            (void)legendre(k, xi, &below);
+            sum += (below - above) * at;
+        }
+        share[j] = 0.5 * sum;
+    }
+}

@@ -126,11 +126,12 @@ static void sweep(int n, double complex *A, double complex *Q, int begin, int en
 
 int spari_schur(int n, double complex *S, double complex *Q, double complex *room) {
     enum { PASSES = 60 };
-    double scale = 0;
+    double sum = 0, largest = 0; /* every sweep leaves rounding of the largest behind */
     for (int i = 0; i < n * n; i++) {
-        scale += cabs(S[i]);
+        sum += cabs(S[i]);
+        largest = fmax(largest, cabs(S[i]));
     }
-    if (!isfinite(scale)) {
+    if (!isfinite(sum)) {
         return 1;
     }
     to_hessenberg(n, S, Q, room);
@@ -138,8 +139,7 @@ int spari_schur(int n, double complex *S, double complex *Q, double complex *roo
         int begin = end;
         for (; begin > 0; begin--) {
             double complex *p = S + (long)n * begin + begin - 1;
-            double near = cabs(p[0 - n]) + cabs(p[1]);
-            if (cabs(*p) <= DBL_EPSILON * (near > 0 ? near : scale)) {
+            if (cabs(*p) <= DBL_EPSILON * fmax(largest, cabs(p[0 - n]) + cabs(p[1]))) {
                 *p = 0;
                 break;
             }

@@ -30,6 +30,17 @@ struct spari_applied {
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
 };
 
+/* What may be given anew. */
+enum { RAMP_LINE = 1 << SPAR_LOAD_DEAD | 1 << SPAR_LOAD_FOLLOWER, RAMP_FOLLOWER = 4, RAMP_DEAD = 8, RAMP_ALL = 15 };
+
+/* The loads at t^n of those kinds that the host has changed since. */
+struct spari_ramp {
+    int changed;          /* RAMP_*, or 1 << kind of a line load */
+    double left;          /* part of the step that is still to come at the stage under way */
+    double *dead;         /* [nodes][6]; NULL: never changed */
+    spari_applied before; /* as far as it has changed; NULL there: there was none */
+};
+
 /* Springs to the ground along the line, of which the tangent is constant: of each element, for its pairs of nodes
    i <= j, j running, the six entries (xx, xy, xz, yy, yz, zz) of what node i is pulled back by when j moves, global
    axes. */
@@ -51,13 +62,47 @@ static void line_free(line_load *line) {
     memset(line, 0, sizeof *line);
 }
 
+static void empty(spari_applied *a) {
+    free(a->follower);
+    line_free(&a->line[0]);
+    line_free(&a->line[1]);
+}
+
 void spari_applied_free(spari_applied *a) {
     if (a) {
-        free(a->follower);
-        line_free(&a->line[0]);
-        line_free(&a->line[1]);
+        empty(a);
         free(a);
     }
+}
+
+void spari_ramp_free(spari_ramp *r) {
+    if (r) {
+        free(r->dead);
+        empty(&r->before);
+        free(r);
+    }
+}
+
+/* ---- within a step ---- */
+
+/* Where the first step begins nothing was in force. */
+static int changes(const spar_member *m, int what) {
+    return m->ramp && m->session->step > 0 && (m->ramp->changed & what);
+}
+
+/* How much counts of what there was at t^n. */
+static double left_of(const spar_member *m, int what) {
+    return changes(m, what) ? m->ramp->left : 0;
+}
+
+void spari_applied_at(const spar_member *m, double left) {
+    if (m->ramp) {
+        m->ramp->left = left;
+    }
+}
+
+const double *spari_dead_before(const spar_member *m) {
+    return changes(m, RAMP_DEAD) ? m->ramp->dead : m->dead;
 }
 
 /* ---- forces ---- */
@@ -104,21 +149,22 @@ static void pure_times(const double m[3], const double q[4], double c[4]) {
     spari_quat_mul(pure, q, c);
 }
 
-/* g [P][7] += nodal forces and 4-vectors of one line load on element e */
-SPARI_APART static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
-                                    double *g) {
+/* g [P][7] += part * nodal forces and 4-vectors of one line load on element e */
+SPARI_APART static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double part,
+                                    double z[][4], double *g) {
     int P = m->per_element;
-    for (int k = line->first[e]; k < line->first[e + 1]; k++) {
+    for (int k = line->first ? line->first[e] : 0; k < (line->first ? line->first[e + 1] : 0); k++) {
         const double *phi = line->phi + (int64_t)k * P;
         double r[4], f[3], c[3], m4[4], N = point_turn(P, phi, z, r);
         load_now(line->load + 6 * (int64_t)k, follows, r, f, c);
         pure_times(c, r, m4);
         for (int l = 0; l < P; l++) {
+            double w = part * phi[l];
             for (int i = 0; i < 3; i++) {
-                g[7 * l + i] += phi[l] * f[i];
+                g[7 * l + i] += w * f[i];
             }
             for (int i = 0; i < 4; i++) {
-                g[7 * l + 3 + i] += 2 * phi[l] * m4[i] / N;
+                g[7 * l + 3 + i] += 2 * w * m4[i] / N;
             }
         }
     }
@@ -188,6 +234,20 @@ static int springs_apart(const spar_member *m) {
     return m->foundation && m->seen != SPARI_SEEN_LINEAR;
 }
 
+/* out [P][6] += factor * loads `follower` of element e, with its nodes turned as they are */
+static void add_followers(const spar_member *m, int e, const double *follower, double factor, double z[][4],
+                          double *out) {
+    int P = m->per_element;
+    for (int l = 0; l < P && follower && factor != 0; l++) {
+        double f[3], t[3];
+        load_now(follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
+        for (int i = 0; i < 3; i++) {
+            out[6 * l + i] += factor * f[i];
+            out[6 * l + 3 + i] += factor * t[i];
+        }
+    }
+}
+
 /* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes, without springs */
 static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
     const spari_applied *a = m->applied;
@@ -198,8 +258,10 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
     }
     element_field(m, q, z);
     for (int k = 0; k < 2; k++) {
-        if (a->line[k].first) {
-            line_forces(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, g);
+        double left = left_of(m, 1 << k);
+        line_forces(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, 1 - left, z, g);
+        if (left > 0) {
+            line_forces(m, &m->ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, left, z, g);
         }
     }
     for (int l = 0; l < P; l++) {
@@ -210,14 +272,11 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
             out[6 * l + i] += factor * g[7 * l + i];
             out[6 * l + 3 + i] += factor * 0.5 * p[1 + i];
         }
-        if (a->follower) {
-            double f[3], t[3];
-            load_now(a->follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
-            for (int i = 0; i < 3; i++) {
-                out[6 * l + i] += factor * f[i];
-                out[6 * l + 3 + i] += factor * t[i];
-            }
-        }
+    }
+    double left = left_of(m, RAMP_FOLLOWER);
+    add_followers(m, e, a->follower, (1 - left) * factor, z, out);
+    if (left > 0) {
+        add_followers(m, e, m->ramp->before.follower, left * factor, z, out);
     }
 }
 
@@ -319,7 +378,7 @@ SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_l
                                               double z[][4], double factor, double *S) {
     int P = m->per_element, stride = 6 * P;
     double g[7 * SPARI_MAX_NODES] = {0};
-    line_forces(m, line, follows, e, z, g);
+    line_forces(m, line, follows, e, 1, z, g);
     for (int l = 0; l < P; l++) {
         double c[4], p[4];
         spari_quat_conj(z[l], c);
@@ -361,6 +420,9 @@ SPARI_APART static void line_tangent(const spar_member *m, const line_load *line
                                      double factor, double *S) {
     int P = m->per_element;
     double *B = line->room, E[SPARI_MAX_NODES][4][3];
+    if (!line->first || factor == 0) {
+        return;
+    }
     memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
@@ -391,6 +453,17 @@ SPARI_APART static void line_tangent(const spar_member *m, const line_load *line
     turned_forces_tangent(m, line, follows, e, z, factor, S);
 }
 
+static void follower_tangent(const spar_member *m, int e, const double *follower, double factor, double z[][4],
+                             double *S) {
+    int P = m->per_element;
+    for (int l = 0; l < P && follower && factor != 0; l++) {
+        double f[3], t[3];
+        load_now(follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
+        add_skew(S, 6 * P, 6 * l, 6 * l + 3, factor, f); /* -d(R f) = -dtheta x R f */
+        add_skew(S, 6 * P, 6 * l + 3, 6 * l + 3, factor, t);
+    }
+}
+
 void spari_applied_tangent(const spar_member *m, int e, const double *q, double factor, double *S) {
     const spari_applied *a = m->applied;
     int P = m->per_element;
@@ -403,43 +476,59 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
     double z[SPARI_MAX_NODES][4];
     element_field(m, q + 7 * (int64_t)e * (P - 1), z);
     for (int k = 0; k < 2; k++) {
-        if (a->line[k].first) {
-            line_tangent(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, factor, S);
+        double left = left_of(m, 1 << k);
+        line_tangent(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, (1 - left) * factor, S);
+        if (left > 0) {
+            line_tangent(m, &m->ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, z, left * factor, S);
         }
     }
-    for (int l = 0; l < P && a->follower; l++) {
-        double f[3], t[3];
-        load_now(a->follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
-        add_skew(S, 6 * P, 6 * l, 6 * l + 3, factor, f); /* -d(R f) = -dtheta x R f */
-        add_skew(S, 6 * P, 6 * l + 3, 6 * l + 3, factor, t);
+    double left = left_of(m, RAMP_FOLLOWER);
+    follower_tangent(m, e, a->follower, (1 - left) * factor, z, S);
+    if (left > 0) {
+        follower_tangent(m, e, m->ramp->before.follower, left * factor, z, S);
     }
 }
 
 /* ---- save and load ---- */
 
-/* Words: how many follow; then whether there are followers, and them; of each line load its points (-1: none), where
+static void put_line(const spar_member *m, const line_load *line, spari_image *image) {
+    int64_t points = line->first ? line->first[m->elements] : -1;
+    spari_image_put_int(image, points);
+    for (int e = 0; e < m->elements && points >= 0; e++) {
+        spari_image_put_int(image, line->first[e + 1]);
+    }
+    spari_image_put(image, line->phi, points > 0 ? points * m->per_element : 0);
+    spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
+    if (points >= 0) {
+        spari_image_put_int(image, line->stations);
+        spari_image_put(image, line->eta, line->stations);
+        spari_image_put(image, line->said, 6 * line->stations);
+    }
+}
+
+static void put_applied(const spar_member *m, const spari_applied *a, spari_image *image) {
+    spari_image_put_int(image, a->follower != NULL);
+    spari_image_put(image, a->follower, a->follower ? 6 * m->nodes : 0);
+    put_line(m, &a->line[0], image);
+    put_line(m, &a->line[1], image);
+}
+
+/* Words: how many follow; what has changed since t^n, of which dead loads, and the others, at t^n; whether there are
+   others now, and them. These: whether there are followers, and them; of each line load its points (-1: none), where
    each element's begin, phi, load, and its stations, where they are and what they are given. */
 void spari_applied_save(const spar_member *m, spari_image *image) {
-    const spari_applied *a = m->applied;
-    int64_t at = image->count, P = m->per_element;
+    int64_t at = image->count;
+    int changed = changes(m, RAMP_ALL) ? m->ramp->changed : 0;
     spari_image_put_int(image, 0);
-    if (a) {
-        spari_image_put_int(image, a->follower != NULL);
-        spari_image_put(image, a->follower, a->follower ? 6 * m->nodes : 0);
-        for (int k = 0; k < 2; k++) {
-            const line_load *line = &a->line[k];
-            int64_t points = line->first ? line->first[m->elements] : -1;
-            spari_image_put_int(image, points);
-            for (int e = 0; e < m->elements && points >= 0; e++) {
-                spari_image_put_int(image, line->first[e + 1]);
-            }
-            spari_image_put(image, line->phi, points > 0 ? points * P : 0);
-            spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
-            if (points >= 0) {
-                spari_image_put_int(image, line->stations);
-                spari_image_put(image, line->eta, line->stations);
-                spari_image_put(image, line->said, 6 * line->stations);
-            }
+    if (m->applied || changed) {
+        spari_image_put_int(image, changed);
+        spari_image_put(image, changed & RAMP_DEAD ? m->ramp->dead : NULL, changed & RAMP_DEAD ? 6 * m->nodes : 0);
+        if (changed & ~RAMP_DEAD) {
+            put_applied(m, &m->ramp->before, image);
+        }
+        spari_image_put_int(image, m->applied != NULL);
+        if (m->applied) {
+            put_applied(m, m->applied, image);
         }
     }
     if (!image->failed) {
@@ -496,30 +585,61 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
     }
 }
 
-void spari_applied_check(spar_member *m, spari_image *image) {
-    spari_applied_free(m->applied_next);
-    m->applied_next = NULL;
-    int64_t count = spari_image_get_int(image), begin = image->at;
-    if (count == 0 || image->failed) {
-        return;
-    }
-    spari_applied *a = m->applied_next = spari_zalloc(1, sizeof *a);
-    if (!a) {
-        image->failed = image->no_memory = 1;
-        return;
-    }
+static void take_applied(const spar_member *m, spari_image *image, spari_applied *a) {
     a->follower = spari_image_get_int(image) ? take(image, 6 * m->nodes) : NULL;
     for (int k = 0; k < 2 && !image->failed; k++) {
         take_line(m, image, &a->line[k]);
     }
-    image->failed |= image->at - begin != count; /* by which it is passed over later */
+}
+
+static void take_ramp(spar_member *m, spari_image *image) {
+    int64_t changed = spari_image_get_int(image);
+    image->failed |= changed < 0 || changed > RAMP_ALL;
+    if (changed == 0 || image->failed) {
+        return;
+    }
+    spari_ramp *r = m->ramp_next = spari_zalloc(1, sizeof *r);
+    if (!r) {
+        image->failed = image->no_memory = 1;
+        return;
+    }
+    r->changed = (int)changed;
+    r->dead = changed & RAMP_DEAD ? take(image, 6 * m->nodes) : NULL;
+    if ((changed & ~RAMP_DEAD) && !image->failed) {
+        take_applied(m, image, &r->before);
+    }
+}
+
+void spari_applied_check(spar_member *m, spari_image *image) {
+    spari_applied_free(m->applied_next);
+    spari_ramp_free(m->ramp_next);
+    m->applied_next = NULL;
+    m->ramp_next = NULL;
+    int64_t count = spari_image_get_int(image), begin = image->at;
+    if (count == 0 || image->failed) {
+        return;
+    }
+    take_ramp(m, image);
+    if (!image->failed && spari_image_get_int(image)) {
+        m->applied_next = spari_zalloc(1, sizeof *m->applied_next);
+        image->failed = image->no_memory = !m->applied_next;
+    }
+    if (m->applied_next) {
+        take_applied(m, image, m->applied_next);
+    }
+    /* what has changed has something to change to; and by the count it is passed over later */
+    image->failed |=
+        (m->ramp_next && (m->ramp_next->changed & ~RAMP_DEAD) && !m->applied_next) || image->at - begin != count;
 }
 
 void spari_applied_load(spar_member *m, spari_image *image) {
     spari_image_get(image, spari_image_get_int(image));
     spari_applied_free(m->applied);
+    spari_ramp_free(m->ramp);
     m->applied = m->applied_next;
+    m->ramp = m->ramp_next;
     m->applied_next = NULL;
+    m->ramp_next = NULL;
 }
 
 /* ---- what the host says ---- */
@@ -540,10 +660,10 @@ static int need_kind(const spar_member *m, const char *call, int kind) {
     return SPAR_OK;
 }
 
-/* Nothing applied any more: nothing computed any more. */
+/* Nothing applied any more, at t^n neither: nothing computed any more. */
 static void drop_empty(spar_member *m) {
     spari_applied *a = m->applied;
-    int any = a->line[0].first || a->line[1].first;
+    int any = a->line[0].first || a->line[1].first || changes(m, RAMP_LINE | RAMP_FOLLOWER);
     for (int64_t i = 0; a->follower && i < 6 * m->nodes && !any; i++) {
         any = a->follower[i] != 0;
     }
@@ -553,16 +673,63 @@ static void drop_empty(spar_member *m) {
     }
 }
 
+/* Copies `from` [nodes][6] into *to, which is made where it is NULL; from NULL: zeros. */
+static int keep_loads(const spar_member *m, const char *call, const double *from, double **to) {
+    size_t size = (size_t)(6 * m->nodes) * sizeof **to;
+    *to = *to ? *to : spari_zalloc(6 * m->nodes, sizeof **to);
+    SPARI_REQUIRE(m->session, *to, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, m->name);
+    if (from) {
+        memcpy(*to, from, size);
+    } else {
+        memset(*to, 0, size);
+    }
+    return SPAR_OK;
+}
+
+/* Loads of a kind are about to change: those at t^n stay, but before the first step. Where it fails nothing has
+   changed. */
+static int keep_before(spar_member *m, const char *call, int what) {
+    if (m->session->step == 0 || changes(m, what)) {
+        return SPAR_OK;
+    }
+    spari_ramp *r = m->ramp = m->ramp ? m->ramp : spari_zalloc(1, sizeof *m->ramp);
+    SPARI_REQUIRE(m->session, r, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, m->name);
+    if (what == RAMP_DEAD) {
+        SPARI_TRY(keep_loads(m, call, m->dead, &r->dead));
+    } else if (what == RAMP_FOLLOWER) {
+        SPARI_TRY(keep_loads(m, call, m->applied ? m->applied->follower : NULL, &r->before.follower));
+    } else {
+        line_free(&r->before.line[what >> 1]);
+    }
+    r->changed |= what;
+    return SPAR_OK;
+}
+
+void spari_applied_accept(spar_member *m) {
+    spari_ramp *r = m->ramp;
+    if (!r || !r->changed) {
+        return;
+    }
+    r->changed = 0;
+    r->left = 0;
+    line_free(&r->before.line[0]);
+    line_free(&r->before.line[1]);
+    if (m->applied) {
+        drop_empty(m);
+    }
+}
+
 static int set_follower(spar_member *member, const char *call, int64_t node, const double load[6]) {
     SPARI_TRY(need_applied(member, call));
     spari_applied *a = member->applied;
-    int status = SPAR_OK;
-    if (!a->follower && !(a->follower = spari_zalloc(6 * member->nodes, sizeof *a->follower))) {
-        status =
-            spari_fail(member->session, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, member->name);
-    } else {
-        spari_rotate(member->qr + 4 * node, load, a->follower + 6 * node);
-        spari_rotate(member->qr + 4 * node, load + 3, a->follower + 6 * node + 3);
+    double turned[6];
+    spari_rotate(member->qr + 4 * node, load, turned);
+    spari_rotate(member->qr + 4 * node, load + 3, turned + 3);
+    int same = a->follower && memcmp(a->follower + 6 * node, turned, sizeof turned) == 0;
+    int status = same ? SPAR_OK : keep_before(member, call, RAMP_FOLLOWER);
+    status = status == SPAR_OK && !a->follower ? keep_loads(member, call, NULL, &a->follower) : status;
+    if (status == SPAR_OK) {
+        memcpy(a->follower + 6 * node, turned, sizeof turned);
     }
     drop_empty(member);
     return status;
@@ -579,7 +746,10 @@ int spar_member_set_load(spar_member *member, int64_t node, int kind, const doub
     if (kind == SPAR_LOAD_FOLLOWER) {
         return set_follower(member, __func__, node, load);
     }
-    memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
+    if (memcmp(member->dead + 6 * node, load, 6 * sizeof *load) != 0) {
+        SPARI_TRY(keep_before(member, __func__, RAMP_DEAD));
+        memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
+    }
     return SPAR_OK;
 }
 
@@ -682,23 +852,38 @@ static int line_set(const spar_member *m, int kind, int64_t n, const double *eta
 
 /* ---- other nodes ---- */
 
-int spari_applied_remake(const spar_member *from, spar_member *m) {
-    const spari_applied *a = from->applied;
-    if (!a) {
-        return SPAR_OK;
+static int remake_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
+    *is = was ? spari_zalloc(6 * m->nodes, sizeof **is) : NULL;
+    if (*is) {
+        spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), was, *is);
     }
-    spari_applied *b = m->applied = spari_zalloc(1, sizeof *b);
-    int status = b ? SPAR_OK : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK && a->follower) {
-        b->follower = spari_zalloc(6 * m->nodes, sizeof *b->follower);
-        status = b->follower ? SPAR_OK : SPAR_ERR_MEMORY;
-        if (status == SPAR_OK) {
-            spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), a->follower, b->follower);
-        }
-    }
-    for (int k = 0; k < 2 && status == SPAR_OK; k++) {
+    return *is || !was ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+static int remake(const spar_member *from, const spar_member *m, const spari_applied *a, spari_applied *b) {
+    SPARI_TRY(remake_loads(from, m, a->follower, &b->follower));
+    for (int k = 0; k < 2; k++) {
         const line_load *line = a->line + k;
-        status = line->first ? line_set(m, k, line->stations, line->eta, line->said, &b->line[k]) : SPAR_OK;
+        SPARI_TRY(line->first ? line_set(m, k, line->stations, line->eta, line->said, &b->line[k]) : SPAR_OK);
+    }
+    return SPAR_OK;
+}
+
+static int remake_ramp(const spar_member *from, spar_member *m) {
+    spari_ramp *r = m->ramp = spari_zalloc(1, sizeof *r);
+    SPARI_TRY(r ? remake_loads(from, m, from->ramp->dead, &r->dead) : SPAR_ERR_MEMORY);
+    r->changed = from->ramp->changed;
+    return remake(from, m, &from->ramp->before, &r->before);
+}
+
+int spari_applied_remake(const spar_member *from, spar_member *m) {
+    int status = SPAR_OK;
+    if (from->applied) {
+        m->applied = spari_zalloc(1, sizeof *m->applied);
+        status = m->applied ? remake(from, m, from->applied, m->applied) : SPAR_ERR_MEMORY;
+    }
+    if (status == SPAR_OK && from->ramp && from->ramp->changed) {
+        status = remake_ramp(from, m);
     }
     SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
     return SPAR_OK;
@@ -841,9 +1026,18 @@ int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double
     line_load line = {0};
     int status = check_line_load(beam, __func__, kind, n, eta, load);
     status = status == SPAR_OK && n > 0 ? line_set(beam, kind, n, eta, load, &line) : status;
+    const int again = status == SPAR_OK && changes(beam, 1 << kind); /* a kind that there is */
+    if (status == SPAR_OK && (status = keep_before(beam, __func__, 1 << kind)) != SPAR_OK) {
+        line_free(&line);
+    }
     if (status == SPAR_OK) {
-        line_free(&beam->applied->line[kind]);
-        beam->applied->line[kind] = line;
+        line_load *now = &beam->applied->line[kind];
+        if (changes(beam, 1 << kind) && !again) { /* what was there is that of t^n */
+            beam->ramp->before.line[kind] = *now;
+        } else {
+            line_free(now);
+        }
+        *now = line;
     }
     drop_empty(beam);
     return spari_named(beam->session, __func__, status);

@@ -9,6 +9,15 @@
 #include "../base/image.h"
 #include "structure.h"
 
+/* Applied loads are linear in a step, from those in force in the step before to those that the host has given for this
+   one. In the first step those given stand from its beginning. All below is of the moment that is set here: the part
+   `left` of the step is still to come, 0: its end, as it is whenever no step is being solved. */
+void spari_applied_at(const spar_member *member, double left);
+/* The dead loads at its nodes at t^n. */
+const double *spari_dead_before(const spar_member *member);
+/* The step is accepted, or the state stands under the loads as they are: they are those of t^n. */
+void spari_applied_accept(spar_member *member);
+
 /* Whether there are any. */
 static inline int spari_carries_loads(const spar_member *member) {
     return member->applied || member->foundation;
@@ -30,6 +39,7 @@ void spari_applied_save(const spar_member *member, spari_image *image);
 void spari_applied_check(spar_member *member, spari_image *image);
 void spari_applied_load(spar_member *member, spari_image *image);
 void spari_applied_free(spari_applied *applied);
+void spari_ramp_free(spari_ramp *ramp);
 /* Gives m, the same member with other nodes, the loads of `from`. */
 int spari_applied_remake(const spar_member *from, spar_member *m);
 

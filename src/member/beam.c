@@ -260,23 +260,71 @@ static void frame(const double t[3], const double y0[3], double twist, double R[
     }
 }
 
-/* How sections stand along the line: level where the tangent never nears z, else carried along from the root. */
+/* How sections stand along the line: level where the described line keeps away from z, else carried along from the
+   root. What the host has described decides, so that the axes do not depend on the nodes. */
 typedef struct framing {
     int carried;
     double *y; /* carried: untwisted y at the nodes, [nodes][3] */
 } framing;
 
-enum { NEAR_VERTICAL = 1000 }; /* sine of the tangent's angle to z below 1/1000: level sections are no longer defined */
+/* Sines of the tangent's angle to z: 10 degrees, where level sections begin to turn fast along the line, and where a
+   root has none. */
+static const double steep = 0.17364817766693033, vertical = 1e-3;
+
+/* Tangent at axis point i: of the parabola through it and its neighbours, of two points their chord. */
+static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
+    const int64_t n = b->axis_count < 3 ? b->axis_count : 3, last = b->axis_count - n,
+                  from = i < 1          ? 0
+                         : i - 1 < last ? i - 1
+                                        : last;
+    const double *eta = b->eta + from, *x = b->xyz + 3 * from;
+    memset(t, 0, 3 * sizeof *t);
+    for (int64_t j = 0; j < n; j++) {
+        double slope = 0, below = 1;
+        for (int64_t k = 0; k < n; k++) { /* of Lagrange's polynomial j */
+            double others = 1;
+            for (int64_t l = 0; l < n; l++) {
+                others *= l == j || l == k ? 1 : b->eta[i] - eta[l];
+            }
+            slope += k == j ? 0 : others;
+            below *= k == j ? 1 : eta[j] - eta[k];
+        }
+        for (int c = 0; c < 3; c++) {
+            t[c] += slope / below * x[3 * j + c];
+        }
+    }
+    const double size = spari_norm(t);
+    for (int c = 0; c < 3 && size > 0; c++) {
+        t[c] /= size;
+    }
+}
+
+/* Smallest sine of the tangents' angle to z: of the axis points, or of nodes that are given instead; and the root's. */
+static double steepest(const spar_member *member, const double *gll, const double *bary, const double *x,
+                       double *root) {
+    const int P = member->per_element, by_nodes = member->beam->node_x != NULL;
+    const int64_t n = by_nodes ? member->nodes : member->beam->axis_count;
+    double least = 1, y[3];
+    for (int64_t i = 0; i < n; i++) {
+        line_point p;
+        if (by_nodes) {
+            line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
+        } else {
+            described_tangent(member->beam, i, p.t);
+        }
+        const double sine = level_y(p.t, y);
+        *root = i == 0 ? sine : *root;
+        least = fmin(least, sine);
+    }
+    return least;
+}
 
 static int make_framing(const spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
     int P = member->per_element;
     line_point p, q;
     memset(f, 0, sizeof *f);
-    double y[3];
-    for (int64_t i = 0; i < member->nodes; i++) {
-        line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
-        f->carried |= level_y(p.t, y) * NEAR_VERTICAL < 1;
-    }
+    double y[3], root = 1;
+    f->carried = steepest(member, gll, bary, x, &root) < steep;
     if (!f->carried) {
         return SPAR_OK;
     }
@@ -285,7 +333,8 @@ static int make_framing(const spar_member *member, const double *gll, const doub
         return no_memory_for(member, "its frames");
     }
     line_at(P, gll, bary, x, -1, &p);
-    if (level_y(p.t, y) * NEAR_VERTICAL < 1) {
+    (void)level_y(p.t, y);
+    if (root < vertical) { /* global y, across the tangent */
         y[0] = -p.t[1] * p.t[0], y[1] = 1 - p.t[1] * p.t[1], y[2] = -p.t[1] * p.t[2];
         double n = spari_norm(y);
         y[0] /= n, y[1] /= n, y[2] /= n;
@@ -351,14 +400,48 @@ static int own_nodes(const spar_member *member, const double *gll, const double 
     return SPAR_OK;
 }
 
+/* Between its nodes the line must go on: not back, and not stand still. */
+static int check_forward(const spar_member *member, const double *gll, const double *bary, const double *x,
+                         double length) {
+    enum { PARTS = 8 };
+    const int P = member->per_element;
+    for (int64_t i = 1; i < member->nodes; i++) {
+        const double *xe = x + 3 * (i / P) * P,
+                     d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
+        line_point before, p;
+        int back = 0;
+        if (i % P == 0) {
+            continue; /* the same place twice */
+        }
+        line_at(P, gll, bary, xe, gll[i % P - 1], &before);
+        for (int k = 1; k <= PARTS; k++, before = p) {
+            line_at(P, gll, bary, xe, gll[i % P - 1] + (gll[i % P] - gll[i % P - 1]) * k / PARTS, &p);
+            back |= !(spari_dot(before.t, p.t) > 0);
+        }
+        SPARI_REQUIRE(member->session, !back && spari_norm(d) > 1e-9 * length / member->elements, SPAR_ERR_ARGUMENT,
+                      "member '%s': its line goes back or stands still between nodes %lld and %lld; give distinct "
+                      "places in order, spaced like Gauss-Lobatto-Legendre points",
+                      member->name, (long long)(i - 1), (long long)i);
+    }
+    return SPAR_OK;
+}
+
 /* The line must run, and the sections must stand across it. */
 static int check_line(spar_member *member, const double *gll, const double *bary, const double *x, const double *q) {
     int P = member->per_element;
-    double length = 0;
+    double length = 0, far = 0;
     for (int64_t i = 1; i < member->nodes; i++) {
         double d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
         length += spari_norm(d);
     }
+    for (int k = 0; k < 3; k++) { /* where it is seen from, places keep so many digits */
+        far = fmax(far, fmax(fabs(x[k]), fabs(member->place_x[k])));
+    }
+    SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
+                  "member '%s': its points coincide: its line is %.3g m long; give at least 1e-9 m, and 1e-9 of its "
+                  "distance from the origin",
+                  member->name, length);
+    SPARI_TRY(check_forward(member, gll, bary, x, length));
     for (int64_t i = 0; i < member->nodes; i++) {
         line_point p;
         double along[3] = {1, 0, 0};

@@ -26,6 +26,8 @@ struct spari_beam {
 
 /* Fills member->xr, qr (placed) from the axis or the nodes given. */
 int spari_beam_place_nodes(spar_member *member);
+/* Tells the log where the elements have too few nodes for the stiffness of their sections. */
+void spari_beam_tell_locking(const spar_member *member);
 /* Builds the body; the description has been checked. massive: with mass, whatever effects are in force; mu: of its
    damping, NULL: none. */
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);

@@ -82,6 +82,13 @@ int spari_need_finite(spar_session *session, const char *call, const char *name,
     return SPAR_OK;
 }
 
+int spari_need_dt(spar_session *session, const char *call, double dt) {
+    static const double least = 1e-100;
+    SPARI_REQUIRE(session, isfinite(dt) && dt >= least, SPAR_ERR_ARGUMENT,
+                  "%s: dt is %g; give a positive number of seconds, %g or more", call, dt, least);
+    return SPAR_OK;
+}
+
 int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                     const double *q, int stride) {
     for (int64_t i = 0; i < n; i++) {

@@ -28,6 +28,8 @@ int spari_member_enter(const spar_member *member, const char *call, const spari_
 /* x[n] must be there and finite; `what` names it. */
 int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                       const double *x);
+/* The length of a step: a positive number whose square is one too. */
+int spari_need_dt(spar_session *session, const char *call, double dt);
 /* n unit quaternions, `stride` doubles apart */
 int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                     const double *q, int stride);

@@ -265,16 +265,16 @@ int spar_joint_set_driven(spar_joint *joint, int mask) {
     return SPAR_OK;
 }
 
-/* Several rotations are those of a rotation vector, which is of no use from half a turn on: the tie's own is below. */
+/* Three rotations are those of a rotation vector, which is of no use from half a turn on: the tie's own is below. */
 static int need_below_half_a_turn(const spar_joint *j, const double motion[6], const char *call) {
     double turn[3];
     for (int k = 0; k < 3; k++) {
         turn[k] = j->driven >> (3 + k) & 1 ? motion[3 + k] : 0;
     }
     SPARI_REQUIRE(
-        j->session, j->tie.line || spari_tie_axis(j->tie.free) >= 0 || spari_norm(turn) < M_PI, SPAR_ERR_ARGUMENT,
-        "%s: '%s': a turn of %.4g rad; where more than one rotation is free they are a rotation vector, below "
-        "half a turn. Only a hinge counts its turns: drive that, or the root of the member",
+        j->session, j->tie.line || spari_tie_angles(j->tie.free) || spari_norm(turn) < M_PI, SPAR_ERR_ARGUMENT,
+        "%s: '%s': a turn of %.4g rad; where three rotations are free they are a rotation vector, below half a "
+        "turn. Drive a hinge or a universal joint, whose angles count their turns, or the root of the member",
         call, j->name, spari_norm(turn));
     return SPAR_OK;
 }
@@ -352,8 +352,16 @@ int spar_joint_get_load(const spar_joint *joint, double load[6]) {
 
 /* ---- what the solution asks ---- */
 
-int spari_joint_is_slack(const spar_joint *j, const spari_relative *r) {
-    return j->slack && j->stiffness[0] * (r->z[0] - j->length) + j->damping[0] * r->rate[0] < 0;
+double spari_joint_pull(const spar_joint *j, const double z[6], const double rate[6], double speed) {
+    double stretch = z[0] - j->length, fastest = rate[0];
+    if (j->slack && !(stretch > 0)) {
+        return 0;
+    }
+    if (j->slack) {
+        fastest = fmin(fastest, speed * stretch);
+    }
+    double pull = j->stiffness[0] * stretch + j->damping[0] * fastest;
+    return j->slack ? fmax(pull, 0) : pull;
 }
 
 int spari_member_unique(const spar_member *m, int64_t node) {
@@ -401,28 +409,56 @@ uint64_t spari_joint_hash(const spar_joint *j) {
     return h;
 }
 
+uint64_t spari_joint_setting(const spar_joint *j) {
+    uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->given, sizeof j->given);
+    if (!j->tie.line) {
+        h = spari_hash_bytes(h, j->stiffness, sizeof j->stiffness);
+        h = spari_hash_bytes(h, j->damping, sizeof j->damping);
+        h = spari_hash_bytes(h, j->preload, sizeof j->preload);
+    }
+    h = spari_hash_bytes(h, &j->drive_given, sizeof j->drive_given);
+    return j->drive_given ? spari_hash_bytes(h, &j->drive[1], sizeof j->drive[1]) : h;
+}
+
+uint64_t spari_joints_setting(const spar_session *s) {
+    int many = spari_comm_size(s->comm) > 1 && !s->joints_stale;
+    uint64_t h = 0;
+    for (const spar_joint *j = many ? s->joints : NULL; j; j = j->next) {
+        uint64_t of = spari_joint_setting(j);
+        h = spari_hash_bytes(h, &of, sizeof of);
+    }
+    return h;
+}
+
 int spari_joint_given(const spar_joint *j) {
     return j->tie.line ? !j->sprung || j->driven : (~j->tie.free & ALL_FREE) | j->driven;
 }
 
-void spari_joint_spring(const spar_joint *j, const double z[6], const double rate[6], double factor, double load[6]) {
+double spari_joint_load_at(const spar_joint *j, int k, double left) {
+    return j->session->step > 0 && left > 0 ? j->given[k] + left * (j->before[k] - j->given[k]) : j->given[k];
+}
+
+int spari_joint_spring(const spar_joint *j, const double z[6], const double rate[6], double speed, double factor,
+                       double load[6]) {
     int given = spari_joint_given(j);
+    if (j->tie.line && !given) {
+        double pull = spari_joint_pull(j, z, rate, speed);
+        load[0] = factor * spari_joint_load_at(j, 0, j->left) - pull;
+        return j->sprung && !(j->slack && pull == 0);
+    }
     if (j->tie.line) {
-        double pull = j->stiffness[0] * (z[0] - j->length) + j->damping[0] * rate[0];
-        if (!given) {
-            load[0] = factor * j->given[0] - (j->slack && pull < 0 ? 0 : pull);
-        }
-        return;
+        return 0;
     }
     for (int i = 0; i < 6; i++) {
         if (given >> i & 1) {
             continue;
         }
-        load[i] = factor * (j->given[i] + j->preload[i]);
+        load[i] = factor * (spari_joint_load_at(j, i, j->left) + j->preload[i]);
         for (int k = 0; k < 6 && j->sprung; k++) {
             load[i] -= j->stiffness[6 * i + k] * z[k] + j->damping[6 * i + k] * rate[k];
         }
     }
+    return j->sprung;
 }
 
 int spari_joint_check_place(const spar_joint *j) {
@@ -465,10 +501,10 @@ void spari_joint_place(spar_joint *j) {
 }
 
 void spari_joint_count_turns(const spar_joint *j, const double near[6], double z[6]) {
-    int axis = j->tie.line ? -1 : spari_tie_axis(j->tie.free);
+    int angles = j->tie.line ? 0 : spari_tie_angles(j->tie.free);
     const double turn = 6.283185307179586476925;
-    if (axis >= 0) {
-        z[3 + axis] += turn * round((near[3 + axis] - z[3 + axis]) / turn);
+    for (int k = 0; k < 3; k++) {
+        z[3 + k] += angles >> k & 1 ? turn * round((near[3 + k] - z[3 + k]) / turn) : 0;
     }
 }
 
@@ -498,6 +534,7 @@ void spari_joint_hold(spar_joint *j) {
 }
 
 void spari_joint_accept(spar_joint *j) {
+    memcpy(j->before, j->given, sizeof j->before);
     j->now = j->after;
     j->drive[0] = j->drive[1];
     j->drive_given = 0;
@@ -521,4 +558,5 @@ void spari_joint_reject(spar_joint *j) {
         j->balanced = 0;
     }
     j->after = j->now;
+    j->left = 0;
 }

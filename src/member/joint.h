@@ -6,11 +6,13 @@
 #include "structure.h"
 #include "tie.h"
 
-/* Relative motion at one time: coordinates (a hinge's angle counts its turns), rates, and the load on a, in the joint's
-   axes on its six motions: of what is held the constraint's, of what is free the spring's, the damper's and the host's.
+/* Relative motion at one time: coordinates (angles of a hinge or universal joint count their turns), rates, and the
+   load on a, in the joint's axes on its six motions: of what is held the constraint's, of what is free the spring's,
+   the damper's and the host's.
  */
 typedef struct spari_relative {
     double z[6], rate[6], load[6];
+    double found; /* 1: by a solution; 0: nothing has been found yet */
 } spari_relative;
 
 /* Of chosen free motions, at one time. */
@@ -35,7 +37,8 @@ struct spar_joint {
     int sprung, slack;                             /* slack: a line that only pulls */
     double stiffness[36], damping[36], preload[6]; /* on the free motions */
     double length;                                 /* a line's, unstretched */
-    double given[6];                               /* spar_joint_set_load */
+    double given[6], before[6];                    /* spar_joint_set_load, and what it was in the step accepted last */
+    double left;                                   /* part of the step still to come at the stage under way */
     int driven;                                    /* mask of free motions */
     spari_driven drive[2];                         /* at t^n and t^{n+1} */
     int drive_given;
@@ -55,19 +58,30 @@ int spari_member_is_tied(const spar_member *member);
 int spari_joint_need_here(const spar_joint *joint, const char *call, int away);
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
+/* What may be given of it at any time, as one number: springs, load, drive. And of all joints, which the ranks compare
+   before a solution; 0 on one rank, and while joints are described. */
+uint64_t spari_joint_setting(const spar_joint *joint);
+uint64_t spari_joints_setting(const spar_session *session);
 /* Mask of the motions that a joint gives: those not free and the driven ones. */
 int spari_joint_given(const spar_joint *joint);
+/* The host's load on motion k where the part `left` of a step is still to come: linear in the step; in the first step
+   it stands from the beginning. */
+double spari_joint_load_at(const spar_joint *joint, int k, double left);
 /* Loads on the free motions, from springs, dampers, and `factor` of preloads and the host's: load[k] of motions that
-   are not free stays as it is. */
-void spari_joint_spring(const spar_joint *joint, const double z[6], const double rate[6], double factor,
-                        double load[6]);
-/* Whether a line that only pulls does not. */
-int spari_joint_is_slack(const spar_joint *joint, const spari_relative *at);
+   are not free stays as it is. speed: as in spari_joint_pull. Whether springs and dampers act: a line that only pulls
+   may be slack. */
+int spari_joint_spring(const spar_joint *joint, const double z[6], const double rate[6], double speed, double factor,
+                       double load[6]);
+/* The pull of a line's spring and damper. A line that only pulls is slack up to its length. Beyond, the damper feels
+   the rate, and in a step the rate at which the line can have stretched since it came taut, at most: the stretch times
+   `speed`, the change of the step's rates with its coordinates. Then the pull of a step grows from 0, is a straight
+   line over the motion and has a solution, and its limit for short steps is that at every moment (speed INFINITY). */
+double spari_joint_pull(const spar_joint *joint, const double z[6], const double rate[6], double speed);
 /* Whether its nodes are where it can tie them; a status and a message. And places arms and axes. After both members are
    committed. */
 int spari_joint_check_place(const spar_joint *joint);
 void spari_joint_place(spar_joint *joint);
-/* z with a hinge's angle brought to the turn nearest to `near`. */
+/* z with the angles of a hinge or universal joint brought to the turns nearest to `near`. */
 void spari_joint_count_turns(const spar_joint *joint, const double near[6], double z[6]);
 /* Driven motions at the part s of the step dt: cubic Hermite. */
 void spari_joint_drive_at(const spar_joint *joint, double s, double dt, spari_driven *at);
@@ -82,7 +96,7 @@ void spari_joint_reject(spar_joint *joint);
 void spari_joint_end_start(spar_joint *joint);
 /* Where its two nodes are in the motion after. */
 void spari_joint_places(const spar_joint *joint, spari_place place[2]);
-/* The second rates of its coordinates in the motion after; 0 before it is placed. */
+/* The second rates of its coordinates in the motion after; 0 before that is found. */
 void spari_joint_acceleration(const spar_joint *joint, double acceleration[6]);
 /* load[6] += what the joints put on a node of a member, in the motion after. */
 void spari_joints_on(const spar_member *member, int64_t node, double load[6]);

@@ -70,7 +70,7 @@ void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
     spari_place place[2];
     double z[6], B[6][12], v[12] = {0}, a[12] = {0};
     memset(acceleration, 0, 6 * sizeof *acceleration);
-    if (!j->placed) {
+    if (j->after.found == 0) { /* placed or not: that is no matter of the run */
         return;
     }
     for (int side = 0; side < 2; side++) {

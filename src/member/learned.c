@@ -584,10 +584,15 @@ static double noise_of(const spari_learned *l) {
     return fmin(h[SEEN] > 0 ? h[NOISE] * h[WHOLE] / h[SEEN] : h[LEFT], h[WHOLE]) / fmax(h[COUNT], 1);
 }
 
-/* Of the differences accepted: their axes, plain least squares, and the mass. */
-static void fit_mass(spari_learned *l) {
+/* Of the differences accepted: their axes and plain least squares, which are no part of the state. */
+static void fit_plainly(spari_learned *l) {
     look_around(l);
     fit_stations(l, 0, l->plain);
+}
+
+/* And the mass. */
+static void fit_mass(spari_learned *l) {
+    fit_plainly(l);
     fit_stations(l, noise_of(l), l->mass);
     for (int64_t s = 0; s < l->n; s++) {
         keep_positive(l, s);
@@ -655,10 +660,16 @@ int spari_learned_accept(spar_member *m) {
     return choose(l);
 }
 
+void spari_learned_take_back(const spar_member *m) {
+    if (m->learned && m->added) {
+        measure_stations(m, m->learned);
+        fit_plainly(m->learned);
+    }
+}
+
 void spari_learned_put(spar_member *m) {
     spari_learned *l = m->learned;
-    look_around(l); /* these are no part of the state */
-    fit_stations(l, 0, l->plain);
+    fit_plainly(l);
     if (l->head[USED] > 0) {
         spari_added_fill(m, l->n, l->eta, l->force);
     } else {

@@ -13,6 +13,9 @@ enum { SPARI_LEARNED_STATIONS = 20 }; /* at most */
    m->added. A status without a message. */
 int spari_learned_create(spar_member *m);
 void spari_learned_free(spari_learned *learned);
+/* What is learned is shared with what the member was made anew as, which measured it by its own nodes: again by those
+   of m. */
+void spari_learned_take_back(const spar_member *m);
 
 /* A step begins or is given up: its differences are forgotten. */
 void spari_learned_begin(spar_member *m);

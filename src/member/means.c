@@ -1,4 +1,4 @@
-/* Accelerations as fluids see them where a step has substeps: see means.h. */
+/* Mean accelerations, as fluids see them: see means.h. */
 #include "means.h"
 
 #include "../base/scene.h"
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-int spari_means_keep(spar_member *m) {
+int spari_means_make(spar_member *m) {
     if (m->means || (m->added && (m->guess_count > 0 || !m->learned)) || !m->body ||
-        !(m->effects & SPAR_EFFECT_INERTIA) || m->session->substeps < 2) {
+        !(m->effects & SPAR_EFFECT_INERTIA)) {
         return SPAR_OK;
     }
     spari_means *k = spari_zalloc(1, sizeof *k);
@@ -24,6 +24,11 @@ int spari_means_keep(spar_member *m) {
     k->seen[1] = all + 12 * m->nodes;
     m->means = k;
     return SPAR_OK;
+}
+
+int spari_means_keep(spar_member *m) {
+    const spar_session *s = m->session;
+    return s->substeps > 1 || s->uneven[0] ? spari_means_make(m) : SPAR_OK;
 }
 
 void spari_means_free(spari_means *k) {
@@ -41,7 +46,7 @@ const double *spari_means_seen(const spar_member *m, int after) {
 void spari_means_find(spar_member *m) {
     const spar_session *s = m->session;
     spari_means *k = m->means;
-    k->has[1] = s->substeps > 1 && !(m->added && m->added->stands);
+    k->has[1] = (s->substeps > 1 || s->uneven[1]) && !(m->added && m->added->stands);
     double on = k->has[0] ? s->dt / (s->dt + k->dt) : s->step > 0 || m->begun ? 1 : 0;
     const double *before = k->has[0] ? k->mean : m->now.a; /* that one at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {

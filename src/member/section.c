@@ -1,9 +1,11 @@
-/* What a section of a beam feels: strains and section forces anywhere along the line, from the element's own field, as
-   the quadrature points take them (body_life.c). */
+/* What a section of a beam feels, anywhere along the line: strains from the element's own field, as the quadrature
+   points take them, and section forces from the balance of what is beyond. */
 #include "../base/quiet.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "beam.h"
+#include "beyond.h"
+#include "edge.h"
 #include "pose.h"
 
 #include <stdlib.h>
@@ -123,10 +125,47 @@ static void to_local(const double R[9], const double x[6], double y[6]) {
     }
 }
 
-static void section_output(const spar_member *m, const spari_station *s, double eta, double *strain, double *force,
-                           double *x, double *q) {
+/* Section forces by what is known of the section alone: its stiffness, damping and pretension. */
+static void forces_of_strains(const spar_member *m, double eta, const double local[6], const double rate[6],
+                              double force[6]) {
+    const int damped = m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
+    const double *mu = m->beam->mu;
+    double C[36], pre[6] = {0};
+    spari_beam_section_at(m->beam, m->beam->stiffness, eta, C);
+    if (m->effects & SPAR_EFFECT_PRETENSION) {
+        spari_pretension_at(m->beam, eta, pre);
+    }
+    for (int i = 0; i < 6; i++) {
+        force[i] = pre[i];
+        for (int j = 0; j < 6; j++) {
+            force[i] += C[6 * i + j] * (local[j] + (damped ? sqrt(mu[i] * mu[j]) * rate[j] : 0));
+        }
+    }
+}
+
+/* And by the balance of what is beyond. 0, or 1: no memory. */
+static int forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
+                             const section_field *f, double force[6]) {
+    double global[6];
+    if (spari_beyond_at(beyond, s, global)) {
+        return 1;
+    }
+    for (int k = 0; k < 6 && !spari_beyond_is_undeformed(m); k += 3) {
+        spari_rotate_back(f->r, global + k, global + k);
+    }
+    to_local(s->R, global, force);
+    return 0;
+}
+
+/* What is asked for at each place; NULL: not wanted. */
+typedef struct section_wish {
+    double *strain, *force, *x, *q;
+} section_wish;
+
+static int section_output(const spar_member *m, const spari_station *s, double eta, const spari_beyond *beyond,
+                          int64_t i, const section_wish *to) {
     section_field f;
-    double e[6], ed[6], local[6], rate[6], C[36], q0[4];
+    double e[6], ed[6], local[6], rate[6], q0[4];
     section_at(m, s, &f);
     if (is_linear(m)) {
         linear_strains(m, s, e, ed);
@@ -135,35 +174,36 @@ static void section_output(const spar_member *m, const spari_station *s, double 
     }
     to_local(s->R, e, local);
     to_local(s->R, ed, rate);
-    if (strain) {
-        memcpy(strain, local, sizeof local);
+    if (to->strain) {
+        memcpy(to->strain + 6 * i, local, sizeof local);
     }
-    if (force) {
-        int damped = m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
-        const double *mu = m->beam->mu;
-        spari_beam_section_at(m->beam, m->beam->stiffness, eta, C);
-        for (int i = 0; i < 6; i++) {
-            force[i] = 0;
-            for (int j = 0; j < 6; j++) {
-                force[i] += C[6 * i + j] * (local[j] + (damped ? sqrt(mu[i] * mu[j]) * rate[j] : 0));
-            }
-        }
-        if (m->effects & SPAR_EFFECT_PRETENSION) {
-            double pre[6];
-            spari_pretension_at(m->beam, eta, pre);
-            for (int i = 0; i < 6; i++) {
-                force[i] += pre[i];
-            }
-        }
+    if (to->force && !beyond) {
+        forces_of_strains(m, eta, local, rate, to->force + 6 * i);
+    } else if (to->force && forces_of_balance(beyond, m, s, &f, to->force + 6 * i)) {
+        return SPAR_ERR_MEMORY;
     }
-    for (int i = 0; i < 3 && x; i++) {
-        x[i] = s->x[i] + f.u[i];
+    for (int k = 0; k < 3 && to->x; k++) {
+        to->x[3 * i + k] = s->x[k] + f.u[k];
     }
-    if (q) {
+    if (to->q) {
         spari_matrix_quat(s->R, q0);
-        spari_quat_mul(f.r, q0, q);
-        spari_quat_normalise(q);
+        spari_quat_mul(f.r, q0, to->q + 4 * i);
+        spari_quat_normalise(to->q + 4 * i);
     }
+    return SPAR_OK;
+}
+
+static int section_outputs(const spar_member *m, int64_t n, const spari_station *s, const double *eta,
+                           const section_wish *to) {
+    const int balanced = to->force && spari_beyond_is_known(m);
+    spari_beyond *beyond = balanced ? spari_beyond_create(m) : NULL;
+    int status = balanced && !beyond ? SPAR_ERR_MEMORY : SPAR_OK;
+    for (int64_t i = 0; i < n && status == SPAR_OK; i++) {
+        status = section_output(m, s + i, eta[i], beyond, i, to);
+    }
+    spari_beyond_free(beyond);
+    SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the section forces of '%s'", m->name);
+    return SPAR_OK;
 }
 
 int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
@@ -178,6 +218,9 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
+    if (force) { /* of its loads */
+        SPARI_TRY(spari_need_here(beam, __func__, SPARI_LOADS_AWAY));
+    }
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s' has no sections, its forces are not known", __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {
@@ -194,10 +237,8 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
         s[i].xi = fmin(fmax(2 * (eta[i] * E - e) - 1, -1), 1);
     }
     int status = spari_beam_stations(beam, n, s);
-    for (int64_t i = 0; i < n && status == SPAR_OK; i++) {
-        section_output(beam, s + i, eta[i], strain ? strain + 6 * i : NULL, force ? force + 6 * i : NULL,
-                       x ? x + 3 * i : NULL, q ? q + 4 * i : NULL);
-    }
+    const section_wish to = {strain, force, x, q};
+    status = status == SPAR_OK ? section_outputs(beam, n, s, eta, &to) : status;
     free(s);
     return status;
 }

@@ -26,6 +26,7 @@ typedef struct spari_beam spari_beam;             /* src/member/beam.h: the desc
 typedef struct spari_assembly spari_assembly;     /* src/solve/tied.h: members that joints tie together */
 typedef struct spari_work spari_work;             /* src/solve/work.h: the work done on a member */
 typedef struct spari_applied spari_applied;       /* src/member/applied.h: follower loads and loads along the line */
+typedef struct spari_ramp spari_ramp;             /* the same: loads at t^n that the host has replaced since */
 typedef struct spari_foundation spari_foundation; /* the same: springs along the line */
 typedef struct spari_remake spari_remake;         /* src/trial/remake.h: a member made anew for a trial */
 typedef struct spari_means spari_means;     /* src/member/means.h: accelerations over a step of several substeps */
@@ -39,6 +40,13 @@ typedef enum spari_view {
     SPARI_SEEN_CARRIED, /* from a root that is given, which carries it */
     SPARI_SEEN_LINEAR   /* the same, and small there: to first order */
 } spari_view;
+
+/* Halvings of a step's substeps: the nodes of their binary tree that were given up. They stay given up until the step
+   ends, so that the iterations of a coupling see one map, but for what loads far from the answer have asked for. */
+typedef struct spari_cuts {
+    int64_t begun; /* session->begun of the step */
+    uint32_t given_up[64];
+} spari_cuts;
 
 struct spar_member {
     spar_session *session;
@@ -55,6 +63,8 @@ struct spar_member {
     const struct spari_fidelity *row; /* how it moves (solve/fidelity.h); after commit */
     spari_view seen;                  /* likewise */
     int floats;                       /* seen linear, from a root that is not given: joints tie it */
+    int balanced[2];                  /* the motion now, and after, has been found under its loads */
+    int overturned;                   /* seen linear: a node of the latest state has turned by more than half a turn */
     int motion_given;                 /* set_motion was called in the step under way */
     int drive_given;                  /* drive_root was called for the step under way or next */
 
@@ -74,11 +84,12 @@ struct spar_member {
     spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to now between steps) */
     double *begun; /* [nodes][6] accelerations that the balance at t^0 begins with, where a start has been asked for,
                       until the first step is accepted; NULL: those of now */
+    double *begun_next;  /* room for those of a file being loaded */
     spari_pose drive[2]; /* root at t^n and t^{n+1} */
 
     /* Nodal loads [n][6], global axes, in their lives:
                            between steps     step begun        solved               checked
-         dead              the host's, kept until it gives others
+         dead              the host's, kept until it gives others; what was there at t^n: spari_dead_before
          load_pushed       at t^n            at t^n            at t^n               at t^{n+1}, as the fluids gave them
          load_used         -                 predicted         solved with          to be solved with next, if any
          load_solved[1]    as [0]            as [0]            dead + load_used     dead + load_used, of the motion
@@ -94,7 +105,9 @@ struct spar_member {
     double *load_history[3];
     double *load_solved[2];
     spari_applied *applied;             /* follower and line loads; NULL: none */
+    spari_ramp *ramp;                   /* applied loads at t^n where others are given for t^{n+1}; NULL: never */
     spari_applied *applied_next;        /* of a file being loaded */
+    spari_ramp *ramp_next;              /* likewise */
     spari_foundation *foundation;       /* springs along the line that are in force; NULL: none */
     int64_t pack_at;                    /* where its loads begin in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy damped away up to t^n, and in the step under way */
@@ -105,6 +118,7 @@ struct spar_member {
     spari_assembly *assembly; /* it is solved with others; NULL: alone */
     spari_work *work;         /* NULL: not asked for */
     spari_added *added;       /* NULL: no guess of the added mass; else the loads above have lives of their own */
+    spari_cuts cuts;          /* of the step under way; of members that joints tie, the first one's */
     spari_means *means;       /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
     spari_remake *advice;     /* of spar_session_advise; NULL: none */
     int away;                 /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
@@ -133,6 +147,10 @@ static inline spari_pose spari_pose_of(const double *q, const double *v, const d
     memcpy(pose.v, v, sizeof pose.v);
     memcpy(pose.a, a, sizeof pose.a);
     return pose;
+}
+/* Whether gravity at t^n, which the step before had, is another than at t^{n+1}. */
+static inline int spari_gravity_changes(const spar_session *session) {
+    return session->step > 0 && memcmp(session->gravity, session->gravity_before, sizeof session->gravity) != 0;
 }
 /* The description as one number: all but the owner. */
 uint64_t spari_member_hash(const spar_member *member);

@@ -19,6 +19,26 @@ int spari_tie_axis(int free) {
     }
 }
 
+enum { FREE_TURNS = SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ };
+
+/* The axis about which a tie with two free turns has none; else -1. */
+static int axis_without_turn(int free) {
+    switch (free & FREE_TURNS) {
+    case SPAR_FREE_RY | SPAR_FREE_RZ:
+        return 0;
+    case SPAR_FREE_RX | SPAR_FREE_RZ:
+        return 1;
+    case SPAR_FREE_RX | SPAR_FREE_RY:
+        return 2;
+    default:
+        return -1;
+    }
+}
+
+int spari_tie_angles(int free) {
+    return (free & FREE_TURNS) == FREE_TURNS ? 0 : (free & FREE_TURNS) / SPAR_FREE_RX;
+}
+
 /* Where a node has its end of the joint. */
 typedef struct tie_end {
     double arm[3], axes[4]; /* from the node, now */
@@ -48,9 +68,42 @@ static void set_way(double row[12], const double axis[3], const double arm_a[3],
     set_row(row, axis, turn_a, turn_b);
 }
 
+/* The angle of (c[r], c[q]) and, in row[3], its change with a turn phi of c in the axes of b: dc = phi x c. */
+static double angle_of(const double c[3], int q, int r, double sign, double row[3]) {
+    double size = c[q] * c[q] + c[r] * c[r];
+    for (int m = 0; m < 3; m++) {
+        double phi[3] = {0}, d[3];
+        phi[m] = 1;
+        spari_cross(phi, c, d);
+        row[m] = sign * (c[q] * d[r] - c[r] * d[q]) / size;
+    }
+    return atan2(sign * c[r], c[q]);
+}
+
+/* The cross of a universal joint has two arms at a right angle: axis p of b's, axis q of a's; r is the third. r[4]
+   turns b's p by the first angle, then a's q by the second. */
+static void universal(int without, const double turn[4], double z[3], double D[9]) {
+    int r = without, p = r == 0 ? 1 : 0, q = 3 - p - r;
+    double sign = r == 1 ? -1 : 1, e[3] = {0}, f[3] = {0}, c[3], d[3], row[3];
+    e[q] = f[p] = 1;
+    spari_rotate(turn, e, c);
+    z[p] = angle_of(c, q, r, sign, D + 3 * p);
+    z[r] = -sign * c[p]; /* dc = phi x c */
+    spari_cross(c, f, D + 3 * r);
+    for (int m = 0; m < 3; m++) {
+        D[3 * r + m] *= -sign;
+    }
+    spari_rotate_back(turn, f, d); /* b's p in a's axes turns with -phi, seen there */
+    z[q] = angle_of(d, p, r, sign, row);
+    spari_rotate(turn, row, D + 3 * q);
+    for (int m = 0; m < 3; m++) {
+        D[3 * q + m] = -D[3 * q + m];
+    }
+}
+
 /* D[3][3]: the change of the three rotations z with a small turn phi of a relative to b, in b's axes, and z. */
 static void rotations(const spari_tie *t, const double r[4], double z[3], double D[9]) {
-    int i = spari_tie_axis(t->free), rotations_free = t->free & (SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ);
+    int i = spari_tie_axis(t->free), rotations_free = t->free & FREE_TURNS, without = axis_without_turn(t->free);
     double sign = r[0] < 0 ? -1 : 1;
     if (rotations_free == 0) { /* z = 2 r_v, dr_v = (r0 phi + phi x r_v) / 2 */
         for (int k = 0; k < 3; k++) {
@@ -76,6 +129,8 @@ static void rotations(const spari_tie *t, const double r[4], double z[3], double
             spari_quat_mul(p, r, d);
             D[3 * i + m] = (r[0] * d[1 + i] - r[1 + i] * d[0]) / s2;
         }
+    } else if (without >= 0) {
+        universal(without, r, z, D);
     } else {
         spari_quat_log(r, z);
         spari_tangent_inverse(z, D);

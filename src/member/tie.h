@@ -3,8 +3,9 @@
 
    Translations are those of a's point in b's axes. Rotations depend on how many are free: none, twice the vector part
    of the relative quaternion r; one, the angle of the twist about it, and for the other two how far a's axis leaves
-   b's; more, the rotation vector of r. All are rotations in rad to first order, and each set is smooth wherever the
-   coordinates that are held are near 0. */
+   b's; two, the angles of a universal joint, about the first axis as b carries it and about the second as a carries it,
+   and for the third how far these two are from a right angle; three, the rotation vector of r. All are rotations in rad
+   to first order, and each set is smooth wherever the coordinates that are held are near 0. */
 #ifndef SPARI_TIE_H
 #define SPARI_TIE_H
 
@@ -36,5 +37,7 @@ void spari_tie_drift(const spari_tie *tie, const spari_place *a, const spari_pla
                      double rate[6]);
 /* The axis about which alone the tie turns freely, 0 to 2; -1: there is none. */
 int spari_tie_axis(int free);
+/* Bits of the rotations (1, 2, 4) that are angles, which go on beyond a turn: those that are free, up to two. */
+int spari_tie_angles(int free);
 
 #endif

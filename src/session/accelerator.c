@@ -2,6 +2,7 @@
    iterations (columns.c). */
 #include "columns.h"
 
+#include "../base/poison.h"
 #include "../base/status.h"
 
 #include <math.h>
@@ -57,6 +58,7 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     free(a->column);
     free(a->order);
     spari_secants_free(a->secants);
+    spari_snapshot_free(&a->before);
     free(a);
     *accelerator = NULL;
 }
@@ -158,6 +160,12 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->ratio = 0;
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
+    a->begun.imaged = a->imaged;
+    a->begun.ratios = a->ratios_before;
+    spari_snapshot_open(&a->before, 1);
+    spari_poison(a->change, a->change ? 2 * a->n : 0);
+    spari_poison(a->answer, 2 * a->n);
+    spari_poison(a->alpha, a->slots > 0 ? a->set.columns : 0);
     a->omega = a->set.omega;
     if (a->scheme->begin) {
         a->scheme->begin(a);
@@ -235,6 +243,7 @@ static void measure(spari_accelerator *a, const double *x, const double *g, cons
     if (a->iteration == 1) {
         a->residual_first = a->residual_least = a->residual;
         a->rises = 0;
+        a->cut = 0;
     }
     a->rises = a->residual > 4 * a->residual_least ? a->rises + 1 : 0;
     a->residual_least = fmin(a->residual_least, a->residual);
@@ -326,6 +335,7 @@ void spari_accelerator_accept(spari_accelerator *a, const double *g) {
     }
     a->used = 0;
     a->renewed = 0;
+    spari_snapshot_close(&a->before);
     a->step++;
 }
 
@@ -339,7 +349,12 @@ void spari_accelerator_reject(spari_accelerator *a) {
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
     a->memory = a->memory_accepted;
-    a->ended = 0; /* nobody knows what the fluid goes back to */
+    if (a->before.open) { /* else the step was read from a file */
+        a->imaged = a->begun.imaged;
+        a->ratios_before = a->begun.ratios;
+        spari_columns_restore(a);
+    }
+    spari_snapshot_close(&a->before);
     a->used = 0;
     a->iteration = 0;
 }

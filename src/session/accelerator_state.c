@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { OWN = 31, MEMORY = sizeof(spari_recollection) / sizeof(double), HEAD = OWN + 2 * MEMORY, COLUMN_HEAD = 6 };
+enum { OWN = 34, MEMORY = sizeof(spari_recollection) / sizeof(double), HEAD = OWN + 2 * MEMORY, COLUMN_HEAD = 6 };
 
 /* Vectors of length n that are kept of each column. */
 static int64_t of_column(const spari_accelerator *a) {
@@ -96,7 +96,10 @@ void spari_accelerator_save(const spari_accelerator *a, double *state) {
                              a->ratios_before.sum,
                              a->ratios_before.sum2,
                              a->most_weight,
-                             a->renewed};
+                             a->renewed,
+                             a->reach,
+                             a->cut,
+                             a->cut_residual};
     size_t bytes = (size_t)a->n * sizeof *state;
     memcpy(state, own, sizeof own);
     memcpy(state += OWN, &a->memory, sizeof a->memory);
@@ -165,9 +168,10 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
     if (count != HEAD + of_iteration(a) * a->n + occupied * (COLUMN_HEAD + of_column(a) * a->n) + used) {
         return 0;
     }
-    if (!whole_below(state[15], a->set.imaged ? 2 : 1) || !whole_below(state[20], INT_MAX) ||
-        !whole_below(state[30], 2) || !is_memory(a, state + OWN) || !is_memory(a, state + OWN + MEMORY) ||
-        !whole_below(state[16], a->secants ? 2 : 1) || !whole_below(state[17], a->secants ? 2 : 1) ||
+    if (spari_first_nonfinite(state + 31, 3) >= 0 || !whole_below(state[15], a->set.imaged ? 2 : 1) ||
+        !whole_below(state[20], INT_MAX) || !whole_below(state[30], 2) || !is_memory(a, state + OWN) ||
+        !is_memory(a, state + OWN + MEMORY) || !whole_below(state[16], a->secants ? 2 : 1) ||
+        !whole_below(state[17], a->secants ? 2 : 1) ||
         !are_columns(a, state + HEAD + of_iteration(a) * a->n, occupied, state[1])) {
         return 0;
     }
@@ -185,6 +189,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     }
     int occupied = (int)state[13], used = (int)state[14];
     size_t bytes = (size_t)a->n * sizeof *state;
+    spari_snapshot_close(&a->before);
     a->step = (int64_t)state[1], a->serial = (int64_t)state[2];
     a->iteration = (int)state[3], a->dropped = (int)state[4];
     a->dt = state[5], a->ratio = state[6], a->omega = state[7], a->omega_accepted = state[8];
@@ -199,6 +204,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     a->ratios_before = (spari_ratios){state[25], state[26], state[27], state[28]};
     a->most_weight = state[29];
     a->renewed = (int)state[30];
+    a->reach = state[31], a->cut = state[32], a->cut_residual = state[33];
     memcpy(a->x, state += HEAD, bytes);
     memcpy(a->g, state += a->n, bytes);
     state += a->n;

@@ -263,14 +263,18 @@ void spari_columns_learn(spari_accelerator *a) {
 
 /* (I - J)^-1 of an added mass lengthens nothing in the norm of the images: the solution is no farther from the loads
    that the step began with than the first residual is long. A step much longer than that, or than the residual, comes
-   of columns that are wrong. */
-static double longest(const spari_accelerator *a) {
+   of columns that are wrong; or of an eigenvalue of J near 1. There a step that was cut takes as much off the residual
+   as the columns say, and the next one may be ten times longer. */
+static double longest(spari_accelerator *a) {
     static const double LONG = 10;
-    return LONG * fmin(a->residual, a->residual_first);
+    int held = a->cut > 0 && a->residual <= (1 - 0.5 * a->cut) * a->cut_residual;
+    a->reach = held ? 10 * a->reach : LONG;
+    a->cut = 0;
+    return a->reach * fmin(a->residual, a->residual_first);
 }
 
 /* Cuts a step made with alpha to that. */
-static void trust(const spari_accelerator *a, const double *x, double *next) {
+static void trust(spari_accelerator *a, const double *x, double *next) {
     double step = 0, most = longest(a), rho = spari_rho_of(a);
     for (int64_t i = 0; i < a->n; i++) {
         double answer = a->image[i] + (rho > 0 && a->led ? rho * a->lead[a->n + i] : 0);
@@ -282,6 +286,7 @@ static void trust(const spari_accelerator *a, const double *x, double *next) {
     }
     if (step > most * most) {
         double cut = most / sqrt(step);
+        a->cut = cut, a->cut_residual = a->residual;
         for (int64_t i = 0; i < a->n; i++) {
             next[i] = x[i] + cut * (next[i] - x[i]);
         }
@@ -391,6 +396,39 @@ static int is_of_another(const spari_accelerator *a, int s, const double *x, con
     return !(r * r <= OFF * OFF * square * residual) || !(whole * whole <= OFF * OFF * square * size);
 }
 
+/* Copies a column's images, and what leads it where there is that, to `at`, or back; what comes behind. */
+static double *copy_images(const spari_accelerator *a, int s, int led, double *at, int back) {
+    double *const own[] = {spari_slot_iv(a, s), spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
+    for (int k = 0; k < (led ? 4 : 2); k++, at += a->n) {
+        memcpy(back ? own[k] : at, back ? at : own[k], (size_t)a->n * sizeof *at);
+    }
+    return at;
+}
+
+/* Before they are overwritten: of each slot whether its column is led (-1: there is none), then the images. */
+static void keep_images(spari_accelerator *a) {
+    int64_t count = a->slots;
+    for (int s = 0; s < a->slots; s++) {
+        count += a->column[s].state == SPARI_FREE ? 0 : (a->column[s].led ? 4 : 2) * a->n;
+    }
+    double *to = spari_snapshot_take(&a->before, count), *at = to ? to + a->slots : NULL;
+    for (int s = 0; s < a->slots && to; s++) {
+        to[s] = a->column[s].state == SPARI_FREE ? -1 : a->column[s].led;
+        at = to[s] < 0 ? at : copy_images(a, s, a->column[s].led, at, 0);
+    }
+}
+
+void spari_columns_restore(spari_accelerator *a) {
+    double *from = a->before.data, *at = a->before.taken > 0 ? from + a->slots : NULL;
+    for (int s = 0; s < a->slots && at; s++) {
+        if (from[s] >= 0) {
+            a->column[s].led = from[s] > 0;
+            at = copy_images(a, s, a->column[s].led, at, 1);
+        }
+    }
+    a->renewed = a->before.taken < 0; /* there was no memory for them */
+}
+
 int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
     int other = a->renewed;
     for (int s = 0; s < a->slots && !other; s++) {
@@ -401,6 +439,7 @@ int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, 
     }
     size_t bytes = (size_t)a->n * sizeof *a->v;
     int led = 0;
+    keep_images(a);
     for (int s = 0; s < a->slots; s++) {
         spari_column *c = a->column + s;
         c->led &= spari_accelerator_contradicted(a); /* else nobody asks for it */

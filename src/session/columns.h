@@ -3,6 +3,7 @@
 #ifndef SPARI_COLUMNS_H
 #define SPARI_COLUMNS_H
 
+#include "../solve/snapshot.h"
 #include "accelerate.h"
 #include "secants.h"
 
@@ -52,13 +53,20 @@ struct spari_accelerator {
     double *image;             /* [2 n] imaged: of its g - x and g */
     int imaged;                /* in the step: inner products are those of the images */
     double *change, *answer;   /* [2][n + 1] of g - x and of g since the iteration before; their images */
-    int renewed;               /* images of columns, for the step under way or one that was rejected since */
+    int renewed;               /* images of columns, for the step under way */
+    spari_snapshot before;     /* as they were before that */
+    struct {
+        int imaged;
+        spari_ratios ratios;
+    } begun; /* `imaged` and `ratios_before` as the step began */
     spari_recollection memory, memory_accepted;
     double *lead;                                    /* [2][n] imaged: the change of g that the next follows; image */
     double *last;                                    /* [n] imaged: g at the end of the step before */
     int led, ended;                                  /* whether there is a lead, and a last */
     double residual, residual_first, residual_least; /* in the norm of the images: now, and of the step */
     int rises;                                       /* iterations since it was far above the least */
+    double reach;                                    /* a step is no longer than so many residuals */
+    double cut, cut_residual; /* the last step was cut to so much of its length (0: it was not), from that residual */
 
     int slots;              /* twice the columns: those at rest or dropped come back when the step is rejected */
     spari_column *column;   /* [slots] */
@@ -72,6 +80,9 @@ struct spari_accelerator {
     int *order;             /* slot of each column of q */
     int used;               /* columns of q */
 };
+
+/* The images are again as the step began. */
+void spari_columns_restore(spari_accelerator *a);
 
 /* ---- vectors: plain sums in a fixed order, so that all ranks get the same bits whatever their processors ---- */
 

@@ -9,6 +9,7 @@
 #include "own.h"
 #include "weigh.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -256,6 +257,12 @@ void spari_coupling_last(const spar_session *s, double *residual, double *size) 
     *size = last >= 0 ? c->size[last] : 0;
 }
 
+int spari_coupling_is_rough(const spar_session *s) {
+    double residual, size;
+    spari_coupling_last(s, &residual, &size);
+    return s->iteration > 0 && residual > 0.1 * size;
+}
+
 /* By how much the residual has grown from iteration to iteration lately; 0: it has not. */
 static double grown_lately(const spari_coupling *c) {
     enum { LATELY = 3 };
@@ -265,22 +272,101 @@ static double grown_lately(const spari_coupling *c) {
     return factor > 1.2 ? factor : 0;
 }
 
-static const char diverging_cures[] =
-    "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, let the fluid correct its pressure more often before it "
-    "pushes, or reject the step";
+/* What there is to do, beginning with what is not done already. diverges: the changes grow. */
+static const char *cures_of(const spar_session *s, int diverges) {
+    int newton = spari_coupling_scheme_of(s->scheme)->columns;
+    if (s->standing) {
+        return newton ? "take a larger tolerance or more iterations, or look at the fluid's loads"
+                      : "take SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
+    }
+    if (!diverges) {
+        return newton ? "take more iterations or a smaller dt, or reject the step"
+                      : "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or reject the step";
+    }
+    return newton
+               ? "take a smaller dt, coupling.reuse 0 or a larger coupling.filter, let the fluid correct its pressure "
+                 "more often before it pushes, or reject the step"
+               : "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, let the fluid correct its pressure more "
+                 "often before it pushes, or reject the step";
+}
+
+/* What went wrong, without the call before and the cure behind it. */
+static void cause_of(const char *message, const char *call, char *cause, size_t size) {
+    size_t name = strlen(call);
+    const char *from = strncmp(message, call, name) == 0 && message[name] == ':' ? message + name + 2 : message;
+    (void)snprintf(cause, size, "%.*s", (int)size - 1, from);
+    char *end = strrchr(cause, ';');
+    if (end) {
+        *end = '\0';
+    }
+}
+
+/* Of nodal loads, the largest force or moment. */
+static double largest_load(const spar_member *m, const double *load) {
+    double most = 0;
+    for (int64_t i = 0; load && i < 6 * m->nodes; i++) {
+        most = fmax(most, fabs(load[i]));
+    }
+    return most;
+}
+
+/* Loads that grow so much answer no motion of the structure. */
+static const double TOO_MUCH = 1e6;
+
+/* The member whose fluid loads have grown most since the steps before, and from what to what; NULL: none so much. */
+static const spar_member *member_overwhelmed(const spar_session *s, double load[2]) {
+    const spar_member *worst = NULL;
+    double most = TOO_MUCH;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        double now = largest_load(m, m->load_used), before = INFINITY;
+        for (int k = 0; k < 3; k++) {
+            double of = largest_load(m, m->load_history[k]);
+            before = of > 0 ? fmin(before, of) : before;
+        }
+        if (now > most * before) {
+            most = now / before;
+            worst = m;
+            load[0] = before, load[1] = now;
+        }
+    }
+    return worst;
+}
 
 int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     const spari_coupling *c = s->own->coupling;
-    double factor = c->iterations == s->iteration ? grown_lately(c) : 0;
-    if (status != SPAR_ERR_NUMERIC || factor == 0) {
+    double factor = c->iterations == s->iteration ? grown_lately(c) : 0, load[2];
+    char why[SPARI_MESSAGE_SIZE / 2];
+    if (status != SPAR_ERR_NUMERIC) {
         return status;
     }
-    char why[SPARI_MESSAGE_SIZE / 2];
-    (void)snprintf(why, sizeof why, "%.*s", (int)sizeof why - 1, s->message);
-    return spari_fail(s, status,
-                      "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from "
-                      "iteration to iteration, to %.3g N in iteration %d; %s (%.400s)",
-                      call, factor, c->residual[c->iterations - 1], s->iteration, diverging_cures, why);
+    cause_of(s->message, call, why, sizeof why);
+    const spar_member *m = factor > 0 && factor < TOO_MUCH ? NULL : member_overwhelmed(s, load);
+    SPARI_REQUIRE(s, !m, status,
+                  "%s: the fluid's loads on member '%s' have grown from %.3g to %.3g (N, N m) within a few steps; look "
+                  "at the fluid that pushes them: has its mesh folded, has it diverged? (%.400s)",
+                  call, m->name, load[0], load[1], why);
+    SPARI_REQUIRE(s, factor == 0, status,
+                  "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from iteration to "
+                  "iteration, to %.3g N in iteration %d; %s (%.400s)",
+                  call, factor, c->residual[c->iterations - 1], s->iteration, cures_of(s, 1), why);
+    return status;
+}
+
+/* What the rounding of places, over dt^2, is of the accelerations that the fluids see, at most of any member. */
+static double rounding_of_accelerations(const spar_session *s) {
+    const double h = s->dt / s->substeps;
+    double part = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        double place = 0, most = 0;
+        for (int64_t i = 0; i < m->nodes && m->body && m->effects & SPAR_EFFECT_INERTIA; i++) {
+            for (int k = 0; k < 3; k++) {
+                place = fmax(place, fabs(m->xr[3 * i + k] + m->after.q[7 * i + k]));
+                most = fmax(most, fabs(m->after.a[6 * i + k]));
+            }
+        }
+        part = most > 0 ? fmax(part, DBL_EPSILON * place / (h * h * most)) : part;
+    }
+    return part;
 }
 
 static int not_converged(spar_session *s, const char *call) {
@@ -300,13 +386,19 @@ static int not_converged(spar_session *s, const char *call) {
             s, SPAR_ERR_NUMERIC,
             "%s: the coupling has not converged in %d iterations, it diverges: the change of "
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
-            call, s->iteration, factor, c->residual[last], c->size[last], motion, mass, diverging_cures);
+            call, s->iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
     }
+    const double rounding = s->standing ? 0 : rounding_of_accelerations(s);
+    SPARI_REQUIRE(
+        s, 10 * rounding < s->coupling_rtol || s->coupling_rtol == 0, SPAR_ERR_NUMERIC,
+        "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a step "
+        "as short as %g s the rounding of places is %.1g of the accelerations, and of loads that answer to "
+        "them; take a larger dt or tolerance",
+        call, s->iteration, c->residual[last], c->size[last], motion, mass, s->dt, rounding);
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
-                      "N%s%s); take a smaller relaxation, another scheme or %s, or reject the step",
-                      call, s->iteration, c->residual[last], c->size[last], motion, mass,
-                      s->standing ? "a larger tolerance" : "a smaller dt");
+                      "N%s%s); %s",
+                      call, s->iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
 }
 
 static spari_weighed weighed(const spari_coupling *c) {
@@ -361,9 +453,10 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     double residual, size;
     *agreed = 0;
     load_norms(s, NULL, &residual, &size);
-    SPARI_REQUIRE(s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
-                  "the loads are too large to be squared (the iteration blows up); take a smaller relaxation or dt, or "
-                  "reject the step");
+    SPARI_REQUIRE(
+        s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
+        "the loads are too large to be squared: the fluid or the iteration has diverged; look at the fluid that "
+        "pushes them, take a smaller relaxation or dt, or reject the step");
     int motion = c->accelerator && spari_coupling_wants_motion(s);
     if (motion) {
         motion_norms(s);
@@ -599,6 +692,7 @@ void spari_coupling_accept(spar_session *s) {
 }
 
 void spari_coupling_reject(spar_session *s) {
+    s->own->coupling->unconverged = 0;
     if (s->own->coupling->accelerator) {
         spari_accelerator_reject(s->own->coupling->accelerator);
     }

@@ -68,6 +68,8 @@ int spari_coupling_check(spar_session *session, const char *call, int *done);
 /* The structure could not be solved with the loads: says so where these have grown from iteration to iteration.
    Returns status. */
 int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
+/* Whether the last check has found loads that are far from those used: what they do in a step tells nothing. */
+int spari_coupling_is_rough(const spar_session *session);
 /* Residual and size of the last iteration; and where another rank has found them. */
 void spari_coupling_last(const spar_session *session, double *residual, double *size);
 void spari_coupling_record(spar_session *session, double residual, double size);

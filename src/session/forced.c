@@ -19,7 +19,7 @@ static void end_forced(spar_session *s, double dt) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
     }
-    s->time += dt;
+    spari_clock_tick(s, dt);
     s->step++;
     s->dt_last[1] = s->dt_last[0];
     s->dt_last[0] = dt;

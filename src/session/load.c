@@ -726,9 +726,9 @@ int spar_session_load(spar_session *session, const char *path) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = spari_solvers_place(s, __func__);
+    status = open_file(s, &l, path); /* where there is none, nothing is made of the joints */
+    status = status == SPAR_OK ? spari_solvers_place(s, __func__) : status;
     int (*const parts[])(spar_session *, reading *) = {load_common, load_index, prepare, load_solvers, load_fluids};
-    status = status == SPAR_OK ? open_file(s, &l, path) : status;
     for (size_t k = 0; k < sizeof parts / sizeof *parts && status == SPAR_OK; k++) {
         status = parts[k](s, &l);
     }

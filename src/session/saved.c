@@ -95,8 +95,11 @@ static void pass_pace(passage *t, spari_pace *p) {
 static void pass_clock(passage *t, spar_session *s) {
     int phase = (int)s->phase;
     pass(t, &s->time, 1);
+    pass(t, &s->time_rest, 1);
     pass(t, &s->dt, 1);
     pass(t, s->dt_last, 2);
+    pass_int(t, &s->uneven[0]);
+    pass_int(t, &s->uneven[1]);
     pass(t, &s->step, 1);
     pass_int(t, &s->iteration);
     pass_int(t, &s->iterating);
@@ -105,6 +108,7 @@ static void pass_clock(passage *t, spar_session *s) {
     pass_int(t, &s->past);
     pass_int(t, &s->started);
     pass_int(t, &phase);
+    pass(t, s->gravity_before, 3);
     pass_pace(t, &s->own->pace);
     if (t->mode == READ) {
         s->phase = (spari_phase)phase;
@@ -169,15 +173,17 @@ static void pass_added(passage *t, spar_member *m) {
     }
 }
 
-/* Where there are substeps: in the file if there were any, and taken if there are here. */
+/* Where there are substeps or steps of several lengths: in the file if there were any, and taken if there are here. */
 static void pass_means(passage *t, spar_member *m) {
     spari_means none = {0}, *k = m->means ? m->means : &none;
-    double head[3] = {k->has[0], k->has[1], k->dt};
+    double head[4] = {k->has[0], k->has[1], k->dt, m->means != NULL};
     const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, head, 3);
+    pass(t, head, 4);
     if (t->mode == CHECK && !t->image->failed) {
         memcpy(head, in_file, sizeof head);
-        t->image->failed = (head[0] != 0 && head[0] != 1) || (head[1] != 0 && head[1] != 1) || !isfinite(head[2]);
+        t->image->failed = (head[0] != 0 && head[0] != 1) || (head[1] != 0 && head[1] != 1) || !isfinite(head[2]) ||
+                           (head[3] != 0 && head[3] != 1);
+        t->image->no_memory |= head[3] != 0 && spari_means_make(m) != SPAR_OK;
     }
     if (head[0] != 0 || head[1] != 0) {
         if (t->mode == CHECK) {
@@ -189,6 +195,52 @@ static void pass_means(passage *t, spar_member *m) {
     if (t->mode == READ) {
         k->has[0] = head[0] != 0, k->has[1] = head[1] != 0;
         k->dt = head[2];
+    }
+}
+
+/* What the first step begins with after a balanced start: in the file if there is any. */
+static void pass_begun(passage *t, spar_member *m) {
+    double has = m->begun != NULL;
+    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, &has, 1);
+    if (t->mode == CHECK && !t->image->failed) {
+        has = *in_file;
+        t->image->failed = has != 0 && has != 1;
+    }
+    if (t->mode == CHECK && has != 0 && !m->begun_next) {
+        m->begun_next = spari_zalloc(6 * m->nodes, sizeof *m->begun_next);
+        t->image->no_memory |= !m->begun_next;
+    }
+    if (t->mode == READ) {
+        free(m->begun);
+        m->begun = has != 0 ? m->begun_next : NULL;
+        m->begun_next = has != 0 ? NULL : m->begun_next;
+    }
+    if (has != 0) {
+        pass_numbers(t, t->mode == CHECK ? NULL : m->begun, 6 * m->nodes);
+    }
+}
+
+/* What of a step under way was halved: in the file if anything was. */
+static void pass_cuts(passage *t, spar_member *m) {
+    enum { WORDS = sizeof m->cuts.given_up / sizeof(double) };
+    const spar_session *s = m->session;
+    const int under_way = s->phase != SPARI_IDLE && m->cuts.begun == s->begun;
+    double has = 0;
+    for (size_t i = 0; i < sizeof m->cuts.given_up / sizeof *m->cuts.given_up && under_way; i++) {
+        has = has != 0 || m->cuts.given_up[i] != 0;
+    }
+    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, &has, 1);
+    if (t->mode == CHECK && !t->image->failed) {
+        has = *in_file;
+        t->image->failed = has != 0 && has != 1;
+    }
+    if (t->mode == READ) {
+        m->cuts = (spari_cuts){.begun = s->begun};
+    }
+    if (has != 0) {
+        pass(t, m->cuts.given_up, WORDS);
     }
 }
 
@@ -208,12 +260,16 @@ static void pass_member(passage *t, spar_member *m) {
     pass_numbers(t, &m->speed, 1);
     pass_numbers(t, &m->jerk, 1);
     pass_numbers(t, &m->swing, 1);
+    pass_int(t, &m->balanced[0]);
+    pass_int(t, &m->balanced[1]);
     pass_int(t, &m->motion_given);
     pass_int(t, &m->drive_given);
     if (m->added) {
         pass_added(t, m);
     }
     pass_means(t, m);
+    pass_begun(t, m);
+    pass_cuts(t, m);
     if (t->mode == WRITE) {
         spari_applied_save(m, t->image);
     } else if (t->mode == CHECK) {
@@ -232,7 +288,8 @@ static void pass_joint(passage *t, spar_joint *j) {
     } all[] = {{j->stiffness, sizeof j->stiffness}, {j->damping, sizeof j->damping},
                {j->preload, sizeof j->preload},     {&j->now, sizeof j->now},
                {&j->after, sizeof j->after},        {&j->described, sizeof j->described},
-               {j->drive, sizeof j->drive},         {j->given, sizeof j->given}};
+               {j->drive, sizeof j->drive},         {j->given, sizeof j->given},
+               {j->before, sizeof j->before}};
     for (size_t k = j->tie.line ? SPRING : 0; k < sizeof all / sizeof *all; k++) {
         pass_numbers(t, all[k].words, (int64_t)(all[k].size / sizeof(double)));
     }
@@ -377,11 +434,11 @@ static int check_clock(spar_session *s, spari_saved *l) {
     spar_session then = *s;
     pass_clock(&t, &then);
     int phase = (int)then.phase, within = phase > SPARI_IDLE;
-    int ok = !l->image.failed && isfinite(then.time) && isfinite(then.dt) && then.dt >= 0 && (!within || then.dt > 0) &&
-             is_within(then.step, 0, INT64_C(1) << 53) && is_within(then.iteration, 0, 1 << 30) &&
-             is_within(phase, SPARI_IDLE, SPARI_CHECKED) && is_within(then.order, 0, 2) &&
-             is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
-             then.started == (within || then.step > 0);
+    int ok = !l->image.failed && isfinite(then.time) && isfinite(then.time_rest) && isfinite(then.dt) && then.dt >= 0 &&
+             (!within || then.dt > 0) && is_within(then.step, 0, INT64_C(1) << 53) &&
+             is_within(then.iteration, 0, 1 << 30) && is_within(phase, SPARI_IDLE, SPARI_CHECKED) &&
+             is_within(then.order, 0, 2) && is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
+             then.started == (within || then.step > 0) && spari_first_nonfinite(then.gravity_before, 3) < 0;
     for (int k = 0; k < 2; k++) { /* what a prediction divides by */
         int used = then.past > k || (within && then.order > k);
         ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);

@@ -4,6 +4,7 @@
 
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
+#include "../member/edge.h"
 #include "../member/joint.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
@@ -20,8 +21,7 @@ static int check_start(spar_session *s, const char *call, double dt) {
                   call);
     SPARI_REQUIRE(s, s->step == 0, SPAR_ERR_STATE,
                   "%s: the clock has run to t = %g; a start is balanced before the first step", call, s->time);
-    SPARI_REQUIRE(s, isfinite(dt) && dt > 0, SPAR_ERR_ARGUMENT, "%s: dt is %g; give that of the first step, in seconds",
-                  call, dt);
+    SPARI_TRY(spari_need_dt(s, call, dt));
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
@@ -42,8 +42,9 @@ static void copy_start_loads(const spar_member *m, const double *from, double *t
 
 int spari_start_begin(spar_session *s, const char *call, double dt) {
     static const double last[2] = {1, 1};
-    const spari_alike alike[] = {spari_real("dt", dt)};
-    SPARI_TRY(spari_enter_alike(s, call, alike, 1, check_start(s, call, dt)));
+    const spari_alike alike[] = {spari_real("dt", dt),
+                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_alike(s, call, alike, 2, check_start(s, call, dt)));
     SPARI_TRY(spari_named(s, call, spari_solvers_place(s, call)));
     SPARI_TRY(spari_named(s, call, spari_session_seal(s, room_for_start(s))));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));

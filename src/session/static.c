@@ -40,8 +40,8 @@ static int check_member_static(const spar_member *m, const char *call, int load_
                   call, m->name);
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first",
                   call, m->name);
-    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: '%s': %d load steps; give at least 1", call, m->name,
-                  load_steps);
+    SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
     SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
                   call, m->name);
     SPARI_TRY(check_held(m, call));
@@ -62,12 +62,25 @@ static const double *used(const spar_member *m) {
     return m->load_used;
 }
 
+static int solve_tied_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward,
+                             const spar_session *s) {
+    SPARI_TRY(spari_assembly_static(a, fluid, load_steps, onward));
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_TRY(m->assembly == a ? spari_member_check_turns(m) : SPAR_OK);
+    }
+    return SPAR_OK;
+}
+
 /* The motion after of a member that spar solves for, on the rank that does. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
     if (m->assembly) {
-        return spari_assembly_static(m->assembly, pushed, load_steps, onward);
+        return solve_tied_static(m->assembly, pushed, load_steps, onward, m->session);
     }
-    return m->row->rest && spari_fidelity_is_here(m) ? m->row->rest(m, fluid, load_steps, onward) : SPAR_OK;
+    if (!m->row->rest || !spari_fidelity_is_here(m)) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(m->row->rest(m, fluid, load_steps, onward));
+    return spari_member_check_turns(m);
 }
 
 static void copy_loads(const spar_member *m, const double *from, double *to) {
@@ -143,6 +156,7 @@ static void settle_member(spar_member *m, const double *fluid) {
     m->dissipated_step = 0;
     spari_member_solved(m, fluid);
     spari_member_settle(m);
+    memcpy(m->session->gravity_before, m->session->gravity, sizeof m->session->gravity_before);
 }
 
 static int find_rest(spar_member *m, int load_steps) {
@@ -185,8 +199,9 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = member->session;
-    const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
-    SPARI_TRY(spari_member_enter(member, __func__, alike, 1, check_member_static(member, __func__, load_steps)));
+    const spari_alike alike[] = {spari_whole("load_steps", load_steps),
+                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_member_enter(member, __func__, alike, 2, check_member_static(member, __func__, load_steps)));
     double *aside = NULL;
     int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, member, &aside)) : status;
@@ -208,7 +223,8 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
 static int check_session_static(spar_session *s, const char *call, int load_steps) {
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
-    SPARI_REQUIRE(s, load_steps >= 1, SPAR_ERR_ARGUMENT, "%s: %d load steps; give at least 1", call, load_steps);
+    SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
+                  "%s: %d load steps; give 1 to %d", call, load_steps, SPARI_STATIC_MOST);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, call));
     }
@@ -282,7 +298,7 @@ static int solve_all(spar_session *s, int load_steps, int onward) {
         status = m->assembly ? SPAR_OK : solve_member_static(m, m->load_used, load_steps, onward);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = spari_assembly_static(a, used, load_steps, onward);
+        status = solve_tied_static(a, used, load_steps, onward, s);
     }
     SPARI_TRY(spari_session_share_motion(s, status));
     for (spar_member *m = s->members; m; m = m->next) {
@@ -432,8 +448,9 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
-    const spari_alike alike[] = {spari_whole("load_steps", load_steps)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 1, check_session_static(s, __func__, load_steps)));
+    const spari_alike alike[] = {spari_whole("load_steps", load_steps),
+                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_session_static(s, __func__, load_steps)));
     double *aside = NULL;
     int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;

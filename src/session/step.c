@@ -3,11 +3,14 @@
 #include "../base/quiet.h"
 #include "../fluid/fluid.h"
 #include "../member/added.h"
+#include "../member/edge.h"
+#include "../member/joint.h"
 #include "../member/learned.h"
 #include "../member/means.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
+#include "../solve/scheme.h"
 #include "../solve/work.h"
 #include "coupling.h"
 #include "exchange.h"
@@ -35,24 +38,30 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
-/* Fluids see other accelerations in substeps once a mass is known, and ranks that solve nothing learn none. */
+/* Where fluids see mean accelerations they see others once a mass is known, and ranks that solve nothing learn none. */
 static int check_learning(spar_session *s, const char *call) {
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, !m->learned || m->guess_count > 0, SPAR_ERR_UNSUPPORTED,
-                      "%s: member '%s' learns the fluid's added mass, in %d substeps, and ranks that solve nothing do "
-                      "not know when it is known (option ranks.state = touched): take one substep, give a first guess "
-                      "by spar_member_set_added_mass, or keep ranks.state = all",
-                      call, m->name, s->substeps);
+                      "%s: member '%s' learns the fluid's added mass, in substeps or steps of several lengths, and "
+                      "ranks that solve nothing do not know when it is known (option ranks.state = touched): take one "
+                      "substep and steps of one length, give a first guess by spar_member_set_added_mass, or keep "
+                      "ranks.state = all",
+                      call, m->name);
     }
     return SPAR_OK;
 }
 
-static int check_begin(spar_session *s, const char *call, double dt) {
+/* Whether fluids are to see mean accelerations from the step dt on (member/means.h). */
+static int is_uneven(const spar_session *s, double dt) {
+    return s->uneven[0] || !spari_steps_even(s, dt) || (!s->touched && spari_scheme_turns(s, dt));
+}
+
+/* uneven: of is_uneven. */
+static int check_begin(spar_session *s, const char *call, double dt, int uneven) {
     if (s->phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
     }
-    SPARI_REQUIRE(s, isfinite(dt) && dt > 0, SPAR_ERR_ARGUMENT, "%s: dt is %g; give a positive number of seconds", call,
-                  dt);
+    SPARI_TRY(spari_need_dt(s, call, dt));
     SPARI_REQUIRE(s, isfinite(s->time + dt), SPAR_ERR_ARGUMENT,
                   "%s: the clock stands at %g s and cannot go on by %g s; give a smaller dt", call, s->time, dt);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -65,8 +74,12 @@ static int check_begin(spar_session *s, const char *call, double dt) {
         "it to touched again, or save, and load into a session with ranks.state = all",
         call);
     SPARI_TRY(spari_pace_check(s, call));
-    if (s->touched && s->substeps > 1 && spari_comm_size(s->comm) > 1) {
+    const int mean = s->substeps > 1 || uneven;
+    if (s->touched && mean && spari_comm_size(s->comm) > 1) {
         SPARI_TRY(check_learning(s, call));
+    }
+    for (spar_member *m = s->members; m && mean; m = m->next) {
+        SPARI_TRY(spari_named(s, call, spari_means_make(m)));
     }
     SPARI_TRY(spari_named(s, call, spari_threads_prepare(s)));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
@@ -123,6 +136,7 @@ static void begin_member(spar_member *m, const void *context) {
         predict_loads(m, t->order, t->dt, t->s->dt_last);
     }
     spari_learned_begin(m);
+    spari_member_begin(m);
 }
 
 /* Memory for what the ranks exchange in the steps to come. In trials each rank has all of the state. */
@@ -153,9 +167,10 @@ int spar_step_begin(spar_session *session, double dt) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
-    int anew = !spari_coupling_fits(s);
-    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_begin(s, __func__, dt)));
+    int anew = !spari_coupling_fits(s), uneven = is_uneven(s, dt);
+    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew),
+                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_alike(s, __func__, alike, 3, check_begin(s, __func__, dt, uneven)));
     if (!s->started) {
         SPARI_TRY(spari_named(s, __func__, spari_solvers_place(s, __func__)));
     }
@@ -169,6 +184,9 @@ int spar_step_begin(spar_session *session, double dt) {
     }
     int order = s->past > 0 ? s->past : 0;
     spari_threads_each(s, begin_member, &(step_begun){s, order, dt});
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_begin(a);
+    }
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_hold(j);
     }
@@ -176,12 +194,14 @@ int spar_step_begin(spar_session *session, double dt) {
         spari_fluid_begin(f, order, dt, s->dt_last);
     }
     s->dt = dt;
+    s->uneven[1] = uneven;
     s->order = order;
     s->iteration = 0;
     s->iterating = 0;
     s->failed = 0;
     spari_coupling_begin(s);
     s->phase = SPARI_BEGUN;
+    s->begun++;
     s->started = 1;
     return SPAR_OK;
 }
@@ -207,6 +227,15 @@ static void solved_member(spar_member *m, const void *unused) {
     }
 }
 
+static void reject_joints(spar_session *s) {
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_joint_reject(j);
+    }
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_reject(a);
+    }
+}
+
 int spar_step_solve(spar_session *session) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
@@ -218,6 +247,7 @@ int spar_step_solve(spar_session *session) {
         return spari_start_solve(s, __func__);
     }
     s->newton_share = spari_coupling_share(s);
+    s->rough = spari_coupling_is_rough(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
@@ -226,9 +256,7 @@ int spar_step_solve(spar_session *session) {
                 spari_member_reject(m);
             }
         }
-        for (spar_joint *j = s->joints; j; j = j->next) {
-            spari_joint_reject(j);
-        }
+        reject_joints(s);
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
@@ -383,6 +411,9 @@ int spar_step_accept(spar_session *session) {
     }
     spari_pace_accept(s);
     spari_threads_each(s, accept_member, NULL);
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_accept(a);
+    }
     for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_accept(j);
     }
@@ -391,8 +422,10 @@ int spar_step_accept(spar_session *session) {
     }
     learn_added(s);
     s->past = s->past < s->predictor ? s->past + 1 : s->predictor;
-    s->time += s->dt;
+    spari_clock_tick(s, s->dt);
     s->step++;
+    s->uneven[0] = s->uneven[1];
+    memcpy(s->gravity_before, s->gravity, sizeof s->gravity_before);
     s->dt_last[1] = s->dt_last[0];
     s->dt_last[0] = s->dt;
     s->phase = SPARI_IDLE;
@@ -409,15 +442,14 @@ static void reject(spar_session *s) {
         spari_coupling_reject(s);
     }
     spari_pace_reject(s);
+    s->uneven[1] = s->uneven[0];
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         spari_learned_begin(m);
         memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
                (size_t)(6 * m->nodes) * sizeof(double));
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_reject(j);
-    }
+    reject_joints(s);
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
     }

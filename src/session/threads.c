@@ -8,6 +8,7 @@
 #include "../member/structure.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
+#include "../solve/life.h"
 #include "coupling.h"
 #include "own.h"
 
@@ -22,7 +23,7 @@ typedef struct spari_unit {
 } spari_unit;
 
 /* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
-static int check_finite(const spar_member *m) {
+static int check_motion(const spar_member *m) {
     const spari_motion *x = &m->after;
     const struct {
         const double *value;
@@ -36,7 +37,7 @@ static int check_finite(const spar_member *m) {
             "at its loads, gravity and the motion of its root, or at their units",
             m->name, (long long)(bad / all[k].width), m->session->time);
     }
-    return SPAR_OK;
+    return spari_member_check_turns(m);
 }
 
 static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
@@ -44,11 +45,16 @@ static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
         return spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
     }
     SPARI_TRY(m->row->advance(m, s->dt));
-    return m->row->moves ? check_finite(m) : SPAR_OK;
+    return m->row->moves ? check_motion(m) : SPAR_OK;
 }
 
 static int is_unit(const spar_member *m) {
     return !m->assembly && m->row->advance && spari_fidelity_is_here(m);
+}
+
+/* Its motion is given, and assemblies read it where joints tie it: it comes first. */
+static int is_told(const spar_member *m) {
+    return !m->row->limb;
 }
 
 /* ---- one after the other ---- */
@@ -65,10 +71,17 @@ static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int st
     return status;
 }
 
-static int solve_in_turn(spar_session *s) {
+static int solve_told(spar_session *s) {
     int status = SPAR_OK;
     for (spar_member *m = s->members; m; m = m->next) {
-        status = is_unit(m) ? solve_next(s, m, NULL, status) : status;
+        status = is_unit(m) && is_told(m) ? solve_next(s, m, NULL, status) : status;
+    }
+    return status;
+}
+
+static int solve_in_turn(spar_session *s, int status) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        status = is_unit(m) && !is_told(m) ? solve_next(s, m, NULL, status) : status;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         status = solve_next(s, NULL, a, status);
@@ -90,7 +103,7 @@ static void solve_item(void *context, int64_t item, int worker) {
 static int64_t list_units(const spar_session *s, spari_unit *unit) {
     int64_t n = 0;
     for (spar_member *m = s->members; m; m = m->next) {
-        if (is_unit(m)) {
+        if (is_unit(m) && !is_told(m)) {
             unit[n].member = m, unit[n++].assembly = NULL;
         }
     }
@@ -102,21 +115,23 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
 
 /* With fewer of them than threads the elements of each are shared out instead (spari_body_sweep). */
 static int solve_units(spar_session *s) {
-    int64_t n = s->crew ? list_units(s, s->own->unit) : 0;
+    int ready = s->crew && s->own->listed == s->member_count; /* not in a step that came from a file */
+    int64_t n = ready ? list_units(s, s->own->unit) : 0;
+    int status = solve_told(s);
     if (n < 2 || n < spari_crew_threads(s->crew)) {
-        return solve_in_turn(s);
+        return solve_in_turn(s, status);
     }
     spari_crew_run(s->crew, n, solve_item, s);
-    for (const spari_unit *u = s->own->unit; u < s->own->unit + n; u++) {
+    for (const spari_unit *u = s->own->unit; u < s->own->unit + n && status == SPAR_OK; u++) {
         SPARI_REQUIRE(s, u->status == SPAR_OK, u->status, "%s", u->message);
     }
-    return SPAR_OK;
+    return status;
 }
 
 int spari_threads_solve(spar_session *s) {
     SPARI_TRY(solve_units(s));
     for (spar_member *m = s->members; m && s->assemblies; m = m->next) {
-        SPARI_TRY(m->assembly ? check_finite(m) : SPAR_OK);
+        SPARI_TRY(m->assembly ? check_motion(m) : SPAR_OK);
     }
     return SPAR_OK;
 }

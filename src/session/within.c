@@ -1,6 +1,7 @@
 /* A whole step to a tolerance. */
 #include "../base/quiet.h"
 #include "../comm/enter.h"
+#include "../member/edge.h"
 #include "lend.h"
 #include "own.h"
 #include "pace.h"
@@ -9,8 +10,8 @@
 #include <math.h>
 
 static int check_within(spar_session *s, const char *call, const double *dt, double first) {
-    SPARI_REQUIRE(s, dt && isfinite(first) && first > 0, SPAR_ERR_ARGUMENT,
-                  "%s: dt is NULL, or not a positive number of seconds", call);
+    SPARI_REQUIRE(s, dt, SPAR_ERR_ARGUMENT, "%s: dt is NULL", call);
+    SPARI_TRY(spari_need_dt(s, call, first));
     SPARI_REQUIRE(s, spari_pace_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
@@ -19,21 +20,58 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     return spari_pace_check(s, call);
 }
 
+/* How the error over the tolerance has fallen from one try to the next, as a power of dt: that of a smooth motion has 2
+   and more in steps that resolve it; an acceleration that jumps 1; a velocity that jumps 0; rounding of positions, over
+   dt^2 in the accelerations, -1. */
+typedef struct tries {
+    double dt, ratio;
+    double power;
+    int stuck; /* so many tries in turn whose error has hardly fallen */
+} tries;
+
+static void count_try(tries *t, double dt, double ratio) {
+    static const double falls = 0.5;
+    int again = t->dt > 0 && dt < t->dt && ratio > 0 && t->ratio > 0;
+    t->power = again ? log(t->ratio / ratio) / log(t->dt / dt) : 2;
+    t->stuck = t->power < falls ? t->stuck + 1 : 0;
+    t->dt = dt, t->ratio = ratio;
+}
+
+/* Of the time since the beginning: a smaller dt has its length from the rounding of the clock. */
+static const double clock_resolves = 1e-12;
+
+static int fail_within(const spar_session *s, const char *call, const tries *t) {
+    const char *why = "the motion needs smaller steps than these; begin with a smaller dt, or give a larger drift";
+    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->time); /* next_dt cuts to a fifth at most */
+    if (t->stuck && t->power < -0.5) {
+        why = "the error grows as dt falls, from the rounding of positions; give a larger drift or rtol";
+    } else if (t->stuck || at_clock) {
+        why = "the error does not fall with dt: a velocity jumps there (an impact, a drive whose rate jumps); smooth "
+              "the jump, give a larger drift, or take this step by spar_step";
+    }
+    return spari_fail(s, SPAR_ERR_NUMERIC,
+                      "%s: from t = %g no dt down to %g keeps the tolerance, the error of the last is %.2g times as "
+                      "large: %s",
+                      call, s->time, t->dt, t->ratio, why);
+}
+
 int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
                      double *taken) {
     SPARI_QUIET;
-    enum { TRIES = 12 };
+    enum { TRIES = 12, STUCK = 7 };
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_lend_refuse(s, __func__));
     double none = 0, *next = dt ? dt : &none, h = *next;
     const spari_alike alike[] = {spari_real("dt", h), spari_given("before", before != NULL)};
     SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_within(s, __func__, dt, h)));
-    for (int k = 0; k < TRIES; k++) {
+    tries done = {0};
+    for (int k = 0; k < TRIES && done.stuck < STUCK && (k == 0 || h > clock_resolves * fabs(s->time)); k++) {
         SPARI_TRY(spari_named(s, __func__, spari_lend_before(s, before, h, context)));
         SPARI_TRY(spari_named(s, __func__, spar_step_begin(s, h)));
         SPARI_TRY(spari_step_run(s, __func__, solve, context));
-        if (spari_pace_judge(s) <= 1) {
+        count_try(&done, h, spari_pace_judge(s));
+        if (done.ratio <= 1) {
             SPARI_TRY(spari_named(s, __func__, spar_step_accept(s)));
             *next = s->own->pace.next;
             if (taken) {
@@ -44,9 +82,5 @@ int spar_step_within(spar_session *session, double *dt, spar_before_step before,
         SPARI_TRY(spari_named(s, __func__, spar_step_reject(s)));
         h = s->own->pace.next;
     }
-    return spari_fail(
-        s, SPAR_ERR_NUMERIC,
-        "%s: from t = %g no dt down to %g keeps the tolerance: loads or a root's motion jump there, or it "
-        "is smaller than a step's rounding; give a larger drift, or take this step by spar_step",
-        __func__, s->time, h);
+    return fail_within(s, __func__, &done);
 }

@@ -480,9 +480,9 @@ static int newton(const alpha_step *t) {
     const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max,
                                            spari_leave_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
-                  "member '%s': Newton %s (%d iterations) in the step from t = %g; take a smaller dt, more substeps or "
-                  "a smaller rho_inf, or look at the loads",
-                  t->member->name, wrong, iterations, session->time);
+                  "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
+                  "%g; take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
+                  t->member->name, wrong, iterations, session->newton_max, session->time);
     return SPAR_OK;
 }
 
@@ -590,8 +590,9 @@ int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
         SPARI_TRY(start(s, member, &c));
     }
     s->steps.solved = s->steps.begin;
+    spari_solver_poison(s);
     spari_stage_start(s, member, &t.stage);
-    return spari_scheme_run(&how, &t, &c, &s->steps.solved, member->session, dt);
+    return spari_scheme_run(&how, &t, &c, &member->cuts, &s->steps.solved, member->session, dt);
 }
 
 int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {

@@ -3,9 +3,10 @@
 #define SPARI_ARMS_H
 
 /* First moments sum (rho f^T) of the nodal forces over the arms of the reference, and those of t^n and t^{n+1}: a rigid
-   body turned by R takes the moment of R Z. */
+   body turned by R takes the moment of R Z. gravity: of the body, which goes with that of the member that has it. */
 typedef struct spari_arms {
     double Z[9], begin[9], end[9];
+    double *gravity;
 } spari_arms;
 void spari_arms_at(spari_arms *arms, double s);
 /* r[3] -= the moment at orientation q */

@@ -20,6 +20,7 @@ static int is_part(const spar_member *m) {
 
 static void assembly_free(spari_assembly *a) {
     spari_tied_free(a);
+    spari_snapshot_free(&a->before);
     free(a->limb);
     free(a->link);
     free(a);
@@ -119,12 +120,11 @@ static int make_system(spari_assembly *a) {
         a->limb[i].row = a->limb[i].member->row->limb;
         SPARI_TRY(a->limb[i].row->make(a->limb + i));
     }
-    spari_tied_place(a);
+    SPARI_TRY(spari_tied_tree(a));
     for (int i = 0; i < a->links; i++) {
         look_at_reference(a->link + i);
     }
     SPARI_TRY(spari_tied_drop_redundant(a));
-    spari_tied_place(a);
     a->mass = mass_of_all(a);
     return spari_tied_room(a);
 }
@@ -260,9 +260,10 @@ static int make_all(spar_session *s) {
 static int agree_on_joints(const spar_session *s, const char *call, int status) {
     char what[SPARI_MESSAGE_SIZE / 2];
     for (const spar_joint *j = s->joints; j; j = j->next) {
-        const spari_alike alike[] = {spari_hash("descriptions of it", spari_joint_hash(j))};
+        const spari_alike alike[] = {spari_hash("descriptions of it", spari_joint_hash(j)),
+                                     spari_hash("springs, loads or drives of it", spari_joint_setting(j))};
         (void)snprintf(what, sizeof what, "%s: joint '%s'", call, j->name);
-        status = spari_enter_alike(j->session, what, alike, 1, status);
+        status = spari_enter_alike(j->session, what, alike, 2, status);
         SPARI_TRY(status);
     }
     return SPAR_OK;

@@ -94,7 +94,7 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
     for (int i = 0; i < a->links; i++) {
         spari_link *l = a->link + i;
         for (int k = 0; k < 6; k++) {
-            l->gap[k] = l->row[k] >= 0 ? spari_link_rate_gap(l, k) / a->limb[0].scheme.rate - l->gap[k] : 0;
+            l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) / a->limb[0].scheme.rate - l->gap[k] : 0;
             most = fmax(most, fabs(l->gap[k]));
         }
     }
@@ -199,7 +199,7 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
         spari_link *l = a->link + i;
         double rounding = rounding_of(l);
         for (int k = 0; k < 6; k++) {
-            double gap = l->row[k] >= 0 ? spari_link_gap(l, k) : 0;
+            double gap = spari_link_holds(l, k) ? spari_link_gap(l, k) : 0;
             l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
         }
     }
@@ -242,7 +242,7 @@ static int project(spari_assembly *a, double s, double dt) {
             spari_link *l = a->link + i;
             spari_link_find(l, s, dt, 1);
             for (int k = 0; k < 6; k++) {
-                l->gap[k] = l->row[k] >= 0 ? spari_link_rate_gap(l, k) : 0;
+                l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) : 0;
                 worst = fmax(worst, fabs(l->gap[k]));
             }
             for (int k = 0; k < 12; k++) {
@@ -328,10 +328,12 @@ static int newton_all(spari_assembly *a, double s, double dt) {
         wrong = attempts_of(a, s, dt, &iterations);
     }
     wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
-    SPARI_REQUIRE(a->session, !wrong, SPAR_ERR_NUMERIC,
-                  "the members that joint '%s' ties together: Newton %s (%d iterations) in the step from t = %g; "
-                  "take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
-                  a->link[0].joint->name, wrong, iterations, a->session->time);
+    SPARI_REQUIRE(
+        a->session, !wrong, SPAR_ERR_NUMERIC,
+        "the members that joint '%s' ties together: Newton %s (%d iterations in several attempts, each of %d at "
+        "most) in the step from t = %g; take a smaller dt, more substeps or a smaller rho_inf, or look at the "
+        "loads",
+        a->link[0].joint->name, wrong, iterations, a->session->newton_max, a->session->time);
     return SPAR_OK;
 }
 
@@ -364,7 +366,7 @@ static int shift_for_alpha(spari_assembly *a, double cv, double time) {
         }
         for (int k = 0; k < 6; k++) {
             double off = time > 0 ? 0 : spari_link_rate_gap(l, k);
-            l->gap[k] = l->row[k] >= 0 ? off + C * c->h * c->h * rate[k] : 0;
+            l->gap[k] = spari_link_holds(l, k) ? off + C * c->h * c->h * rate[k] : 0;
         }
         l->joint->after = found;
     }
@@ -394,7 +396,7 @@ static void start_residual(spari_assembly *a, double cm) {
         spari_link_times(l->B, l->a, rate);
         for (int k = 0; k < 6; k++) {
             double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = l->row[k] >= 0 ? (rate[k] + drift[k] - asked) / cm : 0;
+            l->gap[k] = spari_link_holds(l, k) ? (rate[k] + drift[k] - asked) / cm : 0;
         }
     }
     spari_links_add(a);
@@ -417,8 +419,8 @@ static void begin_drive(spari_link *l) {
 static int start_all(spari_assembly *a) {
     double cm = a->limb[0].scheme.cm;
     int singular = 0;
-    for (int i = 0; i < a->limbs && !singular; i++) {
-        singular = a->limb[i].row->start(a->limb + i);
+    for (int i = 0; i < a->limbs; i++) { /* all of them: links look at their states */
+        singular = a->limb[i].row->start(a->limb + i) || singular;
     }
     for (int i = 0; i < a->links; i++) {
         spari_link_find(a->link + i, 0, 0, 1);
@@ -503,6 +505,24 @@ static int publish_all(spari_assembly *a, double dt) {
    what joints turn by, and of what their nodes, and with them the directions of what is held, turn by. */
 static const double farthest_turn = 0.1, farthest_spin = 0.2;
 
+/* In a long chain short links turn back and forth in less than a step under its tension: their ringing feeds itself
+   whatever they turn by (tests/stability/chains.c). So many joints with free motions are a long chain. */
+enum { CHAIN = 8 };
+
+static int ties_a_chain(const spari_assembly *a) {
+    int joints = 0;
+    for (int i = 0; i < a->links; i++) {
+        int holds = spari_link_holds_count(a->link + i);
+        joints += holds > 1 && holds < 6;
+        for (int side = 0; side < 2; side++) {
+            if (a->link[i].limb[side] && a->link[i].limb[side]->frame) { /* its velocities are shifted at its root */
+                return 0;
+            }
+        }
+    }
+    return joints >= CHAIN;
+}
+
 /* By the rates at the beginning of a step, in a substep h. */
 static int turns_far(const spari_assembly *a, double h) {
     int far = 0;
@@ -575,10 +595,10 @@ static int form_after(spari_assembly *a) {
 }
 
 /* Stored in the springs of a joint and in what the host's load and the preload can give. */
-static double potential_of(const spar_joint *j, const double z[6]) {
+static double potential_of(const spar_joint *j, double left, const double z[6]) {
     double sum = 0;
     for (int p = 0; p < 6; p++) {
-        double force = j->preload[p] + j->given[p];
+        double force = j->preload[p] + spari_joint_load_at(j, p, left);
         for (int q = 0; q < 6; q++) {
             force -= 0.5 * j->stiffness[6 * p + q] * z[q];
         }
@@ -609,7 +629,8 @@ static int gains_of_all(void *self, const spari_part *part) {
         if (j->driven || j->tie.line || near) {
             return 0;
         }
-        double change = potential_of(j, j->after.z) - potential_of(j, l->begin.z);
+        double left = 1 - 0.5 * (part->from + part->to),
+               change = potential_of(j, left, j->after.z) - potential_of(j, left, l->begin.z);
         gain += change;
         size += fabs(change);
     }
@@ -678,6 +699,7 @@ static int stage_of_all(void *self, const spari_scheme *c, const spari_part *par
     }
     for (int i = 0; i < a->links; i++) {
         spari_joint_drive_at(a->link[i].joint, part->end, part->dt, &a->link[i].drive);
+        a->link[i].joint->left = 1 - part->end;
     }
     return newton_all(a, part->end, part->dt);
 }
@@ -707,9 +729,9 @@ int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
         return SPAR_OK;
     }
     SPARI_TRY(begin_step(a, dt));
-    a->turns_far = !a->limb[0].scheme.still && turns_far(a, dt / a->session->substeps);
+    a->turns_far = !a->limb[0].scheme.still && (ties_a_chain(a) || turns_far(a, dt / a->session->substeps));
     spari_pattern pattern = a->limb[0].solver->steps.begin;
-    int status = spari_scheme_run(&how, a, &a->limb[0].alpha, &pattern, a->session, dt);
+    int status = spari_scheme_run(&how, a, &a->limb[0].alpha, &a->limb[0].member->cuts, &pattern, a->session, dt);
     if (status != SPAR_OK) {
         a->factored = 0;
         return status;

@@ -1,5 +1,5 @@
-/* Members that joints tie together, solved as one: each by its own factors, the joints between their ends by a banded
-   system of what remains of the members there (condense.h) and of the constraints. Constraints hold at the level of
+/* Members that joints tie together, solved as one: each by its own factors, the joints between their ends by a system
+   of what remains of the members there (condense.h) and of the constraints (tied.h). Constraints hold at the level of
    positions, with their loads as multipliers in generalised-alpha (Arnold & Bruls, Multibody System Dynamics 18
    (2007)), and the velocities at the end of a step are brought onto them, in violent motion within the step's equations
    (Arnold, Bruls & Cardona, Numerische Mathematik 129 (2015)); the system is scaled so that its condition does not
@@ -60,6 +60,10 @@ double spari_assembly_left(const spari_assembly *assembly);
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */
 int spari_assembly_static(spari_assembly *assembly, const double *(*fluid)(const spar_member *), int load_steps,
                           int onward);
+/* A step begins; it is accepted; it is rejected: what is reused from step to step is again as the step began. */
+void spari_assembly_begin(spari_assembly *assembly);
+void spari_assembly_accept(spari_assembly *assembly);
+void spari_assembly_reject(spari_assembly *assembly);
 /* One of its members has another added mass in its equations. */
 void spari_assembly_forget(spari_assembly *assembly);
 /* The motions after become those the clock stands at. */

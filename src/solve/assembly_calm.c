@@ -29,7 +29,7 @@ static void find_ringing(spari_assembly *a, double s, double dt) {
         spari_link_times(l->B, l->a, rate);
         for (int k = 0; k < 6; k++) {
             double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = l->row[k] >= 0 ? rate[k] + drift[k] - asked : 0;
+            l->gap[k] = spari_link_holds(l, k) ? rate[k] + drift[k] - asked : 0;
         }
     }
 }

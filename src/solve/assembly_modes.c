@@ -132,9 +132,8 @@ static void stiffness_of_joint(const spar_joint *j, double K[12][12], double B[6
     spari_joint_places(j, place);
     spari_tie_motion(&j->tie, &place[0], &place[1], at.z, B);
     spari_joint_count_turns(j, j->after.z, at.z);
-    spari_joint_spring(j, at.z, at.rate, 1, at.load);
+    int springs = spari_joint_spring(j, at.z, at.rate, INFINITY, 1, at.load);
     spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, turning);
-    int springs = j->sprung && !spari_joint_is_slack(j, &at);
     for (int i = 0; i < 144; i++) {
         double sum = -0.5 * (turning[i / 12][i % 12] + turning[i % 12][i / 12]);
         for (int pq = 0; pq < 36 && springs; pq++) {

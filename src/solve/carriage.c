@@ -23,26 +23,9 @@ static int find_tied(spari_carriage *c, const spar_member *m) {
     return SPAR_OK;
 }
 
-static int find_tangents(const spari_frame *f, const spar_member *m) {
-    double *q = spari_zalloc(4 * (int64_t)f->nodes, sizeof *q), *axis = spari_zalloc(3 * (int64_t)f->nodes, sizeof *q);
-    const double x[3] = {1, 0, 0};
-    f->carriage->axis = axis;
-    if (q && axis) {
-        spari_member_to_unique(m, 4, m->qr, q);
-        for (int i = 0; i < f->nodes; i++) {
-            spari_rotate(q + 4 * i, x, axis + 3 * i);
-        }
-    }
-    free(q);
-    return q && axis ? SPAR_OK : SPAR_ERR_MEMORY;
-}
-
 int spari_carriage_create(spari_frame *f, spar_member *m) {
     spari_carriage *c = f->carriage = spari_zalloc(1, sizeof *c);
     if (!c || find_tied(c, m) != SPAR_OK) {
-        return SPAR_ERR_MEMORY;
-    }
-    if (m->floats && find_tangents(f, m) != SPAR_OK) {
         return SPAR_ERR_MEMORY;
     }
     spari_body *body = c->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 0);
@@ -132,10 +115,10 @@ int spari_carriage_at(const spari_frame *f, int e) {
 int spari_carriage_finish(spari_frame *f, const spar_member *m) {
     spari_carriage *c = f->carriage;
     int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends;
-    double **rooms[] = {&c->loads, &c->x,      &c->heavy, &c->kept,  &c->elastic, &c->parts,
-                        &c->out,   &c->border, &c->room,  &c->twice, &c->stiff};
+    double **rooms[] = {&c->loads, &c->x,   &c->heavy,  &c->kept, &c->elastic,
+                        &c->parts, &c->out, &c->border, &c->room, &c->stiff};
     const int64_t size = f->S[0] ? f->size : 0;
-    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends, n, size};
+    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends, size};
     int ok = 1, *at = spari_zalloc(ends, sizeof *at);
     for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
         ok = ok && (*rooms[k] = spari_zalloc(sizes[k], sizeof(double)));
@@ -168,11 +151,10 @@ void spari_carriage_free(spari_carriage *c) {
         free(c->spin[k]);
     }
     double *all[] = {c->block, c->kept, c->loads,  c->elastic, c->parts, c->x,
-                     c->heavy, c->out,  c->border, c->room,    c->twice, c->stiff};
+                     c->heavy, c->out,  c->border, c->room,    c->stiff};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
-    free(c->axis);
     free(c->mean);
     spari_solver_free(c->root);
     spari_body_free(c->body);

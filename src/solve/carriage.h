@@ -5,14 +5,14 @@
    loads, R the six rigid motions of the member about its root,
 
      r   = M y'' + (D + G(omega)) y' + (K + N(omega, omega) + E(alpha)) y + f(omega, omega) + M R (a - g, alpha)
-           + S(w, w) y - S s_w / 2 - s
+           + S(w, w) y - s
      r_0 = R^T (r without K, D, S) + sum over the nodes of (0, y_i x (M R (a - g, alpha) + f - s)_i) + (0, m_2)
 
    r are the forces on the unknowns, r_0 force and moment of the whole about the root, for which arms are those of the
    deformed member and m_2 is of second order in it; internal forces have no part in them. On the unknowns and in m_2 a
    moment m of the rigid motion counts as m + m x theta / 2, as rotation vectors theta have it. S is the geometric
-   stiffness of the stretch s_w that centrifugal forces along the line give, w the mean turning of the member, that of
-   the rigid motion which has its momenta. docs/theory.md, (J1) to (J5), says why. */
+   stiffness of the axial forces that hold the centrifugal ones, w the mean turning of the member, that of the rigid
+   motion which has its momenta. docs/theory.md, (J1) to (J5), says why. */
 #ifndef SPARI_CARRIAGE_H
 #define SPARI_CARRIAGE_H
 
@@ -33,12 +33,11 @@ typedef struct spari_carriage {
     spari_solver *root;
     double *push[6];           /* [6 nodes] M R, of the nodes; NULL: no mass */
     double *spin[SPARI_TURNS]; /* [6 nodes] f likewise; NULL: none */
-    double *axis;     /* [nodes][3] tangents of the line in the reference, of a frame that goes with an unknown root */
-    double *mean;     /* [3][n] (R^T M R)^-1 R^T M, of the turns */
-    double *block;    /* the memory of the two that follow */
-    spari_state seen; /* [1 + ends] the root and the tied nodes, as links see them */
-    double *force;    /* [1 + ends][6] what is left on them, global axes */
-    double *kept;     /* [2 n] rates, or places, to go back to */
+    double *mean;              /* [3][n] (R^T M R)^-1 R^T M, of the turns */
+    double *block;             /* the memory of the two that follow */
+    spari_state seen;          /* [1 + ends] the root and the tied nodes, as links see them */
+    double *force;             /* [1 + ends][6] what is left on them, global axes */
+    double *kept;              /* [2 n] rates, or places, to go back to */
     spari_condensed *condensed;
     /* of the forces at the latest iterate, in the axes of the frame */
     double *loads;                /* [6 nodes] global axes */
@@ -51,8 +50,7 @@ typedef struct spari_carriage {
     double *border;               /* [12][n] rows and columns of the root in the tangent */
     spari_seconds seconds;
     double turns[3]; /* w, */
-    double *stiff;   /* and of it K + S(w, w), as the matrices, */
-    double *twice;   /* and S s_w / 2 [n] */
+    double *stiff;   /* and of it K + S(w, w), as the matrices */
     int still;       /* the forces are those without inertia, under */
     double factor;   /* so much of loads and gravity */
     int steady;      /* the whole turns steadily with steady_turn, the root where it is put: no step */

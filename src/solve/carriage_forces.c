@@ -22,19 +22,14 @@ static void product_into(spari_frame *f, int k, const double *X, const double *y
     }
 }
 
-/* K + S(w, w) and S s / 2, which stay for the substep. */
+/* K + S(w, w), which stays for the substep. */
 static void combine_stretch(spari_frame *f) {
     spari_carriage *c = f->carriage;
     memcpy(c->stiff, f->K, (size_t)f->size * sizeof *c->stiff);
-    memset(c->twice, 0, (size_t)f->n * sizeof *c->twice);
     for (int k = 0; k < SPARI_TURNS; k++) {
         double by = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
         if (by != 0) {
             cblas_daxpy((int)f->size, by, f->S[k], 1, c->stiff, 1);
-        }
-        for (int l = 0; l <= k && by != 0; l++) {
-            double with = c->turns[spari_frame_pair[l][0]] * c->turns[spari_frame_pair[l][1]];
-            cblas_daxpy(f->n, by * with, f->twice[spari_frame_pair_of(k, l)], 1, c->twice, 1);
         }
     }
 }
@@ -114,7 +109,6 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     const int stretched = f->S[0] && !c->still;
     memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
     spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
-    cblas_daxpy(stretched ? f->n : 0, -1, c->twice, 1, c->elastic, 1);
     cblas_daxpy(f->pull ? f->n : 0, c->factor, f->pull, 1, c->elastic, 1);
     if (f->D) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
@@ -123,7 +117,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     if (x != c->x) {
         memcpy(c->x, x, (size_t)(6 * f->nodes) * sizeof *x);
     }
-    if (f->E[0] && !c->still) {
+    if (f->S[0] && !c->still) {
         correct_seconds(f, s);
     }
 }
@@ -168,11 +162,6 @@ static void add_turning(const spari_frame *f, const spari_pose *root, double *ou
     for (int k = 0; k < SPARI_TURNS; k++) {
         c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
         less[k] = -c[k];
-        for (int l = 0; l <= k && f->twice[0] && !f->S[0]; l++) {
-            if (c[k] * c[l] != 0) {
-                cblas_daxpy(n, -c[k] * c[l], f->twice[spari_frame_pair_of(k, l)], 1, out, 1);
-            }
-        }
     }
     for (int k = 0; k < 3; k++) {
         less[GYRO_PARTS - TURN_PARTS + k] = -omega[k];
@@ -302,7 +291,7 @@ static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *ro
     }
     add_heavy(f, m, root, out);
     gather_whole(f, m, out);
-    if (!f->carriage->still && f->E[0]) {
+    if (!f->carriage->still && f->S[0]) {
         add_seconds(f, root, out + 3);
         add_half_moments(f, root, out);
     }
@@ -469,7 +458,7 @@ static void form_element(spari_frame *f, int e, const double alpha[3], double cm
 static void add_euler_to_rows(const spari_frame *f, double cm) {
     const spari_carriage *c = f->carriage;
     int m = f->block, step = f->block - f->overlap;
-    for (int k = 0; k < 3 && f->E[0] && !c->still; k++) {
+    for (int k = 0; k < 3 && f->S[0] && !c->still; k++) {
         double *row = c->border + (int64_t)(3 + k) * f->n;
         for (int e = 0; e < f->elements; e++) {
             SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, m, m, 1, f->E[k] + (int64_t)m * m * e, m,
@@ -483,12 +472,12 @@ static void add_euler_to_rows(const spari_frame *f, double cm) {
 static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv) {
     spari_carriage *c = f->carriage;
     int64_t mm = (int64_t)f->block * f->block;
-    double alpha[3], omega[3] = {0};
+    double alpha[3], turn[6] = {0};
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
     if (!c->still) {
-        spari_rotate_back(root->q + 3, root->v + 3, omega);
+        spari_rotate_back(root->q + 3, root->v + 3, turn);
     }
-    spari_frame_combine(f, omega);
+    spari_frame_combine(f, turn); /* the acceleration enters element by element */
     spari_linear_zero(f->linear);
     memset(c->border, 0, (size_t)(6 * f->n) * sizeof *c->border);
     for (int e = 0; e < f->elements; e++) {
@@ -602,6 +591,7 @@ int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_fra
                            const double tinv[9], const double *r) {
     spari_carriage *c = f->carriage;
     spari_condensed *d = c->condensed;
+    spari_frame_keep_factors(f);
     f->factored = 0;
     if (spari_member_held(m) < 6) {
         form_columns(f, m, &s->root, cm, cv, tinv);

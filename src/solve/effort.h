@@ -4,6 +4,9 @@
 
 #include <stdint.h>
 
+/* Static solutions: load steps that may be asked for, and those that they may take besides where steps are halved. */
+enum { SPARI_STATIC_MOST = 100000, SPARI_STATIC_MORE = 5000 };
+
 typedef struct spari_effort {
     int64_t iterations, tangents;     /* since the member was made: of Newton, and formed and factored */
     int nodes, elements, per_element; /* what each of them was of */

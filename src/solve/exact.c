@@ -80,8 +80,16 @@ static int exact_balance(spar_member *m, double dt) {
     return SPAR_OK;
 }
 
+static void exact_begin(spar_member *m) {
+    spari_solver_begin(m->solution);
+}
+
 static void exact_accept(spar_member *m) {
     spari_solver_accept(m->solution);
+}
+
+static void exact_reject(spar_member *m) {
+    spari_solver_reject(m->solution);
 }
 
 static void exact_effort(const spar_member *m, spari_effort *effort) {
@@ -247,7 +255,9 @@ const spari_fidelity spari_fidelity_exact = {
     .balance = exact_balance,
     .answer = exact_answer,
     .felt = exact_felt,
+    .begin = exact_begin,
     .accept = exact_accept,
+    .reject = exact_reject,
     .effort = exact_effort,
     .rest = exact_rest,
     .reaction_room = spari_reaction_at_root_room,

@@ -51,8 +51,10 @@ typedef struct spari_fidelity {
      */
     int (*felt)(spar_member *m, double *load);
     int felt_here;
-    /* t^{n+1} becomes t^n */
+    /* a step begins; t^{n+1} becomes t^n; or what is reused from step to step is again as the step began */
+    void (*begin)(spar_member *m);
     void (*accept)(spar_member *m);
+    void (*reject)(spar_member *m);
     /* what all that has taken since the member was made; NULL: nothing to speak of */
     void (*effort)(const spar_member *m, spari_effort *effort);
     /* equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; leaves t^n alone, writes m->after.

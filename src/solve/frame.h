@@ -3,18 +3,17 @@
    reference is, and the motion of the whole is taken to first order. In the axes of the frame, with x = (w, theta) of
    the nodes,
 
-     M x'' + (D + G(omega)) x' + (K + N(omega, omega)) x = loads - M (rigid acceleration - weight) - f(omega, omega)
+     M x'' + (D + G(omega)) x' + (K + N(omega, omega) + E(alpha)) x
+         = loads - M (rigid acceleration - weight) - f(omega, omega)
 
-   where G holds the Coriolis and gyroscopic terms, N what turning with omega adds to the stiffness: centrifugal
-   softening, the turned inertia of the sections, and the geometric stiffness S of the stretch s that the centrifugal
-   forces give. On s itself that counts twice, since internal forces of second order are S s / 2: f has the other half.
-   All matrices are taken from the exact member's own tangents at the reference, so that the answer is its limit for
-   small deformation. Neglected: terms of second order in x, and the geometric stiffness of weight, of fluid loads and
-   of the root's acceleration.
+   where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
+   omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
+   of the axial forces that hold the centrifugal ones. All matrices are taken from the exact member's own tangents at
+   the reference, so that the answer is its limit for small deformation. Neglected: terms of second order in x, and the
+   geometric stiffness of weight, of fluid loads and of the root's acceleration.
 
    Where joints tie the member (carriage.h) the frame goes with its root whatever holds that: the root's motion is
-   unknown too, and the six equations of force and moment of the whole go with it. There the root's angular acceleration
-   adds E(alpha) x.
+   unknown too, and the six equations of force and moment of the whole go with it.
 
    The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
    the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
@@ -26,10 +25,11 @@
 #include "../member/structure.h"
 #include "linear.h"
 #include "scheme.h"
+#include "snapshot.h"
 
 struct spari_pencil;
 
-enum { SPARI_TURNS = 6, SPARI_TURN_PAIRS = 21 }; /* products omega_i omega_j, and of two of those */
+enum { SPARI_TURNS = 6 }; /* products omega_i omega_j */
 
 /* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root. */
 typedef struct spari_frame_state {
@@ -50,17 +50,21 @@ typedef struct spari_frame {
     double *A;                                      /* the guess of the fluid's added mass, likewise */
     double *room_A;                                 /* where that is learned: [block][block + n] of the nodes' blocks */
     double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
-    double *twice[SPARI_TURN_PAIRS];                /* what N counts twice of the stretch itself, likewise */
-    double *S[SPARI_TURNS];                         /* the stretch's stiffness, where it is not in N */
-    double *E[3];                                   /* of the root's angular acceleration, where it is unknown */
+    double *S[SPARI_TURNS];                         /* of the axial forces, where it is not in N */
+    double *E[3];                                   /* of the root's angular acceleration, where N is */
     double *pull;                                   /* forces of pretension at the reference, likewise; NULL: none */
     double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
-    double omega[3];                                /* what the three sums below were formed for */
+    double turn[6]; /* angular velocity and acceleration that the three sums below were formed for */
     int combined;
     double *sumK, *sumC, *sumf;
     spari_linear *linear;
     int factored;
-    double kept_cm, kept_cv, kept_omega[3];
+    double kept_cm, kept_cv, kept_turn[6];
+    struct {
+        int factored;
+        double cm, cv, turn[6];
+    } begun;               /* the same as the step began, */
+    spari_snapshot before; /* and the factors */
     spari_frame_state begin, from, to;
     spari_steps steps;
     double *r, *dx, *increment;       /* [max(n, 6 nodes)]; so are the loads of the steps */
@@ -77,7 +81,13 @@ int spari_frame_balance(spari_frame *frame, spar_member *member, double dt);
 /* As the row's. */
 int spari_frame_answer(spari_frame *frame, const spar_member *member, const double *load, double *motion);
 int spari_frame_felt(spari_frame *frame, const spar_member *member, double *load);
+void spari_frame_begin(spari_frame *frame);
 void spari_frame_accept(spari_frame *frame);
+void spari_frame_reject(spari_frame *frame);
+/* A solution begins: nothing that its work space has is to be used (base/poison.h). */
+void spari_frame_poison(spari_frame *frame);
+/* Before the factors are overwritten. */
+void spari_frame_keep_factors(spari_frame *frame);
 int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
 /* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
    parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
@@ -97,10 +107,8 @@ int spari_frame_energy(spari_frame *frame, const spar_member *member, double ene
 
 /* ---- what matrices, modes and time share ---- */
 
-/* Which two components of the turn are multiplied in each of the SPARI_TURNS products; and where two products stand
-   among their SPARI_TURN_PAIRS. */
+/* Which two components of the turn are multiplied in each of the SPARI_TURNS products. */
 extern const int spari_frame_pair[SPARI_TURNS][2];
-int spari_frame_pair_of(int k, int l);
 
 /* Forms the matrices of the nodes, for which there is memory. arm [nodes][3] from the root. A status without a message.
  */
@@ -114,8 +122,9 @@ void spari_frame_factor(spari_frame *f, const double *K, double ck, const double
 /* A anew, of what m->added holds now. */
 void spari_frame_remass(spari_frame *f, const spar_member *m);
 
-/* K + N, D + G and f of a turn; formed anew only when the turn has changed, in the frame's axes. */
-void spari_frame_combine(spari_frame *f, const double omega[3]);
+/* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes; formed anew only when these have
+   changed. */
+void spari_frame_combine(spari_frame *f, const double turn[6]);
 /* Motion of a node of the unknowns of which the deformation is x, its rates xd and xdd. */
 void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
                       const double xdd[6], double q[7], double v[6], double a[6]);

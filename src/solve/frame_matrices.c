@@ -2,6 +2,7 @@
 #include "carriage.h"
 
 #include "../base/scene.h"
+#include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 
@@ -11,10 +12,6 @@
 #include <string.h>
 
 const int spari_frame_pair[SPARI_TURNS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-
-int spari_frame_pair_of(int k, int l) {
-    return k >= l ? k * (k + 1) / 2 + l : spari_frame_pair_of(l, k);
-}
 
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
     int m = f->block, step = f->block - f->overlap;
@@ -146,53 +143,6 @@ static void rest_matrices(const spari_frame *f, const setup *w) {
     }
 }
 
-/* The geometric stiffness of a deformation u [nodes][6]: the derivative of the tangent along it, by central differences
-   over a step in which the largest strain-like measure is `small` (error small^2). The tangent's virtual rotations are
-   those at the deformed state: T(theta) takes the rotation vector's changes there. */
-static void stretch_matrices(const spari_frame *f, const setup *w, const double *u, double *N) {
-    const double small = 1e-4;
-    int m = w->m, P = m / 6;
-    int64_t mm = (int64_t)m * m;
-    double largest = 0, *q = w->v; /* 7 per node fit into v and a together */
-    memset(N, 0, (size_t)f->size * sizeof *N);
-    for (int i = 0; i < f->nodes; i++) {
-        largest = fmax(largest, fmax(spari_norm(u + 6 * i) / w->body->length, spari_norm(u + 6 * i + 3)));
-    }
-    if (largest == 0) {
-        return;
-    }
-    for (int side = -1; side <= 1; side += 2) {
-        double step = side * small / largest;
-        for (int i = 0; i < f->nodes; i++) {
-            double psi[3];
-            for (int k = 0; k < 3; k++) {
-                q[7 * i + k] = step * u[6 * i + k];
-                psi[k] = step * u[6 * i + 3 + k];
-            }
-            spari_quat_exp(psi, q + 7 * i + 3);
-        }
-        for (int e = 0; e < w->body->elements; e++) {
-            double *S = w->S[0], scale = side * largest / (2 * small);
-            spari_body_tangent(w->body, e, q, NULL, NULL, 0, 0, 0, NULL, S);
-            for (int l = 0; l < P; l++) {
-                double psi[3], T[9], *N0 = N + mm * e;
-                for (int k = 0; k < 3; k++) {
-                    psi[k] = step * u[6 * ((int64_t)e * (P - 1) + l) + 3 + k];
-                }
-                spari_tangent(psi, T);
-                for (int i = 0; i < m; i++) {
-                    const double *s = S + (int64_t)m * i + 6 * l;
-                    double *to = N0 + (int64_t)m * i + 6 * l;
-                    for (int j = 0; j < 3; j++) {
-                        to[j] += scale * s[j];
-                        to[3 + j] += scale * (s[3] * T[j] + s[4] * T[3 + j] + s[5] * T[6 + j]);
-                    }
-                }
-            }
-        }
-    }
-}
-
 /* What of N and f belongs to omega_i omega_j alone. */
 static void polarise(spari_frame *f) {
     for (int k = 3; k < SPARI_TURNS; k++) {
@@ -204,43 +154,108 @@ static void polarise(spari_frame *f) {
     }
 }
 
-/* Of a frame that goes with an unknown root: of nodal forces x what is along the line. */
-static void keep_along_line(const spari_frame *f, double *x) {
-    for (int i = 0; i < f->nodes && f->S[0]; i++) {
-        const double *axis = f->carriage->axis + 3 * i;
-        double along = spari_dot(axis, x + 6 * i);
-        for (int k = 0; k < 3; k++) {
-            x[6 * i + k] = along * axis[k];
-            x[6 * i + 3 + k] = 0;
-        }
+/* Acceleration of an arm d in the product k of turns: omega_i omega_j = 1. */
+static void centripetal(int k, const double d[3], double a[3]) {
+    const int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
+    memset(a, 0, 3 * sizeof *a);
+    if (i == j) {
+        memcpy(a, d, 3 * sizeof *a);
+        a[i] = 0;
+        a[(i + 1) % 3] *= -1;
+        a[(i + 2) % 3] *= -1;
+    } else { /* e_i x (e_j x d) + e_j x (e_i x d) */
+        a[i] = d[j];
+        a[j] = d[i];
     }
 }
 
-/* The stretch s_k = -K^-1 f_k of every product of turns, its stiffness S_k into N, or for itself, and S_k s_l / 2 into
-   what is counted twice. */
-static int stretch_terms(spari_frame *f, const setup *w) {
-    int singular = 0, n6 = 6 * f->nodes;
-    double *S = spari_zalloc(f->size + SPARI_TURNS * (int64_t)n6, sizeof *S), *s = S + f->size;
-    if (!S) {
-        return SPAR_ERR_MEMORY;
-    }
-    spari_frame_factor(f, f->K, 1, NULL, 0, NULL, 0, w->S[0], &singular);
-    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
-        double *x = s + (int64_t)k * n6;
-        cblas_daxpy(n6, -1, f->f[k], 1, x, 1);
-        keep_along_line(f, x);
-        memset(x, 0, 6 * sizeof *x);
-        singular = spari_linear_solve(f->linear, x);
-    }
-    for (int k = 0; k < SPARI_TURNS && !singular; k++) {
-        stretch_matrices(f, w, s + (int64_t)k * n6, S);
-        cblas_daxpy((int)f->size, 1, S, 1, f->S[k] ? f->S[k] : f->N[k], 1);
-        for (int l = 0; l < SPARI_TURNS; l++) { /* those of two kinds come from both */
-            spari_frame_add_times(f, S, s + (int64_t)l * n6, 0.5, f->twice[spari_frame_pair_of(k, l)]);
+/* What turning pulls at a point of element e, and where the point is on the element. */
+static double point_pull(const setup *w, int k, int e, int point, double force[3]) {
+    const spari_body *b = w->body;
+    const int P = b->per_element;
+    const int64_t slot = b->slot[e] + point;
+    const double *phi = b->phi + (int64_t)(b->first[e] + point) * P, *arm = w->arm + 3 * (int64_t)e * (P - 1);
+    double x[SPARI_MAX_NODES], mass[10], d[3] = {0}, xi = 0;
+    spari_gll(P, x, NULL, NULL);
+    spari_slot_get(b->mass, 10, slot, mass);
+    for (int l = 0; l < P; l++) {
+        xi += phi[l] * x[l];
+        for (int c = 0; c < 3; c++) {
+            d[c] += phi[l] * arm[3 * l + c];
         }
     }
-    free(S);
-    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+    for (int c = 0; c < 3; c++) { /* of the mass and of its first moment */
+        d[c] = mass[0] * d[c] + mass[1 + c];
+    }
+    centripetal(k, d, force);
+    for (int c = 0; c < 3; c++) {
+        force[c] *= -b->weight[slot];
+    }
+    return xi;
+}
+
+/* Point masses are points without stiffness. */
+static int is_point_mass(const spari_body *b, int64_t slot) {
+    return *SPARI_BLOCK(b->C, 36, slot) == 0;
+}
+
+/* The axial force that product k of turns puts into element e, into b->pre: of all that is beyond each point. beyond:
+   the force beyond the element, then beyond its beginning. */
+static void element_tension(const setup *w, const spari_body *b, int k, int e, double beyond[3]) {
+    const int P = b->per_element, points = b->first[e + 1] - b->first[e];
+    double x[SPARI_MAX_NODES], share[SPARI_MAX_NODES], load[3 * SPARI_MAX_NODES] = {0}, force[3];
+    spari_gll(P, x, NULL, NULL);
+    for (int i = 0; i < points; i++) {
+        const double *phi = b->phi + (int64_t)(b->first[e] + i) * P;
+        (void)point_pull(w, k, e, i, force);
+        for (int l = 0; l < P && !is_point_mass(b, b->slot[e] + i); l++) {
+            cblas_daxpy(3, phi[l], force, 1, load + 3 * l, 1);
+        }
+    }
+    for (int i = 0; i < points && !is_point_mass(b, b->slot[e] + i); i++) { /* point masses are the last */
+        double sum[3] = {beyond[0], beyond[1], beyond[2]}, pre[6] = {0}, t[3];
+        const double xi = point_pull(w, k, e, i, force);
+        spari_share_beyond(P, x, xi, share);
+        for (int l = 0; l < P; l++) {
+            cblas_daxpy(3, share[l], load + 3 * l, 1, sum, 1);
+        }
+        for (int j = 0; j < points; j++) {
+            if (is_point_mass(b, b->slot[e] + j) && point_pull(w, k, e, j, force) > xi) {
+                cblas_daxpy(3, 1, force, 1, sum, 1);
+            }
+        }
+        spari_slot_get(b->tangent, 3, b->slot[e] + i, t);
+        cblas_daxpy(3, spari_dot(t, sum), t, 1, pre, 1);
+        spari_slot_put(b->pre, 6, b->slot[e] + i, pre);
+    }
+    for (int i = 0; i < points; i++) {
+        (void)point_pull(w, k, e, i, force);
+        cblas_daxpy(3, 1, force, 1, beyond, 1);
+    }
+}
+
+/* Geometric stiffness of the axial forces that each product of turns puts into the member. The deformation under these
+   forces has no part in it: it bends, and bending without its shortening, which is of second order, stretches. */
+static int stretch_terms(spari_frame *f, const setup *w) {
+    const double large = 0x1p60; /* as in spari_body_rates: what is subtracted takes no digits */
+    const int64_t mm = (int64_t)w->m * w->m;
+    spari_body tense = *w->body;
+    if (spari_body_set_pre(&tense)) {
+        return SPAR_ERR_MEMORY;
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        double beyond[3] = {0}, *to = f->S[k] ? f->S[k] : f->N[k], *S = w->S[0];
+        tense.pre_part = large;
+        for (int e = tense.elements - 1; e >= 0; e--) {
+            element_tension(w, &tense, k, e, beyond);
+            spari_body_tangent(&tense, e, w->q, NULL, NULL, 0, 0, 0, NULL, S);
+            for (int64_t i = 0; i < mm; i++) {
+                to[mm * e + i] += (S[i] - f->K[mm * e + i]) / large;
+            }
+        }
+    }
+    free(tense.pre);
+    return SPAR_OK;
 }
 
 static int turn_terms(spari_frame *f, const setup *w) {

@@ -234,9 +234,9 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
     }
     double *part = spari_zalloc(cols, sizeof *part);
-    double *const *const vectors[] = {f->f, f->rigid, f->twice, &f->pull};
-    const int counts[] = {SPARI_TURNS, 6, SPARI_TURN_PAIRS, 1};
-    for (int v = 0; v < 4 && part; v++) {
+    double *const *const vectors[] = {f->f, f->rigid, &f->pull};
+    const int counts[] = {SPARI_TURNS, 6, 1};
+    for (int v = 0; v < 3 && part; v++) {
         for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
             double *x = vectors[v][k];
             SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1));

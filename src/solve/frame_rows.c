@@ -49,10 +49,7 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
     ok = ok && (!m->body->pre || (f->pull = spari_zalloc(6 * (int64_t)f->nodes, sizeof *f->pull)));
     for (int k = 0; k < 3; k++) {
         ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
-        ok = ok && (!turns || !m->floats || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
-    }
-    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
-        ok = ok && (!turns || (f->twice[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
+        ok = ok && (!turns || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
     }
     return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
 }
@@ -101,10 +98,8 @@ static void frame_free(void *solution) {
         free(f->E[k]);
     }
     spari_carriage_free(f->carriage);
-    for (int k = 0; k < SPARI_TURN_PAIRS; k++) {
-        free(f->twice[k]);
-    }
     spari_linear_free(f->linear);
+    spari_snapshot_free(&f->before);
     free(f);
 }
 
@@ -224,8 +219,16 @@ static int frame_balance(spar_member *m, double dt) {
     return spari_frame_balance(m->solution, m, dt);
 }
 
+static void frame_begin(spar_member *m) {
+    spari_frame_begin(m->solution);
+}
+
 static void frame_accept(spar_member *m) {
     spari_frame_accept(m->solution);
+}
+
+static void frame_reject(spar_member *m) {
+    spari_frame_reject(m->solution);
 }
 
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
@@ -343,11 +346,11 @@ static void frame_publish(spar_member *m) {
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
     .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
     .balance = frame_balance, .answer = frame_answer, .felt = frame_felt, .accept = frame_accept,                      \
-    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
-    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
-    .shape = frame_shape, .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save,            \
-    .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie,                   \
-    .end_of = frame_end_of, .publish = frame_publish
+    .begin = frame_begin, .reject = frame_reject, .effort = frame_effort, .rest = frame_rest,                          \
+    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
+    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .linearise = frame_linearise,          \
+    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
+    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

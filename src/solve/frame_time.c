@@ -2,6 +2,7 @@
 #include "frame.h"
 
 #include "../base/blas.h"
+#include "../base/poison.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
@@ -125,17 +126,32 @@ void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state
     int64_t n = f->nodes;
     double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
     to_nodes(f, m, s, q, v, a);
+    const double *x = f->basis ? f->nodal : s->y;
+    m->overturned = 0;
+    for (int i = 0; i < f->nodes; i++) {
+        m->overturned |= spari_norm(x + 6 * i + 3) > M_PI;
+    }
     spari_member_publish(m, q, v, a, &m->after);
 }
 
 /* ---- time ---- */
 
-void spari_frame_combine(spari_frame *f, const double omega[3]) {
-    double change[3] = {omega[0] - f->omega[0], omega[1] - f->omega[1], omega[2] - f->omega[2]};
-    if (f->combined && spari_norm(change) <= 1e-13 * spari_norm(omega)) {
+/* The same turn but for rounding, which accelerations have of omega squared. */
+static int is_turn(const double kept[6], const double turn[6]) {
+    const double speed = spari_norm(turn), rate = spari_norm(turn + 3) + speed * speed;
+    double change[6];
+    for (int k = 0; k < 6; k++) {
+        change[k] = turn[k] - kept[k];
+    }
+    return spari_norm(change) <= 1e-13 * speed && spari_norm(change + 3) <= 1e-13 * rate;
+}
+
+void spari_frame_combine(spari_frame *f, const double turn[6]) {
+    const double *omega = turn;
+    if (f->combined && is_turn(f->turn, turn)) {
         return;
     }
-    memcpy(f->omega, omega, sizeof f->omega);
+    memcpy(f->turn, turn, sizeof f->turn);
     f->combined = 1;
     if (f->sumC) {
         for (int64_t i = 0; i < f->size; i++) {
@@ -154,17 +170,25 @@ void spari_frame_combine(spari_frame *f, const double omega[3]) {
             cblas_daxpy((int)f->size, c[k], f->N[k], 1, f->sumK, 1);
             cblas_daxpy(f->n, c[k], f->f[k], 1, f->sumf, 1);
         }
-        for (int l = 0; l <= k; l++) {
-            if (c[k] * c[l] != 0) {
-                cblas_daxpy(f->n, -c[k] * c[l], f->twice[spari_frame_pair_of(k, l)], 1, f->sumf, 1);
-            }
-        }
     }
     for (int k = 0; k < 3; k++) {
         if (omega[k] != 0) {
             cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
         }
+        if (turn[3 + k] != 0) {
+            cblas_daxpy((int)f->size, turn[3 + k], f->E[k], 1, f->sumK, 1);
+        }
     }
+}
+
+/* Of a root that moves so; still: without inertia. */
+static void combine_at(spari_frame *f, const spari_pose *root, int still) {
+    double turn[6] = {0};
+    spari_rotate_back(root->q + 3, root->v + 3, turn);
+    if (!still) {
+        spari_rotate_back(root->q + 3, root->a + 3, turn + 3);
+    }
+    spari_frame_combine(f, turn);
 }
 
 void spari_frame_gather(const spari_frame *f, const double *x, double *out) {
@@ -238,10 +262,11 @@ static void unbalance(const spari_frame *f, const spari_frame_state *s, int stil
 /* A: f->A, or NULL: without it */
 static int factor_with(spari_frame *f, const spari_scheme *c, const double *A) {
     int singular;
+    spari_frame_keep_factors(f);
     spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, f->sumC, c->cv, A, c->cm, f->element, &singular);
     f->factored = !singular;
     f->kept_cm = c->cm, f->kept_cv = c->cv;
-    memcpy(f->kept_omega, f->omega, sizeof f->omega);
+    memcpy(f->kept_turn, f->turn, sizeof f->turn);
     return singular;
 }
 
@@ -359,9 +384,8 @@ static int no_solution(const spar_member *m) {
 static int solve_stage(spari_frame *f, const spar_member *m, const spari_scheme *c) {
     const spari_frame_state *from = &f->from;
     spari_frame_state *to = &f->to;
-    double omega[3], last = 0;
-    spari_rotate_back(to->root.q + 3, to->root.v + 3, omega);
-    spari_frame_combine(f, omega);
+    double last = 0;
+    combine_at(f, &to->root, c->still);
     f->factored = f->factored && c->cm == f->kept_cm && c->cv == f->kept_cv;
     predict_unknowns(f, c, from, to);
     double *fixed = f->increment;
@@ -376,7 +400,7 @@ static int solve_stage(spari_frame *f, const spar_member *m, const spari_scheme 
         if (!f->factored && factor_step(f, c)) {
             return 1;
         }
-        int exact = !m->applied && !f->A && memcmp(f->kept_omega, f->omega, sizeof f->omega) == 0;
+        int exact = !m->applied && !f->A && memcmp(f->kept_turn, f->turn, sizeof f->turn) == 0;
         memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
         if (spari_linear_solve(f->linear, f->dx)) {
             return 1;
@@ -405,10 +429,8 @@ static void unbalance_of_frame(void *self, const spar_member *m, const double *a
 /* Accelerations at t^0. */
 static int start_frame(spari_frame *f, const spar_member *m, const spari_scheme *c) {
     spari_frame_state *b = &f->begin;
-    double omega[3];
     int singular;
-    spari_rotate_back(b->root.q + 3, b->root.v + 3, omega);
-    spari_frame_combine(f, omega);
+    combine_at(f, &b->root, c->still);
     spari_frame_factor(f, f->sumK ? f->sumK : f->K, 1, NULL, 0, NULL, c->cm, f->element, &singular);
     f->factored = 0;
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
@@ -490,6 +512,18 @@ static int leave_alone_frame(void *self, const spari_scheme *c, const spari_part
     return SPAR_OK;
 }
 
+void spari_frame_poison(spari_frame *f) {
+    double *const work[] = {f->r, f->dx, f->increment, f->steps.load, f->nodal};
+    for (size_t k = 0; k < sizeof work / sizeof *work; k++) {
+        spari_poison(work[k], f->n);
+    }
+    spari_poison(f->stage_v, f->n);
+    spari_poison(f->nodal, 18 * (int64_t)f->nodes);
+    spari_poison(f->turned, 19 * (int64_t)f->nodes);
+    spari_poison(f->element, (int64_t)f->block * f->block);
+    spari_poison(f->to.y, 4 * (int64_t)f->n);
+}
+
 int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     static const spari_stepper how = {
         .enter = enter_alone_frame, .solve = solve_alone_frame, .leave = leave_alone_frame};
@@ -499,8 +533,9 @@ int spari_frame_advance(spari_frame *f, spar_member *m, double dt) {
     if (!f->steps.started && !c.still) {
         SPARI_TRY(start_frame(f, m, &c));
     }
+    spari_frame_poison(f);
     start_run(&t);
-    SPARI_TRY(spari_scheme_run(&how, &t, &c, &f->steps.solved, m->session, dt));
+    SPARI_TRY(spari_scheme_run(&how, &t, &c, &m->cuts, &f->steps.solved, m->session, dt));
     spari_frame_publish(f, m, &f->to);
     return SPAR_OK;
 }
@@ -593,7 +628,56 @@ int spari_frame_felt(spari_frame *f, const spar_member *m, double *load) {
     return SPAR_OK;
 }
 
+/* A frame that joints tie has its root's orientation and what remains at the ends besides. */
+static int64_t size_of_ends(const spari_frame *f) {
+    return f->carriage ? 4 + spari_condensed_state_size(f->carriage->condensed) : 0;
+}
+
+void spari_frame_keep_factors(spari_frame *f) {
+    int64_t factors = spari_linear_state_size(f->linear);
+    double *to = f->begun.factored ? spari_snapshot_take(&f->before, factors + size_of_ends(f)) : NULL;
+    if (!to) {
+        return;
+    }
+    spari_linear_save(f->linear, to);
+    if (f->carriage) {
+        memcpy(to + factors, f->carriage->root->kept_q, 4 * sizeof *to);
+        spari_condensed_save(f->carriage->condensed, to + factors + 4);
+    }
+}
+
+void spari_frame_begin(spari_frame *f) {
+    f->begun.factored = f->factored;
+    f->begun.cm = f->kept_cm, f->begun.cv = f->kept_cv;
+    memcpy(f->begun.turn, f->kept_turn, sizeof f->kept_turn);
+    spari_snapshot_open(&f->before, 1);
+    if (f->carriage) {
+        spari_solver_begin(f->carriage->root);
+    }
+}
+
+void spari_frame_reject(spari_frame *f) {
+    if (!f->before.open) {
+        return;
+    }
+    f->factored = f->begun.factored && f->before.taken >= 0;
+    f->kept_cm = f->begun.cm, f->kept_cv = f->begun.cv;
+    memcpy(f->kept_turn, f->begun.turn, sizeof f->kept_turn);
+    if (f->carriage) {
+        spari_solver_reject(f->carriage->root);
+    }
+    if (f->before.taken > 0) {
+        const double *from = f->before.data, *ends = from + spari_linear_state_size(f->linear);
+        spari_linear_load(f->linear, from);
+        if (f->carriage) {
+            memcpy(f->carriage->root->kept_q, ends, 4 * sizeof *ends);
+            spari_condensed_load(f->carriage->condensed, f->carriage->condensed->fixed, ends + 4);
+        }
+    }
+}
+
 void spari_frame_accept(spari_frame *f) {
+    spari_snapshot_close(&f->before);
     swap_states(&f->begin, &f->to);
     if (f->carriage) {
         spari_solver_accept(f->carriage->root);
@@ -617,7 +701,7 @@ void spari_frame_restart(spari_frame *f, const spar_member *m) {
 }
 
 int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
-    double last = 0, omega[3];
+    double last = 0;
     int failed = 1;
     spari_turn turn;
     SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
@@ -636,8 +720,7 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
         memset(f->to.root.a, 0, sizeof f->to.root.a);
         memset(f->to.root.v, 0, sizeof f->to.root.v);
     }
-    spari_rotate_back(f->to.root.q + 3, f->to.root.v + 3, omega);
-    spari_frame_combine(f, omega);
+    combine_at(f, &f->to.root, !turning);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof(double));
     int singular = factor_step(f, &c);
     f->factored = 0;
@@ -666,11 +749,16 @@ int spari_frame_static(spari_frame *f, spar_member *m, const double *fluid) {
     return SPAR_OK;
 }
 
-enum { STATE_HEAD = 16, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
+enum { STATE_BEGUN = 9, STATE_HEAD = 22, STATE_TURN = 10, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
 /* The head, and the states at either end of the step. */
-static int64_t own_size(const spari_frame *f) {
+static int64_t ends_size(const spari_frame *f) {
     return STATE_HEAD + 2 * (STATE_ROOT + 4 * (int64_t)f->n);
+}
+
+/* And what the step began with. */
+static int64_t own_size(const spari_frame *f) {
+    return ends_size(f) + STATE_BEGUN + spari_snapshot_size(&f->before);
 }
 
 int64_t spari_frame_state_size(const spari_frame *f) {
@@ -686,30 +774,43 @@ void spari_frame_save(const spari_frame *f, double *state) {
                                      f->steps.solved.h,
                                      f->steps.started,
                                      f->combined,
-                                     f->omega[0],
-                                     f->omega[1],
-                                     f->omega[2],
-                                     f->kept_omega[0],
-                                     f->kept_omega[1],
-                                     f->kept_omega[2],
                                      f->steps.begin.even,
                                      f->steps.solved.even};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
+    memcpy(state + STATE_TURN, f->turn, sizeof f->turn);
+    memcpy(state + STATE_TURN + 6, f->kept_turn, sizeof f->kept_turn);
     double *at = state + STATE_HEAD;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
         memcpy(at, &ends[k]->root, sizeof ends[k]->root);
         memcpy(at + STATE_ROOT, ends[k]->y, (size_t)(4 * f->n) * sizeof *state);
     }
+    const double begun[STATE_BEGUN] = {f->begun.factored, f->begun.cm, f->begun.cv};
+    memcpy(at, begun, sizeof begun);
+    memcpy(at + 3, f->begun.turn, sizeof f->begun.turn);
+    spari_snapshot_save(&f->before, at + STATE_BEGUN);
     if (f->carriage) {
-        spari_carriage_save(f, at);
+        spari_carriage_save(f, at + STATE_BEGUN + spari_snapshot_size(&f->before));
     }
 }
 
+/* The same of a frame that has been saved; -1: it cannot be one. */
+static int64_t saved_size(const spari_frame *f, const double *state, int64_t count) {
+    int64_t at = ends_size(f) + STATE_BEGUN, expected = spari_linear_state_size(f->linear) + size_of_ends(f);
+    int64_t head = at + SPARI_SNAPSHOT_HEAD;
+    if (count < head) {
+        return -1;
+    }
+    int64_t numbers = state[at + 1] > 0 ? expected : 0;
+    int sound = spari_snapshot_is(state + at, SPARI_SNAPSHOT_HEAD + numbers, expected) && count >= head + numbers &&
+                (numbers == 0 || spari_linear_is_state(f->linear, state + head));
+    return sound ? head + numbers : -1;
+}
+
 int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
-    int64_t own = own_size(f);
-    if (count < own || state[0] != f->n || !spari_pattern_is(state[4], state[14]) ||
-        !spari_pattern_is(state[5], state[15])) {
+    int64_t own = saved_size(f, state, count);
+    if (own < 0 || count < own || state[0] != f->n || !spari_pattern_is(state[4], state[8]) ||
+        !spari_pattern_is(state[5], state[9])) {
         return 0;
     }
     return f->carriage ? spari_carriage_is_state(f, state + own, count - own, state[1] != 0) : count == own;
@@ -720,20 +821,25 @@ void spari_frame_load(spari_frame *f, const double *state) {
     spari_scheme c = {.cm = state[2], .cv = state[3]};
     f->factored = 0;
     f->combined = 0;
+    const double *begun = state + ends_size(f), *before = begun + STATE_BEGUN;
+    f->begun.factored = begun[0] != 0, f->begun.cm = begun[1], f->begun.cv = begun[2];
+    memcpy(f->begun.turn, begun + 3, sizeof f->begun.turn);
+    spari_snapshot_close(&f->before); /* while it is factored */
     if (f->carriage) {
         f->factored = state[1] != 0;
         f->kept_cm = c.cm, f->kept_cv = c.cv;
-        spari_carriage_load(f, state + own_size(f));
+        spari_carriage_load(f, before + SPARI_SNAPSHOT_HEAD + (int64_t)before[2]);
     } else if (state[1] != 0) {
-        spari_frame_combine(f, state + 11);
+        spari_frame_combine(f, state + STATE_TURN + 6);
         factor_step(f, &c);
     }
+    spari_snapshot_load(&f->before, before, f->factored);
     f->combined = 0;
     if (state[7] != 0 && !f->carriage) {
-        spari_frame_combine(f, state + 8);
+        spari_frame_combine(f, state + STATE_TURN);
     }
-    f->steps.begin = (spari_pattern){state[4], (int)state[14]};
-    f->steps.solved = (spari_pattern){state[5], (int)state[15]};
+    f->steps.begin = (spari_pattern){state[4], (int)state[8]};
+    f->steps.solved = (spari_pattern){state[5], (int)state[9]};
     f->steps.started = state[6] != 0;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
     state += STATE_HEAD;

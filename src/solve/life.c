@@ -16,6 +16,7 @@
 #include "leave.h"
 #include "work.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,10 @@ static int rigid_field(spar_member *m) {
             v[3 + c] = w[c];
             a[3 + c] = 0;
         }
+    }
+    if (m->row->moves && m->root != SPAR_ROOT_DRIVEN) { /* what stands has no velocity */
+        memset(m->now.v, 0, (size_t)spari_member_held(m) * sizeof(double));
+        memset(m->now.a, 0, (size_t)spari_member_held(m) * sizeof(double));
     }
     int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
     SPARI_REQUIRE(
@@ -78,6 +83,7 @@ static void forget_begun(spar_member *m) {
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
+    m->balanced[0] = m->balanced[1] = 0;
     m->jerk = m->swing = 0;
     spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
@@ -117,13 +123,44 @@ static void add_load_span(void *context, int64_t from, int64_t to) {
 }
 
 void spari_member_solved(spar_member *m, const double *fluid) {
+    m->balanced[1] = 1;
     spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->dead, fluid, m->load_solved[1]});
+}
+
+/* Node `i` of a body that is linear about its reference: its equations know the rotation vector of its quaternion,
+   which jumps at half a turn. */
+static int is_near_half_turn(const spar_member *m, int64_t i) {
+    double before[3], after[3];
+    spari_quat_log(m->now.q + 7 * i + 3, before);
+    spari_quat_log(m->after.q + 7 * i + 3, after);
+    const double size = spari_norm(after), jumps = spari_dot(before, after) < 0 ? spari_norm(before) + size : 0;
+    return size > 0.95 * M_PI || jumps > M_PI;
+}
+
+int spari_member_check_turns(const spar_member *m) {
+    int64_t turned = m->seen == SPARI_SEEN_LINEAR && m->overturned;
+    for (int64_t i = 0; i < m->nodes && !turned && m->body && m->body->linear[0] && m->body->C; i++) {
+        turned = is_near_half_turn(m, i);
+    }
+    SPARI_REQUIRE(m->session, !turned, SPAR_ERR_NUMERIC,
+                  "member '%s' is linear and turns by half a turn against %s, where rotation vectors end; take "
+                  "SPAR_FIDELITY_EXACT with LARGE_ROTATION on, or drive its root",
+                  m->name, spari_member_root_is_given(m) || m->floats ? "its root" : "its reference");
+    return SPAR_OK;
 }
 
 void spari_member_settle(spar_member *m) {
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
+    spari_applied_accept(m);
     spari_member_restart(m);
+    m->balanced[0] = m->balanced[1] = 1;
+}
+
+void spari_member_begin(spar_member *m) {
+    if (m->row->begin && spari_fidelity_is_here(m)) {
+        m->row->begin(m);
+    }
 }
 
 void spari_member_accept(spar_member *m) {
@@ -136,8 +173,10 @@ void spari_member_accept(spar_member *m) {
     spari_leave_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
+    m->balanced[0] = m->balanced[1];
     m->drive[0] = m->drive[1];
     m->drive_given = m->motion_given = 0;
+    spari_applied_accept(m);
     m->dissipated += m->dissipated_step;
     m->dissipated_step = 0;
     forget_begun(m);
@@ -164,10 +203,18 @@ void spari_member_put_learned(spar_member *m) {
 void spari_member_reject(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     copy_solved(m, 0, 1);
+    m->balanced[1] = m->balanced[0];
     m->motion_given = 0;
     m->dissipated_step = 0;
+    spari_applied_at(m, 0);
+    if (spari_gravity_changes(m->session)) { /* that of its end, whatever stage has failed */
+        spari_member_gravity(m);
+    }
     if (m->means) {
         spari_means_reject(m);
+    }
+    if (m->row->reject && spari_fidelity_is_here(m)) {
+        m->row->reject(m);
     }
     if (m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
         restart_solution(m);
@@ -294,6 +341,8 @@ void spari_member_release(spar_member *m) {
         *spari_nodal_array(m, k) = NULL;
     }
     forget_begun(m);
+    free(m->begun_next);
+    m->begun_next = NULL;
     spari_work_free(m->work);
     m->work = NULL;
     spari_added_free(m->added);
@@ -302,7 +351,10 @@ void spari_member_release(spar_member *m) {
     m->means = NULL;
     spari_applied_free(m->applied);
     spari_applied_free(m->applied_next);
+    spari_ramp_free(m->ramp);
+    spari_ramp_free(m->ramp_next);
     m->applied = m->applied_next = NULL;
+    m->ramp = m->ramp_next = NULL;
     spari_foundation_free(m->foundation);
     m->foundation = NULL;
     if (m->solution) {
@@ -338,11 +390,12 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
     }
-    m->begun = NULL;
+    m->begun = m->begun_next = NULL;
     m->work = NULL;
     m->added = NULL;
     m->means = NULL;
     m->applied = m->applied_next = NULL;
+    m->ramp = m->ramp_next = NULL;
     m->foundation = NULL;
     m->solution = NULL;
     m->body = NULL;
@@ -352,6 +405,7 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
 void spari_member_take_back(spar_member *m, const spar_member *aside) {
     spari_member_release(m);
     *m = *aside;
+    spari_learned_take_back(m);
 }
 
 static int build_body(spar_member *m) {
@@ -453,6 +507,9 @@ int spar_member_commit(spar_member *member) {
         return spari_named(s, __func__, agreed);
     }
     member->committed = 1;
+    if (member->kind == SPARI_BEAM && member->row->solved && !member->row->whole && spari_comm_rank(s->comm) == 0) {
+        spari_beam_tell_locking(member);
+    }
     return SPAR_OK;
 }
 

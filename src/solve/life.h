@@ -22,11 +22,15 @@ void spari_member_take_back(spar_member *m, const spar_member *aside);
 int spari_member_effects(const spar_member *m);
 /* The motion now has been set anew: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m);
+/* Whether the rotations of the motion after are ones that a linear member's rotation vectors can tell: SPAR_OK, or
+   SPAR_ERR_NUMERIC with a message. */
+int spari_member_check_turns(const spar_member *m);
 /* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
 void spari_member_solved(spar_member *member, const double *fluid);
 /* The latest iterate becomes the motion the clock stands at, as after a static solution. */
 void spari_member_settle(spar_member *member);
-/* The step under way is accepted, or given up. */
+/* A step begins. It is accepted, or given up. */
+void spari_member_begin(spar_member *member);
 void spari_member_accept(spar_member *member);
 void spari_member_reject(spar_member *member);
 /* A balanced start: room for the accelerations that it begins with; back to these, but for what the host gives of an

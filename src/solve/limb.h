@@ -93,6 +93,7 @@ typedef struct spari_limb {
     spari_solver *solver; /* of its body, or of the root of its frame; NULL: another rank solves it */
     struct spari_frame *frame;
     spari_condensed *condensed; /* what remains of it at its ends */
+    double *K;                  /* the same [6 ends][6 ends], in global axes, as the system was formed */
     const int *end;             /* which of the nodes that links know its ends are */
     double *force;              /* [those nodes][6]: what is left on them, global axes */
     int at;                     /* where the unknowns of its ends begin in the system */

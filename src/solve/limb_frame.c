@@ -83,6 +83,8 @@ static void copy_to(spari_frame *f) {
 
 static void begin_frame_limb(spari_limb *p) {
     spari_frame *f = p->frame;
+    spari_frame_poison(f);
+    spari_solver_poison(p->solver);
     copy_to(f);
     p->stage.before = p->member->drive[0];
     p->member->dissipated_step = 0;

@@ -71,6 +71,7 @@ static int begin_loads_of_nodes(spari_limb *p, double h) {
 }
 
 static void begin_nodes(spari_limb *p) {
+    spari_solver_poison(p->solver);
     spari_stage_start(p->solver, p->member, &p->stage);
 }
 

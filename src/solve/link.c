@@ -5,6 +5,7 @@
 #include "../math/rotation.h"
 #include "drive.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A node that moves as it is told: of a point, of the host's own member, of one that follows its root. */
@@ -45,17 +46,24 @@ void spari_link_times(double B[6][12], const double v[12], double rate[6]) {
     }
 }
 
+/* Change of the rates of a step with its coordinates; at one moment (dt 0) they are not tied. */
+static double speed_of_step(const spari_link *l, double dt) {
+    const spari_limb *p = l->limb[0] ? l->limb[0] : l->limb[1];
+    return p && dt > 0 ? p->scheme.rate : INFINITY;
+}
+
 void spari_link_find(spari_link *l, double s, double dt, double factor) {
     spar_joint *j = l->joint;
     spari_relative *r = &j->after;
     double near[6];
     memcpy(near, r->z, sizeof near);
+    r->found = 1;
     find_side(l, 0, s, dt);
     find_side(l, 1, s, dt);
     spari_tie_motion(&j->tie, &l->place[0], &l->place[1], r->z, l->B);
     spari_joint_count_turns(j, near, r->z);
     spari_link_times(l->B, l->v, r->rate);
-    spari_joint_spring(j, r->z, r->rate, factor, r->load);
+    l->springs = spari_joint_spring(j, r->z, r->rate, speed_of_step(l, dt), factor, r->load);
 }
 
 double spari_link_gap(const spari_link *l, int k) {
@@ -101,7 +109,7 @@ void spari_link_turning_dampers(spari_link *l, const double w[3]) {
     const spar_joint *j = l->joint;
     int side = spari_link_standing(l), given = spari_joint_given(j);
     double R[6][12], W[9];
-    if (side < 0 || !j->sprung || spari_joint_is_slack(j, &j->after)) {
+    if (side < 0 || !l->springs) {
         return;
     }
     spari_skew(w, W);

@@ -2,7 +2,7 @@
    the root leaves free. K is the tangent in that frame (turn.h); Coriolis' forces are left out, so that the problem
    stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
    keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
-   is 0 where K is positive definite, else the smallest tried that makes it so. */
+   is 0 where K is positive definite beyond its rounding, else the smallest tried that makes it so. */
 #include "modes.h"
 
 #include "../base/blas.h"
@@ -53,12 +53,42 @@ static int shifted(const spari_modal *p, double sigma) {
     return status == GSL_SUCCESS;
 }
 
+/* Whether K x is nothing but rounding for the motion of least stiffness, by steps of x := K^-1 M x with the factor in
+   A. The factorisation of a singular matrix may succeed: rounding decides. Rows count by the roots of their stiffness,
+   whatever their units. */
+static int has_loose_motion(const spari_modal *p) {
+    enum { STEPS = 4 };
+    const double only_rounding = 1e-12;
+    double left = 0, size = 0;
+    gsl_vector *x = p->lambda, *y = p->work;
+    for (size_t i = 0; i < p->size; i++) {
+        gsl_vector_set(x, i, 1 + 0.3 * sin(12.9898 * (double)(i + 1)));
+    }
+    for (int step = 0; step < STEPS; step++) {
+        double norm = gsl_blas_dnrm2(x);
+        gsl_vector_scale(x, norm > 0 ? 1 / norm : 0);
+        SPARI_BLAS(gsl_blas_dsymv(CblasLower, 1, p->M, x, 0, y));
+        SPARI_BLAS(gsl_linalg_cholesky_solve(p->A, y, x));
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        double sum = 0, of_sizes = 0, own = sqrt(fabs(gsl_matrix_get(p->K, i, i)));
+        for (size_t j = 0; j < p->size; j++) {
+            double part = gsl_matrix_get(p->K, i, j) * gsl_vector_get(x, j);
+            sum += part;
+            of_sizes += fabs(part);
+        }
+        left = hypot(left, own > 0 ? sum / own : 0);
+        size = hypot(size, own > 0 ? of_sizes / own : 0);
+    }
+    return !(left > only_rounding * size);
+}
+
 /* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1 when
    none does. A smaller one would make 1 / (omega^2 + sigma) of a rigid motion so large that rounding in it drowns the
    others, a larger one drowns the low modes: an omega^2 keeps what is between sigma and rounding on either side. */
 static double find_shift(const spari_modal *p) {
     double largest = 0;
-    if (shifted(p, 0)) {
+    if (shifted(p, 0) && !has_loose_motion(p)) {
         return 0;
     }
     for (size_t i = 0; i < p->size; i++) {

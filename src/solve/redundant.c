@@ -1,49 +1,36 @@
-/* Constraints of an assembly that say what others say already. */
+/* Redundant constraints of an assembly: those that close a loop and follow from the rest of it. */
+#include "../base/scene.h"
 #include "tied.h"
-
-#include "../math/rotation.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A row is dependent when so little of it is left beside those before it: far above what rounding leaves (1e-15 times
-   the number of rows), far below what a mechanism's geometry leaves. */
+/* A constraint is redundant when so little of its row is left beside the others: far above what rounding leaves (1e-15
+   times the number of rows), far below what a mechanism's geometry leaves. */
 static const double dependent = 1e-9;
 
-/* A graph of n + 1 vertices (the ground is one) with as many links as a tree has, or fewer, has no loop in which a
-   constraint could be said twice; two links between the same vertices are one. */
-static int has_loop(const spari_assembly *a) {
-    int grounded = 0;
-    for (int i = 0; i < a->links; i++) {
-        grounded |= !a->link[i].limb[0] || !a->link[i].limb[1];
-    }
-    for (int i = 0; i < a->limbs; i++) {
-        grounded |= a->limb[i].member->root != SPAR_ROOT_FREE;
-    }
-    int rooted = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        rooted += a->limb[i].member->root != SPAR_ROOT_FREE; /* a link to the ground of its own */
-    }
-    return a->links + rooted > a->limbs + grounded - 1;
-}
+/* What ties an interface node to the tree, in relative coordinates: u = N z + T u_parent. */
+typedef struct tree_step {
+    int first, count; /* of z among all coordinates */
+    double N[6][6];   /* a column a coordinate */
+    double T[6][6];
+} tree_step;
 
-/* The row of held motion k in the unknowns of the parts' ends, turns times the size of the joint's member; 0: none. */
-static void read_row(const spari_assembly *a, const spari_link *l, int k, double *row) {
-    memset(row, 0, (size_t)a->n * sizeof *row);
-    for (int i = 0; i < 12; i++) {
-        int side = i / 6;
-        if (!l->limb[side]) {
-            continue;
-        }
-        const spar_member *m = l->limb[side]->member;
-        int own = 6 * l->joint->unique[side] + i % 6;
-        if (own < spari_member_held(m)) {
-            continue;
-        }
-        row[l->at[side] + i % 6] = l->B[k][i] / (i % 6 < 3 ? 1 : spari_member_length(m));
-    }
-}
+/* A row in relative coordinates, from its own to `end`. */
+typedef struct loop_row {
+    int end;
+    double *x; /* NULL: none */
+} loop_row;
+
+/* The loops' rows so far, triangular: row[i] begins with coordinate i. */
+typedef struct loop_rows {
+    int n;
+    double length; /* of the members: rotations are counted by it */
+    tree_step *step;
+    loop_row *row;
+    double *x; /* the row under way */
+} loop_rows;
 
 static double norm_of(const double *x, int n) {
     double sum = 0;
@@ -53,27 +40,154 @@ static double norm_of(const double *x, int n) {
     return sqrt(sum);
 }
 
-/* Takes what the orthonormal rows [count][n] have of x out of it, twice for rounding's sake; what is left of its size.
- */
-static double orthogonalise(const double *rows, int count, int n, double *x) {
-    double before = norm_of(x, n);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int r = 0; r < count; r++) {
-            const double *y = rows + (int64_t)r * n;
-            double along = 0;
-            for (int i = 0; i < n; i++) {
-                along += x[i] * y[i];
+/* x less its part along the orthonormal y; how large that is. */
+static double take_along(const double y[6], double x[6]) {
+    double along = 0;
+    for (int i = 0; i < 6; i++) {
+        along += x[i] * y[i];
+    }
+    for (int i = 0; i < 6; i++) {
+        x[i] -= along * y[i];
+    }
+    return along;
+}
+
+/* N: the complement of the orthonormal Q[held]. */
+static void complete(double Q[6][6], int held, tree_step *step) {
+    step->count = 6 - held;
+    memset(step->N, 0, sizeof step->N);
+    for (int column = 0; column < 6 - held; column++) {
+        int best = 0;
+        double most = -1, x[6];
+        for (int pass = 0; pass <= 6; pass++) { /* the axis of which the others leave most, last */
+            int axis = pass < 6 ? pass : best;
+            for (int i = 0; i < 6; i++) {
+                x[i] = i == axis;
             }
-            for (int i = 0; i < n; i++) {
-                x[i] -= along * y[i];
+            for (int j = 0; j < 2 * (held + column); j++) {
+                (void)take_along(Q[j % (held + column)], x);
             }
+            best = pass < 6 && norm_of(x, 6) > most ? pass : best;
+            most = pass < 6 ? fmax(most, norm_of(x, 6)) : most;
+        }
+        for (int i = 0; i < 6; i++) {
+            Q[held + column][i] = step->N[i][column] = x[i] / most;
         }
     }
-    double after = norm_of(x, n);
-    for (int i = 0; i < n && after > 0; i++) {
-        x[i] /= after;
+}
+
+/* The held rows H = L Q of a node's own motion, Q orthonormal: T = -Q^T L^-1 H_parent, and N is the complement of Q. */
+static void find_step(const loop_rows *all, const spari_assembly *a, const spari_interface *v, tree_step *step) {
+    double Q[6][6], own[12];
+    const spari_link *l = v->link < 0 ? NULL : a->link + v->link;
+    int held = 0;
+    for (int k = 0; k < v->fixed; k++) {
+        memset(Q[held], 0, sizeof Q[held]);
+        Q[held++][k] = 1;
     }
-    return before > 0 ? after / before : 0;
+    for (int k = 0; k < 6 && l; k++) {
+        if (!spari_link_holds(l, k)) {
+            continue;
+        }
+        for (int i = 0; i < 12; i++) {
+            own[(i + 6 * v->side) % 12] = l->B[k][i] / (i % 6 < 3 ? 1 : all->length);
+        }
+        double parent[6] = {0};
+        for (int i = 0; i < 6; i++) {
+            parent[i] = v->parent < 0 ? 0 : -own[6 + i];
+        }
+        for (int j = 0; j < held; j++) {
+            double along = take_along(Q[j], own);
+            for (int i = 0; i < 6; i++) {
+                parent[i] -= along * step->N[j][i]; /* N holds L^-1 H_parent until it is wanted */
+            }
+        }
+        double size = norm_of(own, 6);
+        for (int i = 0; i < 6; i++) {
+            Q[held][i] = own[i] / size;
+            step->N[held][i] = parent[i] / size;
+        }
+        held++;
+    }
+    for (int i = 0; i < 36; i++) {
+        step->T[i / 6][i % 6] = 0;
+        for (int j = 0; j < held && l; j++) {
+            step->T[i / 6][i % 6] += Q[j][i / 6] * step->N[j][i % 6];
+        }
+    }
+    complete(Q, held, step);
+}
+
+/* Adds w u of an interface node to the row: along the tree up to `stop`. */
+static void follow_tree(loop_rows *all, const spari_assembly *a, int node, const double w[6], int *first, int *end) {
+    double row[6];
+    memcpy(row, w, sizeof row);
+    for (int v = node; v >= 0; v = a->interface[v].parent) {
+        const tree_step *step = all->step + v;
+        double up[6] = {0};
+        for (int i = 0; i < 6; i++) {
+            for (int k = 0; k < 6; k++) {
+                up[k] += row[i] * step->T[i][k];
+                if (k < step->count) {
+                    all->x[step->first + k] += row[i] * step->N[i][k];
+                }
+            }
+        }
+        *first = step->count && step->first < *first ? step->first : *first;
+        *end = step->first + step->count > *end ? step->first + step->count : *end;
+        memcpy(row, up, sizeof row);
+    }
+}
+
+/* The row of held motion k of a link, in all->x from *first to *end; its size. */
+static double read_row(loop_rows *all, const spari_assembly *a, const spari_link *l, int k, int *first, int *end) {
+    double size = 0;
+    *first = all->n, *end = 0;
+    for (int side = 0; side < 2; side++) {
+        double w[6];
+        for (int i = 0; i < 6; i++) {
+            w[i] = l->B[k][6 * side + i] / (i < 3 ? 1 : all->length);
+            size += l->node[side] < 0 ? 0 : w[i] * w[i];
+        }
+        follow_tree(all, a, l->node[side], w, first, end);
+    }
+    return sqrt(size);
+}
+
+/* Takes a row into the triangle by rotations in the planes of two rows. 1: nothing is left of it, it is redundant; -1:
+   no memory. */
+static int take_row(loop_rows *all, int first, int end, double size) {
+    double *x = all->x;
+    for (int i = first; i < end; i++) {
+        loop_row *r = all->row + i;
+        if (fabs(x[i]) <= dependent * size) {
+            x[i] = 0;
+            continue;
+        }
+        if (r->end < end || !r->x) {
+            double *more = spari_zalloc(end - i, sizeof *more);
+            if (!more) {
+                return -1;
+            }
+            memcpy(more, r->x ? r->x : x + i, (size_t)((r->x ? r->end : end) - i) * sizeof *more);
+            int is_new = !r->x;
+            free(r->x);
+            r->x = more, r->end = end;
+            if (is_new) {
+                memset(x + i, 0, (size_t)(end - i) * sizeof *x);
+                return 0;
+            }
+        }
+        double length = hypot(r->x[0], x[i]), c = r->x[0] / length, s = x[i] / length;
+        end = r->end;
+        for (int k = i; k < end; k++) {
+            double above = r->x[k - i];
+            r->x[k - i] = c * above + s * x[k];
+            x[k] = c * x[k] - s * above;
+        }
+        x[i] = 0;
+    }
+    return 1;
 }
 
 static void tell(const spari_link *l, int k) {
@@ -82,41 +196,67 @@ static void tell(const spari_link *l, int k) {
     const spar_session *s = l->joint->session;
     if (s->log) {
         (void)snprintf(text, sizeof text,
-                       "joint '%.200s': it holds %s, which follows from the other joints already; this hold is left "
-                       "out, and its load is 0",
+                       "joint '%.200s': redundant constraint ignored: %s follows from the other joints; its load is 0",
                        l->joint->name, l->joint->tie.line ? "its length" : motion[k]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }
 
-int spari_tied_drop_redundant(spari_assembly *a) {
-    int count = 0, holds = 0;
-    if (!has_loop(a)) {
-        return SPAR_OK;
-    }
-    for (int i = 0; i < a->links; i++) {
-        holds += 6;
-    }
-    double *rows = spari_zalloc((int64_t)holds * a->n, sizeof *rows);
-    if (!rows) {
-        return SPAR_ERR_MEMORY;
-    }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
-        for (int k = 0; k < 6; k++) {
-            double *row = rows + (int64_t)count * a->n;
-            if (!(l->joint->held >> k & 1)) {
-                continue;
-            }
-            read_row(a, l, k, row);
-            if (orthogonalise(rows, count, a->n, row) > dependent) {
-                count++;
-            } else {
-                l->joint->held &= ~(1 << k);
-                tell(l, k);
-            }
+static int drop_from_link(loop_rows *all, const spari_assembly *a, const spari_link *l) {
+    for (int k = 0; k < 6; k++) {
+        int first, end;
+        if (!spari_link_holds(l, k)) {
+            continue;
+        }
+        double size = read_row(all, a, l, k, &first, &end);
+        int redundant = take_row(all, first, end, size);
+        if (redundant < 0) {
+            return SPAR_ERR_MEMORY;
+        }
+        if (redundant) {
+            l->joint->held &= ~(1 << k);
+            tell(l, k);
         }
     }
-    free(rows);
     return SPAR_OK;
+}
+
+static int begin_rows(loop_rows *all, const spari_assembly *a) {
+    all->step = spari_zalloc(a->interfaces + 1, sizeof *all->step);
+    if (!all->step) {
+        return SPAR_ERR_MEMORY;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        all->length = fmax(all->length, spari_member_length(a->limb[i].member));
+    }
+    for (int n = 0; n < a->interfaces; n++) {
+        tree_step *step = all->step + a->order[n];
+        find_step(all, a, a->interface + a->order[n], step);
+        step->first = all->n;
+        all->n += step->count;
+    }
+    all->row = spari_zalloc(all->n + 1, sizeof *all->row);
+    all->x = spari_zalloc(all->n + 1, sizeof *all->x);
+    return all->row && all->x ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+int spari_tied_drop_redundant(spari_assembly *a) {
+    loop_rows all = {0};
+    int loops = 0;
+    for (int i = 0; i < a->links; i++) {
+        loops += a->link[i].role == SPARI_LINK_LOOP;
+    }
+    int status = loops ? begin_rows(&all, a) : SPAR_OK;
+    for (int i = 0; i < a->links && status == SPAR_OK && loops; i++) {
+        if (a->link[i].role == SPARI_LINK_LOOP) {
+            status = drop_from_link(&all, a, a->link + i);
+        }
+    }
+    for (int i = 0; i < all.n && all.row; i++) {
+        free(all.row[i].x);
+    }
+    free(all.row);
+    free(all.step);
+    free(all.x);
+    return status;
 }

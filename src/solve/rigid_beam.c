@@ -84,6 +84,7 @@ static int rigid_create(spar_member *m) {
         spari_slot_put(body->mass, 10, 0, mass);
     }
     spari_body_complete(body);
+    b->arms.gravity = body->gravity;
     if (spari_fidelity_is_here(m)) {
         b->solver = spari_solver_create(m, body, &b->arms);
         return b->solver ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -125,17 +126,20 @@ static void rigid_restart(spar_member *m) {
     spari_solver_restart(s);
 }
 
-/* Loads at one end of the step as load [6] on the root and on the arms: of the fluids, dead ones, and those that the
-   member carries where the motion q of its nodes is. */
-static void loads_on_root(const spar_member *m, const double *fluid, const double *q, double *load, double arms[9]) {
+/* Loads at one end of the step, `left` of which is still to come, as load [6] on the root and on the arms: of the
+   fluids, dead ones, and those that the member carries where the motion q of its nodes is. */
+static void loads_on_root(const spar_member *m, const double *fluid, double left, const double *q, double *load,
+                          double arms[9]) {
     double dead[6] = {0}, dead_arms[9] = {0}, *room = m->body->scratch; /* the beam's own body is not in use */
     memset(load, 0, 6 * sizeof *load);
     memset(arms, 0, 9 * sizeof *arms);
-    sum_on_root(m, m->dead, dead, dead_arms);
+    sum_on_root(m, left > 0 ? spari_dead_before(m) : m->dead, dead, dead_arms);
     sum_on_root(m, fluid, load, arms);
     if (m->applied) {
         memset(room, 0, (size_t)(6 * m->nodes) * sizeof *room);
+        spari_applied_at(m, left);
         spari_applied_nodal(m, q, room);
+        spari_applied_at(m, 0);
         sum_on_root(m, room, load, arms);
     }
     for (int k = 0; k < 6; k++) {
@@ -154,14 +158,14 @@ static int rigid_advance(spar_member *m, double dt) {
     spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], m->now.q, s->steps.load0, b->arms.begin);
+    loads_on_root(m, m->load_history[0], 1, m->now.q, s->steps.load0, b->arms.begin);
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
         if (m->applied) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
             spari_carried_move(m, &last, &m->after);
         }
-        loads_on_root(m, m->load_used, m->after.q, s->steps.load1, b->arms.end);
+        loads_on_root(m, m->load_used, 0, m->after.q, s->steps.load1, b->arms.end);
         SPARI_TRY(spari_solver_advance(s, m, dt));
         q = s->to.q;
         change = 0;
@@ -231,9 +235,19 @@ static int rigid_felt(spar_member *m, double *load) {
     return SPAR_OK;
 }
 
+static void rigid_begin(spar_member *m) {
+    const spari_rigid_beam *b = m->solution;
+    spari_solver_begin(b->solver);
+}
+
 static void rigid_accept(spar_member *m) {
     const spari_rigid_beam *b = m->solution;
     spari_solver_accept(b->solver);
+}
+
+static void rigid_reject(spar_member *m) {
+    const spari_rigid_beam *b = m->solution;
+    spari_solver_reject(b->solver);
 }
 
 /* ---- tied by joints ---- */
@@ -247,14 +261,14 @@ static spari_solver *solver_of(const spar_member *m) {
 static void rigid_take_loads(spar_member *m) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], m->now.q, b->solver->steps.load0, b->arms.begin);
-    loads_on_root(m, m->load_used, m->after.q, b->solver->steps.load1, b->arms.end);
+    loads_on_root(m, m->load_history[0], 1, m->now.q, b->solver->steps.load0, b->arms.begin);
+    loads_on_root(m, m->load_used, 0, m->after.q, b->solver->steps.load1, b->arms.end);
 }
 
 static void rigid_take_rest(spar_member *m, const double *fluid) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, fluid, m->now.q, b->solver->steps.load, b->arms.end);
+    loads_on_root(m, fluid, 0, m->now.q, b->solver->steps.load, b->arms.end);
     memset(b->arms.begin, 0, sizeof b->arms.begin);
 }
 
@@ -385,7 +399,9 @@ const spari_fidelity spari_fidelity_rigid = {
     .answer = rigid_answer,
     .felt = rigid_felt,
     .felt_here = 1,
+    .begin = rigid_begin,
     .accept = rigid_accept,
+    .reject = rigid_reject,
     .effort = rigid_effort,
     .rest = spari_carried_rest,
     .reaction_room = spari_reaction_of_whole_room,

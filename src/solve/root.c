@@ -101,29 +101,20 @@ void spari_stage_enter(spari_solver *s) {
 
 /* ---- a rigid motion to be seen from ---- */
 
-/* Velocities of stiff parts are found from places: in a stage they are off by a part of h^2 times the third derivative
-   of the place, which of what turns at W is W^3 times the radius. Where dt changes, that rings. Seen from the rigid
-   motion with the mean velocities of a free or pinned member the turning is rest. */
-static int turns_stiffly(const spari_solver *s, const spar_member *m) {
-    return s->n > 1 && !s->body->linear[0] && !spari_member_root_is_given(m);
-}
-
 double spari_stage_turning(const spari_solver *s, const spar_member *m) {
     double w[3] = {0};
-    int stiff = turns_stiffly(s, m);
-    for (int i = 0; i < s->n && stiff; i++) {
-        for (int k = 0; k < 3; k++) {
-            w[k] += s->from.v[6 * i + 3 + k];
-        }
+    if (spari_member_turns_stiffly(m)) {
+        spari_mean_rotation(s->n, s->from.v, w);
     }
-    return spari_norm(w) / s->n;
+    return spari_norm(w);
 }
 
 /* rad: a step that turns farther, or vibrates so far, does not resolve it. */
 static const double farthest = 1;
 
-static int follows(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_stage *g) {
-    return c->rule != SPARI_ALPHA && !c->still && turns_stiffly(s, m) && spari_norm(g->rigid.v + 3) * c->h <= farthest;
+static int follows(const spar_member *m, const spari_scheme *c, const spari_stage *g) {
+    return c->rule != SPARI_ALPHA && !c->still && spari_member_turns_stiffly(m) &&
+           spari_norm(g->rigid.v + 3) * c->h <= farthest;
 }
 
 static int make_own_states(spari_solver *s) {
@@ -149,9 +140,9 @@ static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
         for (int k = 0; k < 3; k++) {
             p.q[k] += (arm[k] + at->q[7 * i + k]) / s->n;
             p.v[k] += at->v[6 * i + k] / s->n;
-            p.v[3 + k] += at->v[6 * i + 3 + k] / s->n;
         }
     }
+    spari_mean_rotation(s->n, at->v, p.v + 3);
     for (int k = 0; k < 3 && pinned; k++) {
         p.q[k] = at->q[k];
         p.v[k] = 0;
@@ -248,15 +239,11 @@ static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[
    TR-BDF2 after it begins with the true ones, and it goes on with its own: v += f times that for all that turns as a
    rigid body. */
 static void shift_turning(const spari_solver *s, const spar_member *m, double f) {
-    double w[3] = {0}, pivot[3], a0[3], alpha[3];
+    double w[3], pivot[3], a0[3], alpha[3];
     if (!find_pivot(s, m, pivot, a0)) {
         return;
     }
-    for (int i = 0; i < s->n; i++) {
-        for (int k = 0; k < 3; k++) {
-            w[k] += s->from.v[6 * i + 3 + k] / s->n;
-        }
-    }
+    spari_mean_rotation(s->n, s->from.v, w);
     mean_angular_acceleration(s, m, pivot, a0, w, alpha);
     for (int i = 0; i < s->n; i++) {
         double r[3], turn[3], grow[3], a[3], b[3];
@@ -307,7 +294,7 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
 /* A substep begins, after one of the other scheme. */
 static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
     double C = spari_scheme_error(c);
-    if (!turns_stiffly(s, m) || c->still) {
+    if (!spari_member_turns_stiffly(m) || c->still) {
         return;
     }
     if (c->rule == SPARI_TRAPEZOIDAL && part->alpha > 0) {
@@ -325,7 +312,7 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
     if (c->rule == SPARI_TRAPEZOIDAL) {
         g->rigid = mean_motion(s, m);
     }
-    int rigid = follows(s, m, c, g);
+    int rigid = follows(m, c, g);
     g->root = spari_drive_at(m, part->to, part->dt);
     if (c->rule == SPARI_TRAPEZOIDAL) {
         g->root = spari_drive_stage(&g->before, &g->root, c->h, c->span);
@@ -354,6 +341,7 @@ int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme 
     spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->end);
     if (s->arms) {
         spari_arms_at(s->arms, part->end);
+        memcpy(s->arms->gravity, m->body->gravity, sizeof m->body->gravity);
     }
     return spari_stage_root(s, m, c, part, g);
 }
@@ -417,8 +405,10 @@ static double work_in(spari_solver *s, const spar_member *m, const spari_state *
 void spari_stage_energy(spari_solver *s, const spar_member *m, const spari_part *part, double *gain, double *size) {
     double before[4], after[4];
     double work = 0.5 * (work_in(s, m, &s->from, part->from) + work_in(s, m, &s->to, part->to));
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, 0.5 * (part->from + part->to)); /* gravity may change too */
     spari_body_energy(s->body, s->from.q, s->from.v, before);
     spari_body_energy(s->body, s->to.q, s->to.v, after);
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->to);
     *size = before[0] + before[1] + fabs(work) + fabs(after[2] - before[2]);
     *gain = after[0] + after[1] + after[2] - before[0] - before[1] - before[2] - work;
 }

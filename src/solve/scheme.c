@@ -2,7 +2,9 @@
 #include "scheme.h"
 
 #include "../base/scene.h"
+#include "../math/rotation.h"
 #include "../member/added.h"
+#include "../member/applied.h"
 #include "../member/body.h"
 #include "drive.h"
 
@@ -39,10 +41,34 @@ static void add_dead(void *context, int64_t from, int64_t to) {
 }
 
 void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
+    const int64_t n = 6 * (int64_t)member->body->unique;
+    const double *before = spari_dead_before(member);
     spari_member_gather(member, member->load_history[0], steps->load0);
     spari_member_gather(member, member->load_used, steps->load1);
     spari_member_gather(member, member->dead, steps->load);
-    spari_crew_spread(member->session->crew, 6 * (int64_t)member->body->unique, SPAN, add_dead, steps);
+    if (before == member->dead) {
+        spari_crew_spread(member->session->crew, n, SPAN, add_dead, steps);
+        return;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        steps->load1[i] += steps->load[i];
+    }
+    spari_member_gather(member, before, steps->load);
+    for (int64_t i = 0; i < n; i++) {
+        steps->load0[i] += steps->load[i];
+    }
+}
+
+/* Gravity and what the member carries, at that moment of a step. */
+static void applied_at(const spar_member *m, double left) {
+    const spar_session *s = m->session;
+    spari_applied_at(m, left);
+    if (m->body && (m->effects & SPAR_EFFECT_GRAVITY) && spari_gravity_changes(s)) {
+        for (int k = 0; k < 3; k++) {
+            m->body->gravity[k] = s->gravity[k] + left * (s->gravity_before[k] - s->gravity[k]);
+        }
+        spari_body_gravity_changed(m->body);
+    }
 }
 
 /* Loads at the part s of a step. */
@@ -60,6 +86,7 @@ static void mix_loads(void *context, int64_t from, int64_t to) {
 }
 
 void spari_scheme_mix_loads(const spar_member *m, const spari_steps *t, int loads, double s) {
+    applied_at(m, 1 - s);
     spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, s});
     if (m->added && s < 1) {
         (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, t->load);
@@ -112,6 +139,32 @@ static int exceeds_limit(double turning, const spari_scheme *c, const spar_sessi
     return 1.5 * turning * c->h > fmax(1 - session->rho_inf, least);
 }
 
+void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
+    memset(w, 0, 3 * sizeof *w);
+    for (int64_t i = 0; i < n; i++) {
+        for (int k = 0; k < 3; k++) {
+            w[k] += v[6 * i + 3 + k] / (double)n;
+        }
+    }
+}
+
+int spari_member_turns_stiffly(const spar_member *m) {
+    return m->body && m->body->unique > 1 && !m->body->linear[0] && !spari_member_root_is_given(m);
+}
+
+int spari_scheme_turns(const spar_session *s, double dt) {
+    const spari_scheme c = {.h = dt / s->substeps};
+    int turns = 0;
+    for (const spar_member *m = s->members; m && !turns; m = m->next) {
+        if (spari_member_turns_stiffly(m)) {
+            double w[3];
+            spari_mean_rotation(m->nodes, m->now.v, w);
+            turns = exceeds_limit(1.1 * spari_norm(w), &c, s);
+        }
+    }
+    return turns;
+}
+
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {
     spari_scheme c = *alpha;
     double r = alpha->h / h;
@@ -144,7 +197,7 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
     if (!last) {
         (void)spari_messages_aside(before);
     }
-    if (status == SPAR_OK && how->gains && !c->still && how->gains(self, part)) {
+    if (status == SPAR_OK && how->gains && !c->still && !session->rough && how->gains(self, part)) {
         status = SPAR_ERR_NUMERIC;
         char name[160];
         how->name(self, name, sizeof name);
@@ -156,20 +209,31 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
     return status;
 }
 
+enum { PARTS = 1024 };
+
+/* The node of the tree of halvings that begins at `at` and has `size` of the parts. */
+static unsigned node_of(int at, int size) {
+    return (unsigned)(PARTS / size + at / size);
+}
+
 /* One substep of the session, cut where that is needed. */
-static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_pattern *pattern,
-                       const spar_session *session, double dt, double from, double to) {
-    enum { PARTS = 1024 };
+static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_cuts *cuts,
+                       spari_pattern *pattern, const spar_session *session, double dt, double from, double to) {
     int at = 0, size = PARTS, again = 0;
     double tried = 0;
     while (at < PARTS) {
+        const unsigned node = node_of(at, size);
+        if (size > 1 && cuts->given_up[node / 32] >> node % 32 & 1) {
+            size /= 2;
+            continue;
+        }
         const spari_scheme alpha = size < PARTS ? spari_scheme_resize(whole, whole->h * size / PARTS) : *whole;
         spari_pattern next = pattern_after(pattern, alpha.h);
         spari_part part = {.dt = dt, .again = again};
         spari_scheme c;
         part.from = at == 0 ? from : from + (to - from) * at / PARTS;
         part.to = at + size == PARTS ? to : from + (to - from) * (at + size) / PARTS;
-        part.alpha = again ? 0 : tried > 0 ? tried : pattern->even == SPARI_EVEN ? pattern->h : 0;
+        part.alpha = again ? 0 : pattern->even == SPARI_EVEN ? pattern->h : tried;
         part.ratio = pattern->h > 0 ? alpha.h / pattern->h : 0;
         int tries_anew = again || tried > 0; /* the first try has spent the algorithmic accelerations */
         if (!tries_anew) {
@@ -184,7 +248,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
         if (status == SPAR_ERR_NUMERIC && !last) {
             again = c.rule != SPARI_ALPHA;
             tried = again ? 0 : alpha.h;
-            size /= 2;
+            cuts->given_up[node / 32] |= (uint32_t)1 << node % 32;
             continue;
         }
         SPARI_TRY(status);
@@ -199,11 +263,15 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
     return SPAR_OK;
 }
 
-int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_pattern *pattern,
-                     const spar_session *session, double dt) {
+int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
+                     spari_pattern *pattern, const spar_session *session, double dt) {
     int substeps = session->substeps;
+    if (cuts->begun != session->begun || session->rough) {
+        *cuts = (spari_cuts){.begun = session->begun};
+    }
     for (int k = 1; k <= substeps; k++) {
-        SPARI_TRY(run_substep(how, self, alpha, pattern, session, dt, (k - 1.0) / substeps, (double)k / substeps));
+        SPARI_TRY(
+            run_substep(how, self, alpha, cuts, pattern, session, dt, (k - 1.0) / substeps, (double)k / substeps));
     }
     return SPAR_OK;
 }

@@ -101,14 +101,22 @@ spari_scheme spari_scheme_last(const spar_member *member, int damped, const spar
 /* The same coefficients for another length. */
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h);
 /* From t^n to t^n + dt in the session's substeps, by the stepper. A substep without a solution, or whose solution gains
-   energy from nothing (Newton has found another equilibrium), is halved and tried again, down to 1/1024. alpha: the
-   coefficients of a substep. *pattern: of the steps that led to t^n, becomes that of those to t^{n+1}. A status and a
-   message of the stepper. */
-int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_pattern *pattern,
-                     const spar_session *session, double dt);
+   energy from nothing (Newton has found another equilibrium), is halved and tried again, down to 1/1024, and halved
+   from the start by the next calls of the step: *cuts. alpha: the coefficients of a substep. *pattern: of the steps
+   that led to t^n, becomes that of those to t^{n+1}. A status and a message of the stepper. */
+int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
+                     spari_pattern *pattern, const spar_session *session, double dt);
 /* Within 0.1 % of the last step generalised-alpha goes on, and its algorithmic acceleration b^n, which stands for the
    acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
+/* Whether it has stiff parts that turn freely. Their velocities are found from positions: in a stage they are off by a
+   part of h^2 times the third derivative of the position, which of what turns at W is W^3 times the radius. Where dt
+   changes, that rings. Seen from the rigid motion with the mean velocities of the member the rotation is rest. */
+int spari_member_turns_stiffly(const spar_member *member);
+/* w: the mean angular velocity of n nodes with velocities v [n][6]. */
+void spari_mean_rotation(int64_t n, const double *v, double w[3]);
+/* Whether in steps dt a member turns so fast that it is taken by TR-BDF2, or nearly: alike on all ranks. */
+int spari_scheme_turns(const spar_session *session, double dt);
 /* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 

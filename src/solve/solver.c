@@ -1,6 +1,7 @@
 /* The arrays and the kept tangent of a member that is solved for; save and load of both. */
 #include "solver.h"
 
+#include "../base/poison.h"
 #include "../base/scene.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
@@ -82,6 +83,7 @@ void spari_solver_free(spari_solver *s) {
     spari_mixing_free(s->mixing);
     spari_linear_free(s->linear);
     spari_condensed_free(s->condensed);
+    spari_snapshot_free(&s->before);
     free(s);
 }
 
@@ -93,7 +95,71 @@ void spari_solver_restart(spari_solver *s) {
     s->power = s->power_begin = 0;
 }
 
+void spari_solver_poison(spari_solver *s) {
+    double *const sixes[] = {s->increment, s->steps.load, s->r, s->dx, s->stage_v};
+    int64_t n = s->n, spans = (n + SPARI_SPAN - 1) / SPARI_SPAN, block = 6 * (int64_t)s->body->per_element;
+    for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
+        spari_poison(sixes[k], 6 * n); /* what lies behind is read with vectors, and is zero */
+    }
+    spari_poison(s->tinv, 9 * n);
+    spari_poison(s->turn, 4 * n);
+    spari_poison(s->best, 7 * n);
+    spari_poison(s->most, 2 * spans);
+    spari_poison(s->to.q, 25 * n);
+    spari_poison(s->own[0].q, 25 * n);
+    spari_poison(s->own[1].q, 25 * n);
+    spari_poison(s->body->matrix, block * block);
+}
+
+void spari_solver_begin(spari_solver *s) {
+    s->begun = (spari_reuse){s->factored, s->kept_cm, s->kept_cv, s->served, s->spent, s->trace};
+    spari_snapshot_open(&s->before, 1);
+}
+
+static int64_t before_size(const spari_solver *s) {
+    return 4 * (int64_t)s->n + spari_linear_state_size(s->linear) +
+           (s->condensed ? spari_condensed_state_size(s->condensed) : 0);
+}
+
+/* Before the factors are overwritten. */
+static void keep_factors(spari_solver *s) {
+    int64_t own = 4 * (int64_t)s->n, factors = spari_linear_state_size(s->linear);
+    double *to = s->begun.factored ? spari_snapshot_take(&s->before, before_size(s)) : NULL;
+    if (to) {
+        memcpy(to, s->kept_q, (size_t)own * sizeof *to);
+        spari_linear_save(s->linear, to + own);
+        if (s->condensed) {
+            spari_condensed_save(s->condensed, to + own + factors);
+        }
+    }
+}
+
+static void restore_factors(spari_solver *s) {
+    int64_t own = 4 * (int64_t)s->n;
+    const double *from = s->before.data;
+    memcpy(s->kept_q, from, (size_t)own * sizeof *from);
+    spari_linear_load(s->linear, from + own);
+    if (s->condensed) {
+        spari_condensed_load(s->condensed, s->condensed->fixed, from + own + spari_linear_state_size(s->linear));
+    }
+}
+
+void spari_solver_reject(spari_solver *s) {
+    const spari_reuse *b = &s->begun;
+    if (!s->before.open) {
+        return;
+    }
+    s->factored = b->factored && s->before.taken >= 0;
+    s->kept_cm = b->cm, s->kept_cv = b->cv;
+    s->served = b->served, s->spent = b->spent;
+    s->trace = b->trace;
+    if (s->before.taken > 0) {
+        restore_factors(s);
+    }
+}
+
 void spari_solver_accept(spari_solver *s) {
+    spari_snapshot_close(&s->before);
     spari_state t = s->begin;
     s->begin = s->to;
     s->to = t;
@@ -153,6 +219,7 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
                         double factor, double cm, double cv, const double *tinv) {
     tangent_state t = {
         .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
+    keep_factors(s);
     s->factored = 0;
     spari_linear_zero(s->linear);
     spari_body_sweep(s->body, add_tangents, &t);
@@ -162,6 +229,7 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
 int spari_solver_factor_turning(spari_solver *s, const spar_member *member, const spari_turn *turn, const double *q,
                                 const double *v, const double *a, double factor, double *mass) {
     const spari_body *body = s->body;
+    keep_factors(s);
     s->factored = 0;
     spari_linear_zero(s->linear);
     for (int e = 0; e < body->elements; e++) {
@@ -190,11 +258,17 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
                         .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
 }
 
-/* Of a node: 25 doubles at either end of the step, 4 of the kept turn. */
-enum { STATE_HEAD = 17, STATE_NODE = 54 };
+/* Of a node: 25 doubles at either end of the step, 4 of the kept turn; 9 of what a tangent there is formed with. */
+enum { STATE_HEAD = 17, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 7 };
+
+/* Factors; or, where there are none, what those for an answer are formed with. */
+static int64_t tangent_size(const spari_solver *s, int factored) {
+    return factored ? spari_linear_state_size(s->linear) : STATE_OPERATOR * (int64_t)s->n;
+}
 
 int64_t spari_solver_state_size(const spari_solver *s) {
-    return STATE_HEAD + STATE_NODE * (int64_t)s->n + (s->factored ? spari_linear_state_size(s->linear) : 0);
+    return STATE_HEAD + STATE_NODE * (int64_t)s->n + tangent_size(s, s->factored) + STATE_BEGUN +
+           spari_snapshot_size(&s->before);
 }
 
 void spari_solver_save(const spari_solver *s, double *state) {
@@ -222,17 +296,30 @@ void spari_solver_save(const spari_solver *s, double *state) {
     memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
     if (s->factored) {
         spari_linear_save(s->linear, state + 4 * n);
+    } else {
+        memcpy(state + 4 * n, s->tinv, STATE_OPERATOR * n * sizeof *state);
     }
+    const spari_reuse *b = &s->begun;
+    const double begun[STATE_BEGUN] = {b->factored,      b->cm,         b->cv,        (double)b->served,
+                                       (double)b->spent, b->trace.rate, b->trace.left};
+    state += 4 * n + (size_t)tangent_size(s, s->factored);
+    memcpy(state, begun, sizeof begun);
+    spari_snapshot_save(&s->before, state + STATE_BEGUN);
 }
 
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
-    int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n, size = spari_linear_state_size(s->linear);
+    int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n;
     if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8]) ||
         !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14) ||
         !spari_pattern_is(state[4], state[11]) || !spari_pattern_is(state[5], state[16])) {
         return 0;
     }
-    return state[1] == 0 ? count == own : count == own + size && spari_linear_is_state(s->linear, state + own);
+    const int64_t begun = own + tangent_size(s, state[1] != 0);
+    const double *b = state + begun, *before = b + STATE_BEGUN;
+    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_trace_is(b + 5) &&
+           spari_snapshot_is(before, count - begun - STATE_BEGUN, before_size(s)) &&
+           (before[1] <= 0 || spari_linear_is_state(s->linear, before + SPARI_SNAPSHOT_HEAD + 4 * (int64_t)s->n)) &&
+           (state[1] == 0 || spari_linear_is_state(s->linear, state + own));
 }
 
 void spari_solver_load(spari_solver *s, const double *state) {
@@ -251,5 +338,11 @@ void spari_solver_load(spari_solver *s, const double *state) {
     memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
     if (s->factored) {
         spari_linear_load(s->linear, state + 4 * n);
+    } else {
+        memcpy(s->tinv, state + 4 * n, STATE_OPERATOR * n * sizeof *state);
     }
+    state += 4 * n + (size_t)tangent_size(s, s->factored);
+    s->begun =
+        (spari_reuse){state[0] != 0, state[1], state[2], (int64_t)state[3], (int64_t)state[4], {state[5], state[6]}};
+    spari_snapshot_load(&s->before, state + STATE_BEGUN, s->factored);
 }

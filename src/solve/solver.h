@@ -12,12 +12,21 @@
 #include "effort.h"
 #include "mixing.h"
 #include "scheme.h"
+#include "snapshot.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
  * doubles a node. With a driven root b is that of the motion seen from it. */
 typedef struct spari_state {
     double *q, *v, *a, *b;
 } spari_state;
+
+/* How a tangent is reused. */
+typedef struct spari_reuse {
+    int factored;
+    double cm, cv;         /* the tangent's coefficients */
+    int64_t served, spent; /* solutions with it, and what they and the tangent itself took, in iterations */
+    spari_trace trace;     /* of Newton; strict it forgets the rate */
+} spari_reuse;
 
 typedef struct spari_solver spari_solver;
 struct spari_solver {
@@ -46,6 +55,8 @@ struct spari_solver {
     int64_t served, spent;     /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
     spari_trace trace;         /* of Newton; strict it forgets the rate */
+    spari_reuse begun;         /* the same as the step began, */
+    spari_snapshot before;     /* and its factors */
     int64_t newton, factors;   /* totals: iterations, factorisations */
 };
 
@@ -65,8 +76,11 @@ int spari_solver_balance(spari_solver *solver, spar_member *member, double dt);
    first order and over the last substep; load is spent. One back-substitution; a tangent is formed only where none is
    kept. 0, or 1: it is singular. */
 int spari_solver_answer(spari_solver *solver, const spar_member *member, double *load, double *motion);
-/* The step is accepted: t^{n+1} becomes t^n. */
+/* A step begins. It is accepted: t^{n+1} becomes t^n. It is rejected: the tangent is again the one that it began with.
+ */
+void spari_solver_begin(spari_solver *solver);
 void spari_solver_accept(spari_solver *solver);
+void spari_solver_reject(spari_solver *solver);
 /* q [n][7] less the correction dx [n][6], shortened by `cut` */
 void spari_static_shift(int n, double cut, const double *dx, double *q);
 /* Equilibrium under steps.load, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
@@ -84,6 +98,8 @@ int spari_solver_is_state(const spari_solver *solver, const double *state, int64
 void spari_solver_load(spari_solver *solver, const double *state);
 
 /* Shared by the files of the solver */
+/* A solution begins: nothing that its work space has is to be used (base/poison.h). */
+void spari_solver_poison(spari_solver *solver);
 /* Loads that follow the body's own nodes or stand along its line are there. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
     return (member->applied || member->foundation) && !solver->arms;

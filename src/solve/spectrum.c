@@ -5,8 +5,8 @@
 
    asks for no inverse of M: what has no mass has eigenvalues beyond all numbers, mu = 0. Where motions are held,
    P(sigma) is bordered by G and its transpose, and T takes of its argument only what G allows: what it does not comes
-   out as mu = 0 too. Small problems: T with a real shift as a matrix, GSL's unsymmetric solver; large ones: Arnoldi's
-   subspaces, restarted with Schur vectors (Stewart 2001). */
+   out as mu = 0 too. Small problems: Schur's form of T as a matrix; large ones: Arnoldi's subspaces, restarted with
+   Schur vectors (Stewart 2001). */
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/band.h"
@@ -16,7 +16,6 @@
 
 #include <float.h>
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -297,7 +296,8 @@ static int stand_at(spectrum *a, double complex sigma) {
 /* Factors at the shift, or beside it where the matrix is singular there: an eigenvalue has been met, and at zero there
    are motions without stiffness. */
 static int begin_at(spectrum *a, double complex shift) {
-    double some = 1e-3 * sqrt(DBL_EPSILON) * a->highest;
+    const double least = sqrt(DBL_EPSILON) * a->highest; /* its square is rounding beside the stiffness */
+    double some = least;
     int only = 0, bad = stand_at(a, shift);
     if (!bad) {
         (void)rounding_at(a, shift, &only);
@@ -309,7 +309,11 @@ static int begin_at(spectrum *a, double complex shift) {
     if (cabs(shift) > 0) {
         return stand_at(a, shift * (1 + 1e-3)) && stand_at(a, shift * (1 - 1e-3) + 1e-3 * cabs(shift));
     }
-    if (bad && stand_at(a, some)) {
+    while (bad && some < 1e5 * least) {
+        some *= 10;
+        bad = stand_at(a, some);
+    }
+    if (bad) {
         return 1;
     }
     a->rounding = fmax(rounding_at(a, 0, &only), DBL_EPSILON * a->highest);
@@ -324,43 +328,34 @@ typedef struct inverse_pairs {
     double complex *mu, *z;
 } inverse_pairs;
 
-/* GSL's unsymmetric solver never ends where an entry is no number. */
+/* GSL's unsymmetric solver does not converge where T has many zeros, as motions that are held give. */
 static int solve_dense(spectrum *a, inverse_pairs *found) {
-    size_t n = 2 * (size_t)a->n;
-    gsl_matrix *T = gsl_matrix_alloc(n, n);
-    gsl_vector_complex *mu = gsl_vector_complex_alloc(n);
-    gsl_matrix_complex *z = gsl_matrix_complex_alloc(n, n);
-    gsl_eigen_nonsymmv_workspace *w = gsl_eigen_nonsymmv_alloc(n);
-    double complex *unit = spari_zalloc(2 * (int64_t)n, sizeof *unit), *image = unit + n;
-    int status = T && mu && z && w && unit ? SPAR_OK : SPAR_ERR_MEMORY;
-    for (size_t j = 0; j < n && status == SPAR_OK; j++) {
-        unit[j] = 1;
-        apply_inverse(a, unit, image);
-        unit[j] = 0;
-        for (size_t i = 0; i < n; i++) {
-            gsl_matrix_set(T, i, j, creal(image[i]));
-            status = isfinite(creal(image[i])) ? status : SPAR_ERR_NUMERIC;
+    const int n = 2 * a->n;
+    const int64_t size = (int64_t)n * n;
+    double complex *S = spari_zalloc(2 * size + 3 * (int64_t)n, sizeof *S), *Q = S + size, *x = Q + size;
+    int status = S ? SPAR_OK : SPAR_ERR_MEMORY;
+    for (int j = 0; j < n && status == SPAR_OK; j++) {
+        x[j] = 1;
+        apply_inverse(a, x, x + n);
+        x[j] = 0;
+        for (int i = 0; i < n; i++) {
+            S[(int64_t)n * i + j] = x[n + i];
         }
     }
-    if (status == SPAR_OK) {
-        int failed;
-        gsl_eigen_nonsymmv_params(1, w);
-        SPARI_BLAS(failed = gsl_eigen_nonsymmv(T, mu, z, w));
-        status = failed ? SPAR_ERR_NUMERIC : SPAR_OK;
-    }
-    for (size_t j = 0; j < n && status == SPAR_OK; j++) {
-        found->mu[j] = CMPLX(mu->data[2 * mu->stride * j], mu->data[2 * mu->stride * j + 1]);
-        for (size_t i = 0; i < n; i++) {
-            const double *at = z->data + 2 * (i * z->tda + j);
-            found->z[n * j + i] = CMPLX(at[0], at[1]);
+    status = status == SPAR_OK && spari_schur(n, S, Q, x) ? SPAR_ERR_NUMERIC : status;
+    for (int j = 0; j < n && status == SPAR_OK; j++) {
+        found->mu[j] = S[(int64_t)(n + 1) * j];
+        spari_schur_vector(n, S, j, x);
+        for (int i = 0; i < n; i++) {
+            double complex sum = 0;
+            for (int k = 0; k <= j; k++) {
+                sum += Q[(int64_t)n * i + k] * x[k];
+            }
+            found->z[(int64_t)n * j + i] = sum;
         }
     }
-    found->count = status == SPAR_OK ? (int)n : 0;
-    free(unit);
-    gsl_matrix_free(T);
-    gsl_vector_complex_free(mu);
-    gsl_matrix_complex_free(z);
-    gsl_eigen_nonsymmv_free(w);
+    found->count = status == SPAR_OK ? n : 0;
+    free(S);
     return status;
 }
 
@@ -452,7 +447,7 @@ static int solve_about(spectrum *a, int n, int how, inverse_pairs *found) {
    goes from nearer to the others. */
 static int solve_pairs(spectrum *a, int n, double complex shift, int how, inverse_pairs *found) {
     double nearest = INFINITY;
-    if (begin_at(a, how == SPARI_SPECTRUM_DENSE ? creal(shift) : shift)) {
+    if (begin_at(a, shift)) {
         return SPAR_ERR_NUMERIC;
     }
     int status = solve_about(a, n, how, found);

@@ -82,7 +82,7 @@ void spari_static_shift(int n, double cut, const double *dx, double *q) {
     }
 }
 
-typedef enum outcome { FOUND, FAILED, LOST } outcome;
+typedef enum outcome { FOUND, FAILED, LOST, LONG } outcome;
 
 /* The state is in equilibrium, its rates those of the last `balance_at`: on the path, or beyond its end? */
 static outcome judge(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
@@ -162,10 +162,14 @@ static double follow_path(spari_solver *s, const spar_member *member, loading *l
                           outcome *why) {
     size_t bytes = (size_t)(7 * s->n) * sizeof(double);
     double done = 0, step = 1.0 / load_steps;
-    int halvings = 0, on_path = starts_on_path(s, member, l, start);
+    int halvings = 0, on_path = starts_on_path(s, member, l, start), left = load_steps + SPARI_STATIC_MORE;
     memcpy(s->best, start, bytes);
     memcpy(s->to.q, s->best, bytes);
     while (done < 1) {
+        if (left-- == 0) {
+            *why = LONG;
+            break;
+        }
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
         outcome o = equilibrium(s, member, l, f, on_path, s->to.q);
         if (o == FOUND) {
@@ -207,6 +211,9 @@ static int refuse(const spari_solver *s, const spar_member *member, double done,
     char text[200] = "a limit point, or a member that nothing holds";
     if (why == LOST) {
         (void)snprintf(text, sizeof text, "a limit or branching point: the stiffness is no longer positive there");
+    } else if (why == LONG) {
+        (void)snprintf(text, sizeof text, "its way takes more than %d load steps beside those asked for; ask for more",
+                       SPARI_STATIC_MORE);
     } else if (bend > suspect_bend) {
         (void)snprintf(text, sizeof text,
                        "neighbouring nodes are turned by %.2g rad against each other there, more than they can follow: "
@@ -268,6 +275,7 @@ int spari_solver_static(spari_solver *s, const spar_member *member, int load_ste
     free(l.mass);
     spari_linear_unwatch(s->linear);
     s->factored = 0;
+    spari_snapshot_close(&s->before);
     if (done < 1) {
         memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);
         return refuse(s, member, done, why);

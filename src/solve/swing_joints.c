@@ -100,7 +100,7 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
     rates_of_nodes(w, j, side, v, V);
     spari_tie_motion(&j->tie, &place[0], &place[1], at.z, of->B);
     spari_joint_count_turns(j, j->after.z, at.z);
-    spari_joint_spring(j, at.z, at.rate, 1, at.load);
+    int springs = spari_joint_spring(j, at.z, at.rate, INFINITY, 1, at.load);
     spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, of->K);
     spari_tie_forces(of->B, at.load, of->f);
     for (int k = 0; k < 6;
@@ -112,7 +112,7 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
         of->K[i / 12][i % 12] *= -1;
         of->bound[i / 12][i % 12] *= -1;
     }
-    if (j->sprung && !spari_joint_is_slack(j, &at)) {
+    if (springs) {
         spari_tie_rates(&j->tie, &place[0], &place[1], v, R);
         for (int i = 0; i < 72; i++) {
             for (int k = 0; k < 12; k++) {

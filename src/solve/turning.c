@@ -257,7 +257,7 @@ static void look_at_link(const spari_assembly *a, const spari_link *l, int side,
     double z[6];
     memcpy(z, view->z, sizeof z);
     spari_joint_count_turns(l->joint, l->joint->after.z, z);
-    spari_joint_spring(l->joint, z, rate, 1, load);
+    (void)spari_joint_spring(l->joint, z, rate, INFINITY, 1, load);
     for (int k = 0; k < 6; k++) {
         load[k] = spari_joint_given(l->joint) >> k & 1 ? 0 : load[k];
     }

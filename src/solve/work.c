@@ -64,9 +64,12 @@ void spari_work_step(spar_member *m) {
     spari_work *w = m->work;
     int64_t n = m->nodes;
     double d[6], reaction[6] = {0};
+    const double *dead = spari_dead_before(m);
     memset(w->load, 0, (size_t)(6 * n) * sizeof *w->load);
     if (spari_carries_loads(m)) {
+        spari_applied_at(m, 1);
         spari_applied_nodal(m, m->now.q, w->load);
+        spari_applied_at(m, 0);
         spari_applied_nodal(m, m->after.q, w->load);
     }
     for (int64_t i = 0; i < n; i++) {
@@ -78,7 +81,7 @@ void spari_work_step(spar_member *m) {
         for (int c = 0; c < 6; c++) {
             double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c] - tied[c];
             fluid[c] = 0.5 * (w->fluid[6 * i + c] + now);
-            kept[c] = m->dead[6 * i + c] + 0.5 * w->load[6 * i + c];
+            kept[c] = 0.5 * (dead[6 * i + c] + m->dead[6 * i + c] + w->load[6 * i + c]);
             w->fluid[6 * i + c] = now;
         }
         increment(m, i, turns_linearly(m), d);
@@ -124,11 +127,17 @@ static void joint_at(const spar_joint *j, int end, double z[6], double f[12]) {
     spari_tie_forces(B, at->load, f);
 }
 
+/* What a line's pull has beside its spring's. */
+static double damper_of_line(const spar_joint *j, const spari_relative *at) {
+    double stretch = at->z[0] - j->length;
+    return spari_joint_pull(j, at->z, at->rate, INFINITY) - j->stiffness[0] * (j->slack ? fmax(stretch, 0) : stretch);
+}
+
 /* What its dampers take, its drives and the host's load give over the step, by the trapezoidal rule in its coordinates.
  */
 static void add_to_account(spar_joint *j, const double from[6], const double z[6]) {
     const spari_relative *now = &j->now, *to = &j->after;
-    int given = spari_joint_given(j), slack = spari_joint_is_slack(j, to), most = j->tie.line ? 1 : 6;
+    int given = spari_joint_given(j), most = j->tie.line ? 1 : 6;
     for (int k = 0; k < most; k++) {
         double way = z[k] - from[k], damper = 0;
         if (j->driven >> k & 1) {
@@ -137,11 +146,14 @@ static void add_to_account(spar_joint *j, const double from[6], const double z[6
         if (given >> k & 1) {
             continue;
         }
-        for (int i = 0; i < most && j->sprung && !slack; i++) {
+        for (int i = 0; i < most && j->sprung && !j->tie.line; i++) {
             damper += 0.5 * j->damping[6 * k + i] * (now->rate[i] + to->rate[i]);
         }
+        if (j->tie.line && j->sprung) {
+            damper = 0.5 * (damper_of_line(j, now) + damper_of_line(j, to));
+        }
         j->account[0] += damper * way;
-        j->account[2] += j->given[k] * way;
+        j->account[2] += 0.5 * (spari_joint_load_at(j, k, 1) + j->given[k]) * way;
     }
 }
 
@@ -191,7 +203,7 @@ int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *ene
                   "spar_member_set_effects before that is committed",
                   __func__, joint->name);
     const double *a = joint->account,
-                 all[SPAR_JOINT_ENERGY_COUNT] = {joint->placed ? spring_energy(joint) : 0, a[0], a[1], a[2]};
+                 all[SPAR_JOINT_ENERGY_COUNT] = {joint->after.found != 0 ? spring_energy(joint) : 0, a[0], a[1], a[2]};
     spari_fill(capacity, energy, SPAR_JOINT_ENERGY_COUNT, all);
     return SPAR_OK;
 }

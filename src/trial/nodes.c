@@ -141,6 +141,7 @@ static int find_nodes_error(spar_member *m, double *error) {
     if (status == SPAR_OK) {
         spari_resample_loads(spari_member_mesh(m), (spari_mesh){m->elements, n}, load, onto);
         wish.per_element = n;
+        wish.left_out = SPAR_EFFECT_WORK; /* an account that begins takes those of the joints back to 0 */
         int owner = m->owner;
         m->owner = spari_comm_rank(m->session->comm);
         status = spari_member_remake(m, &wish, &old);

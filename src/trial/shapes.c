@@ -93,16 +93,18 @@ static double some_stiffness(const spari_pencil *p, double *diagonal) {
     return most > 0 ? 1e-12 * most : 1;
 }
 
-/* `modes` shapes of unit mass [modes][size] and their rates; *count: how many there are. */
+/* `modes` shapes of unit mass [modes][size] and their rates; *count: how many there are. A shape whose omega^2 is
+   negative, as turning beyond the frequency of a support gives, has two eigenvalues that count: so many more are asked.
+   value: room for 2 modes, and as many vectors. */
 static int search_shapes(const spari_swing *w, int modes, double more, double complex *value, double *shape,
                          double *rate, double *room, int *count) {
     spari_pencil part = {0};
     int n = w->size, found = 0, status = symmetric_part(&w->pencil, more, &part);
-    double complex *x = value + modes;
+    double complex *x = value + 2 * modes;
 
     *count = 0;
     if (status == SPAR_OK) {
-        status = spari_spectrum(&part, modes, 0, SPARI_SPECTRUM_CHOICE, &found, value, x);
+        status = spari_spectrum(&part, 2 * modes, 0, SPARI_SPECTRUM_CHOICE, &found, value, x);
     }
     for (int k = 0; k < 2 * found && *count < modes && status == SPAR_OK; k++) {
         if (add_shape(&w->pencil, x + (int64_t)n * (k / 2), k % 2, *count, shape, room)) {
@@ -117,7 +119,7 @@ static int search_shapes(const spari_swing *w, int modes, double more, double co
 int spari_shapes_find(spari_swing *w, int modes, double *shape, double *rate) {
     int64_t n = w->size;
     int count = 0;
-    double complex *value = spari_zalloc(modes * (n + 1), sizeof *value);
+    double complex *value = spari_zalloc(2 * modes * (n + 1), sizeof *value);
     double *room = spari_zalloc(2 * n, sizeof *room), most = 0;
     int status = value && room ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int pass = 0; pass < 2 && count < modes && status != SPAR_ERR_MEMORY; pass++) {

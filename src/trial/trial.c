@@ -8,6 +8,7 @@
 #include "../base/quiet.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
+#include "../member/edge.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/lend.h"
@@ -50,11 +51,12 @@ void spari_wish_free(spari_wish *wish) {
     { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
 static const struct {
     size_t at, size;
-} saved[] = {SPARI_SAVED(failures),  SPARI_SAVED(log),     SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
-             SPARI_SAVED(time),      SPARI_SAVED(dt),      SPARI_SAVED(dt_last),     SPARI_SAVED(step),
-             SPARI_SAVED(iteration), SPARI_SAVED(phase),   SPARI_SAVED(past),        SPARI_SAVED(order),
-             SPARI_SAVED(iterating), SPARI_SAVED(started), SPARI_SAVED(failed),      SPARI_SAVED(lent),
-             SPARI_SAVED(standing),  SPARI_SAVED(trial),   SPARI_SAVED(parted)};
+} saved[] = {SPARI_SAVED(failures), SPARI_SAVED(log),           SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
+             SPARI_SAVED(time),     SPARI_SAVED(time_rest),     SPARI_SAVED(dt),          SPARI_SAVED(dt_last),
+             SPARI_SAVED(uneven),   SPARI_SAVED(step),          SPARI_SAVED(iteration),   SPARI_SAVED(phase),
+             SPARI_SAVED(past),     SPARI_SAVED(order),         SPARI_SAVED(iterating),   SPARI_SAVED(started),
+             SPARI_SAVED(failed),   SPARI_SAVED(lent),          SPARI_SAVED(standing),    SPARI_SAVED(trial),
+             SPARI_SAVED(parted),   SPARI_SAVED(gravity_before)};
 
 static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
     memcpy((char *)to + at, (const char *)from + at, size);
@@ -410,14 +412,13 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    SPARI_REQUIRE(s, isfinite(run->dt) && run->dt > 0, SPAR_ERR_ARGUMENT,
-                  "%s: dt is %g; give a positive number of seconds", call, run->dt);
+    SPARI_TRY(spari_need_dt(s, call, run->dt));
     SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
                   "%s: %lld steps; give a multiple of %d, as advice tries other dt", call, (long long)run->steps,
                   SPARI_MULTIPLE);
     /* advice varies dt, and looks further than it was asked */
-    const double least = 1e-300, longer = 1e6;
-    SPARI_REQUIRE(s, run->dt >= least && isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
+    const double longer = 1e6;
+    SPARI_REQUIRE(s, isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
                   "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,
                   run->dt, s->time);
     return SPAR_OK;

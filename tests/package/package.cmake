@@ -45,6 +45,20 @@ if(SPAR_MPI)
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
 endif()
 
+# spar as a part of another project (FetchContent), whose installed program runs without the build folder
+add_test(NAME package_subproject COMMAND sh "${here}/subproject" "${PROJECT_SOURCE_DIR}" "${work}/subproject" -G "${CMAKE_GENERATOR}"
+  "-DCMAKE_C_COMPILER=${CMAKE_C_COMPILER}" "-DCMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER}" -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF)
+spar_set_test(package_subproject package 600)
+set_tests_properties(package_subproject PROPERTIES PROCESSORS 2)
+
+# a 32-bit target is refused (this configures without the C library for 32 bits)
+if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  add_test(NAME package_32_bits COMMAND "${CMAKE_COMMAND}" -S "${PROJECT_SOURCE_DIR}" -B "${work}/32_bits" -G "${CMAKE_GENERATOR}"
+    "-DCMAKE_C_COMPILER=${CMAKE_C_COMPILER}" -DCMAKE_C_FLAGS=-m32 -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY)
+  spar_set_test(package_32_bits package 60)
+  set_tests_properties(package_32_bits PROPERTIES PASS_REGULAR_EXPRESSION "spar needs a 64-bit target,")
+endif()
+
 add_test(NAME package_recipes COMMAND sh "${here}/recipes" "${PROJECT_SOURCE_DIR}" "${PROJECT_VERSION}")
 spar_set_test(package_recipes package 30)
 
@@ -79,6 +93,13 @@ if(TARGET spar_fortran AND EXISTS "${here}/fortran/main.f90")
   endif()
 endif()
 
+check_language(CXX)
+set(spar_cxx)
+if(NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  set(spar_cxx ${CMAKE_CXX_COMPILER})
+endif()
+spar_package_test(components sh "${here}/components" "${prefix}" "${work}/components" "${SPAR_MPI}" "${SPAR_FORTRAN}" ${spar_cxx})
+
 find_program(SPAR_DPKG_SHLIBDEPS dpkg-shlibdeps)
 find_program(SPAR_FILE file) # CPack asks it what is a library
 mark_as_advanced(SPAR_DPKG_SHLIBDEPS SPAR_FILE)
@@ -87,7 +108,6 @@ if(SPAR_DPKG_SHLIBDEPS AND SPAR_FILE AND SPAR_PKG_CONFIG)
     "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}")
 endif()
 
-check_language(CXX)
 if(CMAKE_CXX_COMPILER)
   set(mpi_flags)
   if(SPAR_MPI)

@@ -1,6 +1,6 @@
-# examples/python where there is an interpreter with numpy; a sanitized library cannot be loaded into one.
+# examples/python where there is an interpreter with numpy; a sanitized or foreign library cannot be loaded into one.
 find_package(Python3 QUIET COMPONENTS Interpreter)
-if(CMAKE_C_FLAGS MATCHES "sanitize" OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+if(CMAKE_CROSSCOMPILING OR CMAKE_C_FLAGS MATCHES "sanitize" OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
   return()
 endif()
 set(python)

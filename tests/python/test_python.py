@@ -1,8 +1,10 @@
 """examples/python/spar.py against closed forms, and what it promises of arguments, results and failures.
     test_python.py <folder to write in>
 """
+import copy
 import gc
 import os
+import pickle
 import sys
 import unittest
 
@@ -298,6 +300,181 @@ class Edges(unittest.TestCase):
         with spar.Session() as s:
             s.set_option('coupling.reuse', '7')
             self.assertEqual(s.get_option('coupling.reuse'), '7')
+
+
+    def test_closed(self):
+        """What belonged to a session that is closed is refused, and closing it again does nothing (it ended the process)."""
+        s = spar.Session()
+        member, fluid = body(s)
+        joint = s.joint_create('joint', member, 0, None, 0, 63)
+        beam = s.beam_create('blade', 1, 4)
+        beam.set_axis([0, 1], [[0, 0, 0], [10.0, 0, 0]])
+        beam.set_sections([0], [numpy.eye(6) * 1e6], [numpy.eye(6)])
+        beam.commit()
+        sections = beam.fluid_create('sections')
+        sections.set_sections([-1, 1])
+        sections.map()
+        aero = spar.Aero([sections])
+        s.close()
+        for call in (member.get_motion, fluid.get_name, joint.get_load, aero.get_rotor, s.get_time,
+                     lambda: fluid.pull_motion(1.0)):
+            with self.assertRaisesRegex(spar.Error, 'closed'):
+                call()
+        with spar.Session() as other:
+            with self.assertRaisesRegex(spar.Error, 'the session of this member is closed'):
+                other.joint_create('joint', member, 0, None, 0, 0)
+        for thing in (fluid, aero, s, s):
+            thing.close()
+
+    def test_closed_fluid(self):
+        with spar.Session() as s:
+            _, fluid = body(s)
+            fluid.close()
+            fluid.close()
+            with self.assertRaisesRegex(spar.Error, 'this fluid is closed'):
+                fluid.pull_motion(1.0)
+
+    def test_one_owner(self):
+        """Copies would free what the first frees."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            for thing in (s, member, fluid, spar.Polar([-3, 3], [1, 1], [0, 0])):
+                for again in (copy.copy, copy.deepcopy, pickle.dumps):
+                    with self.assertRaisesRegex(TypeError, 'cannot be copied or pickled'):
+                        again(thing)
+
+    def test_arrays(self):
+        """Of the header's shape, or flat; what is not is refused: (3, n) was read as (n, 3), complex as real."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            places = numpy.arange(12.0).reshape(4, 3)
+            other = member.fluid_create('other')
+            for wrong in (places.T, places.reshape(2, 6), places[None]):
+                with self.assertRaisesRegex(ValueError, r'it must be x\[n\]\[3\]'):
+                    other.set_motion_nodes(wrong)
+            for right in (places, places.ravel(), places.tolist(), numpy.asfortranarray(places)):
+                other.set_motion_nodes(right)
+                other.map()
+                numpy.testing.assert_allclose(other.pull_motion(1.0)[0], places, atol=1e-14)
+            for wrong in ([1j, 0, 0], numpy.zeros(3, complex), ['a', 'b', 'c'], [None, 0, 0]):
+                with self.assertRaises(TypeError):
+                    s.set_gravity(wrong)
+            s.set_gravity([0, True, numpy.float32(2)])
+            with self.assertRaises(ValueError):
+                fluid.pull_motion(1.0, x=numpy.zeros((3, 1)))
+
+    def test_names(self):
+        """A joint's spring and a line's are two calls."""
+        with spar.Session() as s:
+            member, _ = body(s)
+            joint = s.joint_create('joint', member, 0, None, 0, 63)
+            joint.set_spring(numpy.eye(6) * 50)
+            with self.assertRaisesRegex(spar.Error, 'not a line'):
+                joint.line_set_spring(1.0, 0.0, 1.0, 0)
+            line = s.line_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
+            line.line_set_spring(10.0, 0.0, 1.0, 1)
+            s.step(0.1)
+
+    def test_within(self):
+        """A step to a tolerance takes dt and gives it back: the next one, and the one that was taken."""
+        with spar.Session() as s:
+            s.set_gravity([0, 0, -9.81])
+            body(s)
+            s.set_tolerance(1.0, 0.1)
+            before = []
+            dt, taken = s.step_within(0.25, lambda session, t, h: before.append((t, h)))
+            self.assertEqual(before[-1], (0.0, taken))
+            self.assertTrue(taken <= 0.25 and dt > 0)
+            self.assertEqual(s.get_time()[0], taken)
+
+
+class Every(unittest.TestCase):
+    """Every call of the table is made, with arguments that its parameters' names suggest: it answers or raises spar.Error."""
+
+    MADE_OTHERWISE = ('spar_session_create', 'spar_session_create_fcomm', 'spar_polar_create', 'spar_aero_create')
+    VALUES = {'dt': 0.01, 'steps': 8, 'load_steps': 1, 'nodes_per_element': 4, 'elements': 1, 'node': 0, 'theta': 1.0,
+              'rho_inf': 0.9, 'substeps': 1, 'atol': 1e-9, 'rtol': 1e-6, 'max_iterations': 40, 'omega': 1.0, 'scheme': 1,
+              'order': 1, 'threads': 1, 'on': 0, 'key': 'coupling.reuse', 'value': '4', 'node_a': 0, 'node_b': 0,
+              'free_motions': 63, 'rule': 0, 'points': 0, 'alpha': 0.1, 'kind': 0, 'modes': 0, 'rank': 0, 'width': 2,
+              'method': 0, 'max_distance': 10.0, 'within': 1.0, 'beyond': 2.0, 'mask': 0, 'stiffness': 10.0, 'time': 1.0,
+              'damping': 0.1, 'length': 1.0, 'tension_only': 0, 'drift': 1.0, 'amplitude': 1e-4, 'memory': 0, 'goals': 1,
+              'tolerance': 0.1, 'compare': 0, 'density': 1.2, 'chord': 0.5, 'twist': 0.0, 'turn': 1, 'total': 1, 'law': 0,
+              'height': 10.0, 'parameter': 0.1, 'hub_radius': 0.5, 'tip_radius': 11.0, 'base_radius': 1.0,
+              'top_radius': 1.0, 'alpha_rad': 0.1, 'status': 0, 'which': 0, 'flag': 1, 'convention': 0, 'effects': 255,
+              'row': 0, 'feature': 'mpi', 'part': 0, 'i': 0, 'n': 1, 'capacity': 4}
+
+    def scene(self, new):
+        """Handles of each kind in a session of their own; new: with a beam that is not described yet."""
+        s = spar.Session()
+        member, fluid = body(s)
+        beam = cantilever(s)
+        blade = beam.fluid_create('blade')
+        blade.set_sections([-1, 1])
+        blade.map()
+        joint = s.joint_create('joint', member, 0, None, 0, 63)
+        line = s.line_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
+        point = s.point_create('point', [5, 0, 0], UNIT)
+        point.commit()
+        return {'session': [s], 'member': [beam, member, point, *([s.beam_create('new', 1, 4)] if new else [])],
+                'fluid': [fluid, blade, member.fluid_create('bare')], 'joint': [joint, line],
+                'polar': [spar.Polar([-3, 3], [1, 1], [0, 0])], 'aero': [spar.Aero([blade])]}
+
+    def argument(self, call, p, scene, owner):  # pylint: disable=too-many-return-statements
+        """A value for a parameter, by what it is and is called."""
+        if p.how in ('callback', 'list'):
+            return None
+        if p.type in scene:
+            return scene[p.type][0] if p.name != 'b' else None
+        if p.array:
+            if p.name == 'stiffness' and p.dims == [36]:
+                return numpy.zeros(36)
+            n = owner.size('n', call, {}) if owner is not None else None
+            n = 2 if n is None or (n == 0 and call.python_name.startswith('set_')) else n
+            shape = [d if isinstance(d, int) else {'blades': 1, 'width': 2}.get(d, n) for d in p.dims]
+            value = numpy.zeros(shape, int if p.type.startswith('int') else float)
+            if p.name in ('eta', 'span', 'xi'):
+                value[...] = numpy.linspace(0, 1, value.size)
+            elif p.dims[-1] == 36:
+                value[...] = numpy.eye(6).ravel()
+            elif p.dims[-1] in (4, 7):
+                value[..., -4] = 1
+            elif p.name in ('xyz', 'axis', 'up', 'top', 'point_b'):
+                value[..., 0] = numpy.linspace(1, 2, n) if value.ndim > 1 else 1
+            return value
+        if p.name in self.VALUES:
+            return self.VALUES[p.name]
+        if p.type != 'char':
+            return 1
+        return os.path.join(WORK, 'every.file') if 'path' in p.name or p.name == 'file' else 'a text'
+
+    def test_all(self):
+        answered, tried = set(), set()
+        for call in spar._calls.values():  # pylint: disable=protected-access
+            if call.name in self.MADE_OTHERWISE or call.name.endswith('_destroy'):
+                continue
+            for number in range(4):
+                scene = self.scene(number == 3)
+                try:
+                    owners = scene[call.owner] if call.owner else [None]
+                    if number >= len(owners) or call.name in answered:
+                        continue
+                    owner = owners[number]
+                    if call.name in ('spar_step_solve', 'spar_step_check', 'spar_step_accept', 'spar_step_reject'):
+                        scene['session'][0].step_begin(0.01)
+                    if call.name in ('spar_step_check', 'spar_step_accept'):
+                        scene['session'][0].step_solve()
+                    try:
+                        given = {p.name: self.argument(call, p, scene, owner) for p in call.asked}
+                        tried.add(call.name)
+                        call(owner, **given)
+                        answered.add(call.name)
+                    except spar.Error as refused:
+                        self.assertTrue(0 < refused.status <= spar.ERR_LIMIT and str(refused), call.name)
+                finally:
+                    scene['session'][0].close()
+        every = {name for name in spar._calls if not name.endswith('_destroy')}  # pylint: disable=protected-access
+        self.assertEqual(every - tried, set(self.MADE_OTHERWISE))
+        self.assertGreaterEqual(len(answered), 160)  # of 196; the others want more of a scene, and say so
 
 
 class Files(unittest.TestCase):

@@ -6,12 +6,8 @@
      most (W h)^2 of the kinetic energy.
    - The largest force is that of even steps within 5 %, or as check() says.
    - Motion, velocities, accelerations and forces converge with order 2 in steps of uneven length.
-   SPAR_SEQUENCES=N runs N sequences of each scene, factor and rho_inf in place of 2. */
-#include "scene.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+   SPAR_SEQUENCES=N runs 8 N random sequences of each scene in place of 32. */
+#include "sequences.h"
 
 /* ---- scenes ---- */
 
@@ -152,16 +148,7 @@ static void step(world *w, double dt) {
 }
 
 static double force(const world *w) {
-    double f[6], most = 0;
-    for (int i = 0; i < w->joints || i == 0; i++) {
-        if (w->joints) {
-            OK(w->s, spar_joint_get_load(w->j[i], f));
-        } else {
-            OK(w->s, spar_member_get_reaction(w->m[0], f));
-        }
-        most = fmax(most, sqrt(spari_dot(f, f)));
-    }
-    return most;
+    return largest_force(w->s, w->joints, w->j, w->m[0], 0);
 }
 
 static double energy(const world *w, double *kinetic) {
@@ -177,36 +164,6 @@ static double energy(const world *w, double *kinetic) {
 
 /* ---- sequences ---- */
 
-static uint64_t chance;
-
-static double uniform(void) {
-    chance = chance * 6364136223846793005u + 1442695040888963407u;
-    return (double)(chance >> 11) / 9007199254740992.0;
-}
-
-/* Alternating by 1 %, by 1:3, shrinking by 0.5 % a step, every tenth a twentieth, one a millionth of a second; else
-   random between h / factor and h. */
-enum { EVEN, ONE_PERCENT, ONE_TO_THREE, SHRINKING, OUTPUT_TIMES, SHORT, RANDOM };
-
-static double length_of(int pattern, int k, double h, double factor) {
-    switch (pattern) {
-    case ONE_PERCENT:
-        return h * (k % 2 ? 1.01 : 0.99);
-    case ONE_TO_THREE:
-        return h * (k % 2 ? 1.5 : 0.5);
-    case SHRINKING:
-        return h * pow(0.995, k % 300);
-    case OUTPUT_TIMES:
-        return k % 10 == 9 ? h / 20 : h;
-    case SHORT:
-        return k == 37 ? 1e-6 : h;
-    case RANDOM:
-        return h * pow(factor, -uniform());
-    default:
-        return h;
-    }
-}
-
 typedef struct found {
     double force, gain; /* the largest force; the largest gain of energy by the largest kinetic one, or the first */
 } found;
@@ -217,12 +174,12 @@ static found run(int kind, double rho, int pattern, double h, double factor, dou
     found f = {0, 0};
     for (int k = 0; w.t < time; k++) {
         double kinetic;
-        step(&w, length_of(pattern, k, h, factor));
+        step(&w, sequence_step(pattern, k, h, factor));
         f.force = fmax(f.force, force(&w));
         gain = fmax(gain, energy(&w, &kinetic) - first);
         most = fmax(most, kinetic);
     }
-    f.gain = gain / most;
+    f.gain = kind == SLIDER || kind == TURNING ? 0 : gain / most; /* those are driven */
     spar_session_destroy(&w.s);
     return f;
 }
@@ -232,43 +189,56 @@ static double mean_step(int kind) {
     return kind == STIFFER || kind == PENDULUM ? 0.005 : kind == SPIN ? 0.05 : kind >= CLAMPED ? 0.002 : 0.01;
 }
 
-static void check(int kind, double rho, int pattern, double factor, const found *even, double time) {
+typedef struct tally {
+    int sequences, failed;
+    double gain, force[2]; /* the worst: gain, and ratio of the force to that of even steps; of factors above 1e5 */
+} tally;
+
+static void check(int kind, double rho, int pattern, double factor, const found *even, double time, tally *sum) {
     double h = mean_step(kind), turn = spin[kind] * 1.5 * h;
     found f = run(kind, rho, pattern, h, factor, time);
-    /* Short steps resolve waves in beams that even steps do not: 1.5. Steps of 1e-8 s: rounding of positions, by h^2.
+    sum->sequences++;
+    sum->gain = fmax(sum->gain, f.gain);
+    sum->force[factor > 1e5] = fmax(sum->force[factor > 1e5], f.force / even->force);
+    /* Short steps resolve waves in beams that even steps do not: 1.5. Steps of 5e-9 s: the rounding of a
+       position of 1 m, 2e-16, over (0.29 h)^2 is 100 m/s^2, twice the largest force of the pendulum: 5.
        Two stiff halves, each seen from its own middle: velocities after a long step are off by 0.04 h^2 3 W^3 r
-       = 7.5e-4 m/s, 0.26 N by the impedance of each of the bar's waves. */
-    double most = factor > 1e5 ? 3 : kind == SPIN && factor > 10 ? 2 : kind >= CLAMPED ? 1.5 : 1.05;
-    if (!(f.force < most * even->force) || (kind != SLIDER && kind != TURNING && !(f.gain < turn * turn + 1e-3))) {
+       = 7.5e-4 m/s, 0.26 N by the impedance of each of the bar's waves; of 330 sequences the worst has 2.002. Where
+       steps are kept for a while and generalised-alpha goes on with rho_inf 0 after a change: 1.118 of 330. */
+    double most = factor > 1e5                  ? 5
+                  : kind == SPIN && factor > 10 ? 2.1
+                  : kind >= CLAMPED             ? 1.5
+                  : pattern == REPEATED         ? 1.2
+                                                : 1.05;
+    if (!(f.force < most * even->force) || !(f.gain < turn * turn + 1e-3)) {
         print_message("%s, rho_inf %g, sequence %d over %g: force %g for %g, gain %.1e\n", names[kind], rho, pattern,
                       factor, f.force, even->force, f.gain);
-        fail();
+        sum->failed++;
     }
-}
-
-static int sequences(void) {
-    const char *n = getenv("SPAR_SEQUENCES");
-    return n ? atoi(n) : 2;
 }
 
 static void test_energy_and_forces(void **state) {
     (void)state;
-    static const double rho[] = {0.9, 0.5, 0, 1}, factor[] = {1.1, 3, 1e3, 1e6};
-    int count = 0;
+    int failed = 0;
     for (int kind = 0; kind < SCENES; kind++) {
         double time = kind >= CLAMPED ? 0.2 : kind == SPIN ? 2 : 0.8, h = mean_step(kind);
         const found even = run(kind, 0.9, EVEN, h, 1, time);
-        for (int r = 0; r < 4; r++) {
-            for (int pattern = ONE_PERCENT; pattern < RANDOM; pattern++, count++) {
-                check(kind, rho[r], pattern, 1, &even, time);
-            }
-            for (int k = 0; k < 4 * sequences(); k++, count++) {
-                chance = (uint64_t)(1000 * kind + 100 * r) + 7919u * (uint64_t)k;
-                check(kind, rho[r], RANDOM, factor[k % 4], &even, time);
-            }
+        tally sum = {0};
+        for (int pattern = ONE_PERCENT; pattern < RANDOM; pattern++) {
+            check(kind, 0.9, pattern, 1, &even, time, &sum);
+            check(kind, 0, pattern, 1, &even, time, &sum);
         }
+        for (int k = 0; k < sequence_count(4); k++) {
+            int pattern;
+            double factor, rho;
+            sequence_take(kind, k, &pattern, &factor, &rho);
+            check(kind, rho, pattern, factor, &even, time, &sum);
+        }
+        print_message("%-24s %5d sequences: worst gain %.1e, force %.3f, over 1e6 %.3f\n", names[kind], sum.sequences,
+                      sum.gain, sum.force[0], sum.force[1]);
+        failed += sum.failed;
     }
-    print_message("%d sequences\n", count);
+    assert_int_equal(failed, 0);
 }
 
 /* ---- order ---- */
@@ -280,9 +250,9 @@ static void figures(int kind, double rho, int pattern, double h, double time, do
     world w = make(kind, rho);
     double q[7 * 6], v[6 * 6], a[6 * 6];
     OK(w.s, spar_session_set_newton(w.s, 1e-15, 1e-13, 50));
-    chance = 5;
+    sequence_seed = 5;
     for (int k = 0; w.t < time * (1 - 1e-12); k++) {
-        double next = length_of(pattern, k, h, 2);
+        double next = sequence_step(pattern, k, h, 2);
         step(&w, w.t + 1.0001 * next > time ? time - w.t : next);
     }
     OK(w.s, spar_member_get_motion(w.m[w.bodies - 1], q, v, a));

@@ -212,7 +212,25 @@ static int names(const call *c, const char *message) {
            (trial && (strstr(message, "spar_step") || strstr(message, "spar_session_try")));
 }
 
+/* So many characters twice in a message: the same said twice. */
+static int says_twice(const char *text) {
+    enum { PIECE = 40 };
+    int64_t n = (int64_t)strlen(text);
+    for (int64_t i = 0; i + 2 * PIECE <= n; i++) {
+        for (int64_t j = i + PIECE; j + PIECE <= n; j++) {
+            if (memcmp(text + i, text + j, PIECE) == 0 && memcmp(text + i, text + i + 1, PIECE - 1) != 0) {
+                return 1; /* a long name is one letter many times */
+            }
+        }
+    }
+    return 0;
+}
+
 static void check_message(const call *c) {
+    if (says_twice(message_of(c))) {
+        fuzz_finding("twice", "%s answers %d, and the message says something twice: '%s'", c->what->name, c->status,
+                     message_of(c));
+    }
     for (int i = 0; i < c->asked; i++) {
         if (names(c, spar_session_message(c->where[i]))) {
             return;

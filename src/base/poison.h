@@ -1,0 +1,19 @@
+/* Where spar is built with SPAR_POISON (CMake option), work space is filled with NaN before each use, so that a number
+   of an earlier use that is read again shows in the results. Else nothing. */
+#ifndef SPARI_POISON_H
+#define SPARI_POISON_H
+
+#include <math.h>
+#include <stdint.h>
+
+static inline void spari_poison(double *x, int64_t n) {
+#ifdef SPAR_POISON
+    for (int64_t i = 0; x && i < n; i++) {
+        x[i] = NAN;
+    }
+#else
+    (void)x, (void)n;
+#endif
+}
+
+#endif

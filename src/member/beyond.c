@@ -1,0 +1,321 @@
+/* What acts on the part of a beam beyond a section: see beyond.h. Loads are kept element by element, each element's own
+   share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line, of the
+   ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them acts
+   beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
+#include "beyond.h"
+
+#include "../base/scene.h"
+#include "../math/rotation.h"
+#include "applied.h"
+#include "joint.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A point mass: where it is, and what it gives the beam there. */
+typedef struct point_force {
+    int element;
+    double xi, x[3], force[6];
+} point_force;
+
+struct spari_beyond {
+    const spar_member *member;
+    int64_t masses;
+    point_force *mass; /* [masses] */
+    double *x;         /* [nodes][3] places of the nodes, deformed where the equations know it */
+    double *spread;    /* [nodes][6] */
+    double *point;     /* [nodes][6] */
+    double *sum;       /* [elements + 1][6] of all elements from e on, about the first node */
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
+};
+
+int spari_beyond_is_known(const spar_member *m) {
+    return m->balanced[1] && m->body && m->body->C && m->body->elements == m->elements &&
+           m->body->per_element == m->per_element;
+}
+
+static int is_standing(const spar_member *m) {
+    return m->seen == SPARI_SEEN_LINEAR ? m->root != SPAR_ROOT_DRIVEN && !m->floats
+                                        : !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+}
+
+int spari_beyond_is_undeformed(const spar_member *m) {
+    return is_standing(m) && !m->body->pre;
+}
+
+void spari_beyond_free(spari_beyond *b) {
+    if (b) {
+        free(b->mass);
+        free(b->x);
+        free(b->spread);
+        free(b->point);
+        free(b->sum);
+        free(b);
+    }
+}
+
+static void add_about(const double center[3], const double x[3], const double f[6], double sum[6]) {
+    double moment[3];
+    const double arm[3] = {x[0] - center[0], x[1] - center[1], x[2] - center[2]};
+    spari_cross(arm, f, moment);
+    for (int k = 0; k < 3; k++) {
+        sum[k] += f[k];
+        sum[3 + k] += f[3 + k] + moment[k];
+    }
+}
+
+/* ---- inertia and weight ---- */
+
+/* The motion as the balance has it: of members that are linear where they stand, accelerations at the reference. */
+typedef struct inertial {
+    double *q, *v, *a, *room; /* [unique] 7, 6, 6, 6 */
+    int still;
+} inertial;
+
+static void fill_motion(const spar_member *m, inertial *w) {
+    const spari_body *body = m->body;
+    const int64_t n = body->unique;
+    for (int64_t i = 0; i < n; i++) {
+        w->q[7 * i + 3] = 1;
+    }
+    spari_member_to_unique(m, 6, m->after.a, w->a);
+    spari_member_to_unique(m, 6, m->after.v, w->v);
+    if (!is_standing(m)) {
+        spari_member_to_unique(m, 7, m->after.q, w->q);
+    }
+    if (body->drag > 0 && !w->still) { /* inertia of an acceleration: drag times the velocity it is of */
+        if (is_standing(m)) {
+            memcpy(w->room, w->v, (size_t)(6 * n) * sizeof *w->room);
+        } else {
+            spari_body_see(body, w->q, w->v, w->room);
+        }
+        for (int64_t i = 0; i < 6 * n; i++) {
+            w->a[i] += body->drag * w->room[i];
+        }
+    }
+    if (is_standing(m)) {
+        memset(w->v, 0, (size_t)(6 * n) * sizeof *w->v);
+    }
+}
+
+/* Nodal forces [P][6] of inertia less weight on element e, with the points' weights [slots]. */
+static void element_inertia(const spari_body *body, const inertial *w, int e, double *weights, double *r) {
+    const int64_t first = (int64_t)e * (body->per_element - 1);
+    spari_body part = *body;
+    part.elements = 1, part.unique = body->per_element;
+    part.first += e, part.slot += e;
+    part.C = part.D = part.pre = NULL;
+    part.linear[0] = NULL;
+    part.drag = 0;
+    part.crew = NULL;
+    part.weight = weights;
+    (void)spari_body_exact_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,
+                                    w->still ? NULL : w->a + 6 * first, 1, r, NULL);
+}
+
+/* What the point masses of element e give the beam, each by itself; their weights are then 0. */
+static void take_masses(spari_beyond *b, const inertial *w, int e, double *weights) {
+    const spar_member *m = b->member;
+    const spari_body *body = m->body;
+    const int P = m->per_element, points = body->first[e + 1] - body->first[e], lumps = spari_lumps_of(m, e);
+    double *at = weights + body->slot[e], r[6 * SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
+    int next = points - lumps;
+    for (int64_t k = 0; k < m->beam->lump_count && next < points; k++) {
+        double xi;
+        if (spari_lump_element(m, k, &xi) != e) {
+            continue;
+        }
+        point_force *p = b->mass + b->masses++;
+        double *alone = weights + body->slot[body->elements]; /* all but this one: 0 */
+        memset(alone, 0, (size_t)body->slot[body->elements] * sizeof *alone);
+        alone[body->slot[e] + next] = 1;
+        element_inertia(body, w, e, alone, r);
+        at[next++] = 0;
+        *p = (point_force){.element = e, .xi = xi};
+        spari_lagrange(P, b->gll, b->bary, xi, phi, NULL);
+        for (int l = 0; l < P; l++) {
+            for (int c = 0; c < 3; c++) {
+                p->x[c] += phi[l] * b->x[3 * ((int64_t)e * P + l) + c];
+            }
+        }
+        for (int l = 0; l < P; l++) {
+            add_about(p->x, b->x + 3 * ((int64_t)e * P + l), r + 6 * l, p->force);
+        }
+        for (int c = 0; c < 6; c++) {
+            p->force[c] = -p->force[c];
+        }
+    }
+}
+
+static int add_inertia(spari_beyond *b) {
+    const spar_member *m = b->member;
+    const spari_body *body = m->body;
+    const int64_t n = body->unique, slots = body->slot[body->elements];
+    const int lumped = m->beam->lump_count > 0 && (m->effects & SPAR_EFFECT_MASSES) && body->mass;
+    double *room = spari_zalloc(25 * n + 2 * slots, sizeof *room), *weights = room + 25 * n;
+    if (!room) {
+        return SPAR_ERR_MEMORY;
+    }
+    inertial w = {room, room + 7 * n, room + 13 * n, room + 19 * n, !(m->effects & SPAR_EFFECT_INERTIA)};
+    fill_motion(m, &w);
+    memcpy(weights, body->weight, (size_t)slots * sizeof *weights);
+    for (int e = 0; e < m->elements && body->mass; e++) {
+        double r[6 * SPARI_MAX_NODES], *to = b->spread + 6 * (int64_t)e * m->per_element;
+        if (lumped) {
+            take_masses(b, &w, e, weights);
+        }
+        element_inertia(body, &w, e, weights, r);
+        for (int i = 0; i < 6 * m->per_element; i++) {
+            to[i] -= r[i];
+        }
+    }
+    free(room);
+    return SPAR_OK;
+}
+
+/* ---- loads ---- */
+
+static void gather_loads_at(spari_beyond *b) {
+    const spar_member *m = b->member;
+    const double *follower = spari_applied_follower(m);
+    const int turns = !is_standing(m);
+    if (spari_carries_loads(m)) {
+        spari_applied_nodal(m, m->after.q, b->spread);
+    }
+    for (int64_t i = 0; i < m->nodes; i++) {
+        double at_node[6] = {0};
+        for (int k = 0; k < 6; k++) {
+            at_node[k] = m->dead[6 * i + k];
+            b->spread[6 * i + k] += m->load_solved[1][6 * i + k] - at_node[k];
+        }
+        for (int k = 0; k < 6 && follower; k += 3) {
+            double f[3];
+            memcpy(f, follower + 6 * i + k, sizeof f);
+            if (turns) {
+                spari_rotate(m->after.q + 7 * i + 3, f, f);
+            }
+            for (int c = 0; c < 3; c++) {
+                at_node[k + c] += f[c];
+                b->spread[6 * i + k + c] -= f[c];
+            }
+        }
+        if (m->session->joints) {
+            spari_joints_on(m, i, at_node);
+        }
+        memcpy(b->point + 6 * i, at_node, sizeof at_node);
+    }
+}
+
+/* ---- all of it ---- */
+
+static void sum_elements(spari_beyond *b) {
+    const spar_member *m = b->member;
+    const int P = m->per_element;
+    for (int e = m->elements - 1; e >= 0; e--) {
+        double *sum = b->sum + 6 * (int64_t)e;
+        memcpy(sum, sum + 6, 6 * sizeof *sum);
+        for (int64_t i = (int64_t)e * P; i < (int64_t)(e + 1) * P; i++) {
+            add_about(b->x, b->x + 3 * i, b->spread + 6 * i, sum);
+            add_about(b->x, b->x + 3 * i, b->point + 6 * i, sum);
+        }
+        for (int64_t k = 0; k < b->masses; k++) {
+            if (b->mass[k].element == e) {
+                add_about(b->x, b->mass[k].x, b->mass[k].force, sum);
+            }
+        }
+    }
+}
+
+spari_beyond *spari_beyond_create(const spar_member *m) {
+    spari_beyond *b = spari_zalloc(1, sizeof *b);
+    if (!b) {
+        return NULL;
+    }
+    b->member = m;
+    b->x = spari_zalloc(3 * m->nodes, sizeof *b->x);
+    b->spread = spari_zalloc(6 * m->nodes, sizeof *b->spread);
+    b->point = spari_zalloc(6 * m->nodes, sizeof *b->point);
+    b->sum = spari_zalloc(6 * ((int64_t)m->elements + 1), sizeof *b->sum);
+    b->mass = spari_zalloc(m->beam->lump_count + 1, sizeof *b->mass);
+    if (!b->x || !b->spread || !b->point || !b->sum || !b->mass) {
+        spari_beyond_free(b);
+        return NULL;
+    }
+    spari_gll(m->per_element, b->gll, NULL, b->bary);
+    for (int64_t i = 0; i < 3 * m->nodes; i++) {
+        b->x[i] = m->xr[i] + (spari_beyond_is_undeformed(m) ? 0 : m->after.q[7 * (i / 3) + i % 3]);
+    }
+    gather_loads_at(b);
+    if (add_inertia(b) != SPAR_OK) {
+        spari_beyond_free(b);
+        return NULL;
+    }
+    sum_elements(b);
+    return b;
+}
+
+/* The spread loads of the station's element beyond it: forces by their shares, their moment as the integral of the
+   slope of the line times the force beyond, which Gauss' rule gives exactly. 0, or 1: no memory. */
+static int add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
+    const int P = b->member->per_element;
+    const int64_t from = (int64_t)s->element * P;
+    double xi[SPARI_MAX_NODES], w[SPARI_MAX_NODES], share[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
+    const double half = 0.5 * (1 - s->xi);
+    if (spari_gauss(P, xi, w)) {
+        return 1;
+    }
+    spari_share_beyond(P, b->gll, s->xi, share);
+    for (int l = 0; l < P; l++) {
+        for (int k = 0; k < 6; k++) {
+            force[k] += share[l] * b->spread[6 * (from + l) + k];
+        }
+    }
+    for (int g = 0; g < P; g++) {
+        const double at = s->xi + half * (1 + xi[g]);
+        double slope[3] = {0}, f[3] = {0}, moment[3];
+        spari_lagrange(P, b->gll, b->bary, at, phi, dphi);
+        spari_share_beyond(P, b->gll, at, share);
+        for (int l = 0; l < P; l++) {
+            for (int k = 0; k < 3; k++) {
+                slope[k] += dphi[l] * b->x[3 * (from + l) + k];
+                f[k] += share[l] * b->spread[6 * (from + l) + k];
+            }
+        }
+        spari_cross(slope, f, moment);
+        for (int k = 0; k < 3; k++) {
+            force[3 + k] += half * w[g] * moment[k];
+        }
+    }
+    return 0;
+}
+
+int spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[6]) {
+    const spar_member *m = b->member;
+    const int P = m->per_element;
+    const double *sum = b->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
+    double x[3] = {0}, phi[SPARI_MAX_NODES], moment[3];
+    spari_lagrange(P, b->gll, b->bary, s->xi, phi, NULL);
+    for (int l = 0; l < P; l++) {
+        for (int k = 0; k < 3; k++) {
+            x[k] += phi[l] * b->x[3 * ((int64_t)s->element * P + l) + k];
+        }
+    }
+    const double arm[3] = {b->x[0] - x[0], b->x[1] - x[1], b->x[2] - x[2]};
+    spari_cross(arm, sum, moment);
+    for (int k = 0; k < 3; k++) {
+        force[k] = sum[k];
+        force[3 + k] = sum[3 + k] + moment[k];
+    }
+    for (int l = 1; l < P; l++) { /* the first node is the root's, or counts in the element before */
+        int64_t i = (int64_t)s->element * P + l;
+        if (b->gll[l] >= s->xi - near) {
+            add_about(x, b->x + 3 * i, b->point + 6 * i, force);
+        }
+    }
+    for (int64_t k = 0; k < b->masses; k++) {
+        if (b->mass[k].element == s->element && b->mass[k].xi >= s->xi - near && b->mass[k].xi > -1) {
+            add_about(x, b->mass[k].x, b->mass[k].force, force);
+        }
+    }
+    return add_share(b, s, force);
+}

@@ -1,0 +1,90 @@
+/* Elements with too few nodes for their stiffness: a bent element of few nodes cannot keep its length, or its sections
+   across its line, and is then as stiff as its axial and shear stiffness make it. Told once, at commit. Limits are
+   those at which a cantilever of one element deflects by 10 % too little (tests/test_beam.c). */
+#include "beam.h"
+
+#include "../base/scene.h"
+#include "../math/rotation.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { ENOUGH = 5 }; /* nodes: what is left is below 1.3 % */
+
+/* Largest (axial or shear stiffness) h^2 / (bending stiffness) that elements of P nodes bear; bent: in their reference,
+   or by the loads. */
+static double bearable(int P, int bent) {
+    switch (P) {
+    case 2:
+        return 1;
+    case 3:
+        return 30;
+    default:
+        return P < ENOUGH && bent ? 1e3 : INFINITY;
+    }
+}
+
+/* The same of a section, per length squared. */
+static double stiffness_ratio(const double C[36]) {
+    return fmax(C[0], fmax(C[7], C[14])) / fmin(C[28], C[35]);
+}
+
+/* Largest of the elements' ratios, and of the member's with its whole length; *element: where. */
+static double largest_ratio(const spar_member *m, double *whole, int *element) {
+    double most = 0, length = 0, section = 0;
+    for (int e = 0; e < m->elements; e++) {
+        double h = 0, ratio = 0;
+        for (int i = 1; i < m->per_element; i++) {
+            const double *x = m->xr + 3 * ((int64_t)e * m->per_element + i);
+            const double d[3] = {x[0] - x[-3], x[1] - x[-2], x[2] - x[-1]};
+            h += spari_norm(d);
+        }
+        for (int k = 0; k < 3; k++) {
+            double C[36];
+            spari_beam_section_at(m->beam, m->beam->stiffness, (e + 0.5 * k) / m->elements, C);
+            ratio = fmax(ratio, stiffness_ratio(C));
+        }
+        length += h, section = fmax(section, ratio);
+        *element = ratio * h * h > most ? e : *element;
+        most = fmax(most, ratio * h * h);
+    }
+    *whole = section * length * length;
+    return most;
+}
+
+/* Whether an element is bent in its reference by more than 0.01 rad from node to node. */
+static int is_bent(const spar_member *m) {
+    const double x[3] = {1, 0, 0};
+    double before[3], after[3], turn[3];
+    for (int64_t i = 1; i < m->nodes; i++) {
+        spari_rotate(m->qr + 4 * (i - 1), x, before);
+        spari_rotate(m->qr + 4 * i, x, after);
+        spari_cross(before, after, turn);
+        if (i % m->per_element != 0 && spari_norm(turn) > 0.01) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+void spari_beam_tell_locking(const spar_member *m) {
+    static const double rounding = 1e15; /* bending is then less than the last digit of the rest */
+    char text[SPARI_MESSAGE_SIZE];
+    double whole = 0;
+    int element = 0, exact = m->seen != SPARI_SEEN_LINEAR && (m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->per_element, exact || is_bent(m));
+    if (ratio > most) {
+        (void)snprintf(text, sizeof text,
+                       "member '%s': element %d has %d nodes and locks: axial or shear stiffness is %.2g times its "
+                       "bending stiffness by length squared, and it bends too little; take %d nodes an element, or "
+                       "%.3g times as many elements",
+                       m->name, element, m->per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
+        spari_log(m->session, SPAR_LOG_WARNING, text);
+    } else if (whole > rounding && m->beam->pre_count == 0) {
+        (void)snprintf(text, sizeof text,
+                       "member '%s': axial or shear stiffness is %.2g times its bending stiffness by length squared: "
+                       "bending is lost in rounding with any number of nodes; bring them closer together",
+                       m->name, whole);
+        spari_log(m->session, SPAR_LOG_WARNING, text);
+    }
+}

@@ -1,0 +1,508 @@
+/* Sparse matrices of dense blocks: see block_matrix.h. */
+#include "block_matrix.h"
+
+#include "../base/status.h"
+#include "inertia.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A block in the order of elimination: its diagonal [size][size], and those it shares with the blocks eliminated after
+   it, as a row of blocks U [size][rows] and a column of blocks L [rows][size]. */
+typedef struct block_panel {
+    int unit; /* number before ordering */
+    int size, first, rows;
+    int near, nears; /* the later blocks: where their list begins, and how many */
+    double *D, *U, *L;
+    int *pivot;
+} block_panel;
+
+struct spari_blocks {
+    int n, rows;
+    int *position; /* of a unit in the order */
+    int *start;    /* of a unit's rows in a vector */
+    block_panel *panel;
+    int *near;   /* positions of later blocks, increasing */
+    int *offset; /* where each begins in U's columns and L's rows */
+    int *pivot;
+    double *entry, least;
+    int watched, negative; /* whether the signs are counted, and how many are negative */
+    int64_t entries;
+};
+
+/* ---- one dense block ---- */
+
+static int factor_block(int n, double *A, int stride, int *pivot) {
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++) {
+            best = fabs(A[i * stride + k]) > fabs(A[best * stride + k]) ? i : best;
+        }
+        pivot[k] = best;
+        for (int j = 0; j < n && best != k; j++) {
+            double kept = A[k * stride + j];
+            A[k * stride + j] = A[best * stride + j];
+            A[best * stride + j] = kept;
+        }
+        double p = A[k * stride + k];
+        if (!(fabs(p) > 0) || !isfinite(p)) {
+            return 1;
+        }
+        for (int i = k + 1; i < n; i++) {
+            double f = A[i * stride + k] /= p;
+            for (int j = k + 1; j < n && f != 0; j++) {
+                A[i * stride + j] -= f * A[k * stride + j];
+            }
+        }
+    }
+    return 0;
+}
+
+static void solve_one(int n, const double *A, int stride, const int *pivot, double *x) {
+    for (int k = 0; k < n; k++) {
+        double kept = x[k];
+        x[k] = x[pivot[k]], x[pivot[k]] = kept;
+    }
+    for (int k = 1; k < n; k++) {
+        double sum = x[k];
+        for (int i = 0; i < k; i++) {
+            sum -= A[k * stride + i] * x[i];
+        }
+        x[k] = sum;
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        double sum = x[k];
+        for (int i = k + 1; i < n; i++) {
+            sum -= A[k * stride + i] * x[i];
+        }
+        x[k] = sum / A[k * stride + k];
+    }
+}
+
+static void solve_block(int n, const double *A, int stride, const int *pivot, int count, double *x, int x_stride) {
+    for (int k = 0; k < n; k++) {
+        double *row = x + k * x_stride, *other = x + pivot[k] * x_stride;
+        for (int c = 0; c < count && pivot[k] != k; c++) {
+            double kept = row[c];
+            row[c] = other[c], other[c] = kept;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = k + 1; i < n; i++) {
+            double f = A[i * stride + k];
+            for (int c = 0; c < count && f != 0; c++) {
+                x[i * x_stride + c] -= f * x[k * x_stride + c];
+            }
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        double *row = x + k * x_stride, p = 1 / A[k * stride + k];
+        for (int i = k + 1; i < n; i++) {
+            double f = A[k * stride + i];
+            for (int c = 0; c < count && f != 0; c++) {
+                row[c] -= f * x[i * x_stride + c];
+            }
+        }
+        for (int c = 0; c < count; c++) {
+            row[c] *= p;
+        }
+    }
+}
+
+/* ---- the order ---- */
+
+/* Neighbours of the blocks that are left, while the order is found. */
+typedef struct block_graph {
+    int n;
+    int **near, *count;                   /* sorted lists */
+    int *waits;                           /* blocks that have to go first; -1: gone */
+    int *later, *later_at;                /* blocks that wait for each */
+    int *head, *next, *last, *key, least; /* those that wait for none, by degree: lists in both directions */
+} block_graph;
+
+static void graph_free(block_graph *g) {
+    for (int i = 0; g->near && i < g->n; i++) {
+        free(g->near[i]);
+    }
+    void *all[] = {g->near, g->count, g->waits, g->later, g->later_at, g->head, g->next, g->last, g->key};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        free(all[i]);
+    }
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    int x = *(const int *)a, y = *(const int *)b;
+    return (x > y) - (x < y);
+}
+
+static int list_neighbours(block_graph *g, int64_t count, const spari_block_pair *pair) {
+    for (int64_t k = 0; k < count; k++) {
+        g->count[pair[k].a] += pair[k].a != pair[k].b;
+        g->count[pair[k].b] += pair[k].a != pair[k].b;
+    }
+    for (int i = 0; i < g->n; i++) {
+        g->near[i] = spari_zalloc(g->count[i] + 1, sizeof **g->near);
+        if (!g->near[i]) {
+            return 1;
+        }
+        g->count[i] = 0;
+    }
+    for (int64_t k = 0; k < count; k++) {
+        int a = pair[k].a, b = pair[k].b;
+        if (a != b) {
+            g->near[a][g->count[a]++] = b;
+            g->near[b][g->count[b]++] = a;
+        }
+    }
+    for (int i = 0; i < g->n; i++) {
+        int kept = 0, *list = g->near[i];
+        qsort(list, (size_t)g->count[i], sizeof *list, compare_numbers);
+        for (int k = 0; k < g->count[i]; k++) {
+            if (kept == 0 || list[kept - 1] != list[k]) {
+                list[kept++] = list[k];
+            }
+        }
+        g->count[i] = kept;
+    }
+    return 0;
+}
+
+static void list_waits(block_graph *g, int64_t count, const spari_block_pair *before) {
+    for (int64_t k = 0; k < count; k++) {
+        g->waits[before[k].b]++;
+        g->later_at[before[k].a + 1]++;
+    }
+    for (int i = 0; i < g->n; i++) {
+        g->later_at[i + 1] += g->later_at[i];
+        g->key[i] = g->later_at[i];
+    }
+    for (int64_t k = 0; k < count; k++) {
+        g->later[g->key[before[k].a]++] = before[k].b;
+    }
+}
+
+static void put_ready(block_graph *g, int i) {
+    int d = g->key[i] = g->count[i];
+    g->next[i] = g->head[d], g->last[i] = -1;
+    if (g->head[d] >= 0) {
+        g->last[g->head[d]] = i;
+    }
+    g->head[d] = i;
+    g->least = d < g->least ? d : g->least;
+}
+
+static void take_ready(block_graph *g, int i) {
+    if (g->last[i] >= 0) {
+        g->next[g->last[i]] = g->next[i];
+    } else {
+        g->head[g->key[i]] = g->next[i];
+    }
+    if (g->next[i] >= 0) {
+        g->last[g->next[i]] = g->last[i];
+    }
+}
+
+static int graph_create(block_graph *g, int n, int64_t coupled_count, const spari_block_pair *coupled,
+                        int64_t before_count, const spari_block_pair *before) {
+    *g = (block_graph){.n = n};
+    g->near = spari_zalloc(n, sizeof *g->near);
+    g->count = spari_zalloc(n, sizeof *g->count);
+    g->waits = spari_zalloc(n, sizeof *g->waits);
+    g->later = spari_zalloc(before_count + 1, sizeof *g->later);
+    g->later_at = spari_zalloc(n + 1, sizeof *g->later_at);
+    g->head = spari_zalloc(n, sizeof *g->head);
+    g->next = spari_zalloc(n, sizeof *g->next);
+    g->last = spari_zalloc(n, sizeof *g->last);
+    g->key = spari_zalloc(n, sizeof *g->key);
+    if (!g->near || !g->count || !g->waits || !g->later || !g->later_at || !g->head || !g->next || !g->last ||
+        !g->key || list_neighbours(g, coupled_count, coupled)) {
+        return 1;
+    }
+    list_waits(g, before_count, before);
+    g->least = n;
+    for (int i = 0; i < n; i++) {
+        g->head[i] = -1;
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        if (g->waits[i] == 0) {
+            put_ready(g, i);
+        }
+    }
+    return 0;
+}
+
+/* The neighbours of u without u and v, with those of v. 0 or 1. */
+static int merge_neighbours(block_graph *g, int u, int v) {
+    const int *a = g->near[u], *b = g->near[v];
+    int na = g->count[u], nb = g->count[v], i = 0, k = 0, n = 0, *both = spari_zalloc(na + nb, sizeof *both);
+    while (both && (i < na || k < nb)) {
+        int x = k >= nb || (i < na && a[i] <= b[k]) ? a[i] : b[k];
+        i += i < na && a[i] == x;
+        k += k < nb && b[k] == x;
+        if (x != u && x != v) {
+            both[n++] = x;
+        }
+    }
+    free(g->near[u]);
+    g->near[u] = both;
+    g->count[u] = both ? n : 0;
+    return !both;
+}
+
+/* The next block to eliminate; its neighbours become neighbours of each other. -1: no memory. */
+static int eliminate_next(block_graph *g) {
+    while (g->least < g->n && g->head[g->least] < 0) {
+        g->least++;
+    }
+    int v = g->head[g->least];
+    take_ready(g, v);
+    g->waits[v] = -1;
+    for (int k = 0; k < g->count[v]; k++) {
+        int u = g->near[v][k], ready = g->waits[u] == 0;
+        if (ready) {
+            take_ready(g, u);
+        }
+        if (merge_neighbours(g, u, v)) {
+            return -1;
+        }
+        if (ready) {
+            put_ready(g, u);
+        }
+    }
+    for (int k = g->later_at[v]; k < g->later_at[v + 1]; k++) {
+        if (--g->waits[g->later[k]] == 0) {
+            put_ready(g, g->later[k]);
+        }
+    }
+    return v;
+}
+
+/* ---- memory ---- */
+
+/* Panels in the order found, with the lists of later units; those become positions at the end. 0 or 1. */
+static int find_order(spari_blocks *m, block_graph *g, const int *size) {
+    int room = 0, used = 0;
+    for (int p = 0; p < m->n; p++) {
+        int v = eliminate_next(g);
+        if (v < 0) {
+            return 1;
+        }
+        block_panel *panel = m->panel + p;
+        *panel = (block_panel){.unit = v, .size = size[v], .first = m->start[v], .near = used, .nears = g->count[v]};
+        m->position[v] = p;
+        if (used + panel->nears > room) {
+            room = 2 * (used + panel->nears);
+            int *more = realloc(m->near, (size_t)room * sizeof *more);
+            if (!more) {
+                return 1;
+            }
+            m->near = more;
+        }
+        memcpy(m->near + used, g->near[v], (size_t)panel->nears * sizeof *m->near);
+        used += panel->nears;
+    }
+    m->offset = spari_zalloc(used + 1, sizeof *m->offset);
+    for (int k = 0; k < used; k++) {
+        m->near[k] = m->position[m->near[k]];
+    }
+    return !m->offset;
+}
+
+static int place_entries(spari_blocks *m) {
+    for (int p = 0; p < m->n; p++) {
+        block_panel *panel = m->panel + p;
+        qsort(m->near + panel->near, (size_t)panel->nears, sizeof *m->near, compare_numbers);
+        for (int k = panel->near; k < panel->near + panel->nears; k++) {
+            m->offset[k] = panel->rows;
+            panel->rows += m->panel[m->near[k]].size;
+        }
+        m->entries += panel->size * (panel->size + 2 * (int64_t)panel->rows);
+    }
+    m->entry = spari_zalloc(m->entries + 1, sizeof *m->entry);
+    m->pivot = spari_zalloc(m->rows + 1, sizeof *m->pivot);
+    if (!m->entry || !m->pivot) {
+        return 1;
+    }
+    double *at = m->entry;
+    for (int p = 0; p < m->n; p++) {
+        block_panel *panel = m->panel + p;
+        panel->pivot = m->pivot + panel->first;
+        panel->D = at;
+        panel->U = panel->D + panel->size * panel->size;
+        panel->L = panel->U + (int64_t)panel->size * panel->rows;
+        at = panel->L + (int64_t)panel->size * panel->rows;
+    }
+    return 0;
+}
+
+spari_blocks *spari_blocks_create(int n, const int *size, int64_t coupled_count, const spari_block_pair *coupled,
+                                  int64_t before_count, const spari_block_pair *before) {
+    spari_blocks *m = spari_zalloc(1, sizeof *m);
+    block_graph g = {0};
+    if (!m) {
+        return NULL;
+    }
+    m->n = n;
+    m->position = spari_zalloc(n + 1, sizeof *m->position);
+    m->start = spari_zalloc(n + 1, sizeof *m->start);
+    m->panel = spari_zalloc(n + 1, sizeof *m->panel);
+    m->near = spari_zalloc(1, sizeof *m->near);
+    int failed = !m->position || !m->start || !m->panel || !m->near;
+    for (int i = 0; i < n && !failed; i++) {
+        m->start[i] = m->rows;
+        m->rows += size[i];
+    }
+    failed = failed || graph_create(&g, n, coupled_count, coupled, before_count, before) || find_order(m, &g, size) ||
+             place_entries(m);
+    graph_free(&g);
+    if (failed) {
+        spari_blocks_free(m);
+        return NULL;
+    }
+    return m;
+}
+
+void spari_blocks_free(spari_blocks *m) {
+    if (m) {
+        free(m->position);
+        free(m->start);
+        free(m->panel);
+        free(m->near);
+        free(m->offset);
+        free(m->pivot);
+        free(m->entry);
+        free(m);
+    }
+}
+
+int spari_blocks_rows(const spari_blocks *m) {
+    return m->rows;
+}
+
+int spari_blocks_first(const spari_blocks *m, int i) {
+    return m->start[i];
+}
+
+void spari_blocks_zero(spari_blocks *m) {
+    memset(m->entry, 0, (size_t)m->entries * sizeof *m->entry);
+}
+
+/* Where the later block q begins in the rows of a panel. */
+static int offset_of(const spari_blocks *m, const block_panel *panel, int q) {
+    int low = panel->near, high = panel->near + panel->nears;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        low = m->near[middle] <= q ? middle : low;
+        high = m->near[middle] <= q ? high : middle;
+    }
+    return m->offset[low];
+}
+
+double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
+    int p = m->position[i], q = m->position[j];
+    const block_panel *panel = m->panel + (p < q ? p : q);
+    if (p == q) {
+        *stride = panel->size;
+        return panel->D;
+    }
+    *stride = p < q ? panel->rows : panel->size;
+    return p < q ? panel->U + offset_of(m, panel, q) : panel->L + (int64_t)panel->size * offset_of(m, panel, p);
+}
+
+/* ---- factors ---- */
+
+/* C [m][n] -= A [m][k] B [k][n], of these row strides */
+static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
+    for (int i = 0; i < m; i++) {
+        double *row = C + i * sc;
+        for (int l = 0; l < k; l++) {
+            double f = A[i * sa + l];
+            const double *b = B + l * sb;
+            for (int j = 0; j < n; j++) {
+                row[j] -= f * b[j];
+            }
+        }
+    }
+}
+
+/* What a factored panel leaves to the blocks after it: L D^-1 U, with D^-1 U in U. */
+static void update_later(spari_blocks *m, const block_panel *panel) {
+    int s = panel->size;
+    for (int k = panel->near; k < panel->near + panel->nears; k++) {
+        block_panel *a = m->panel + m->near[k];
+        int at = m->offset[k], to = a->near;
+        less_product(a->size, a->size, s, panel->L + at * s, s, panel->U + at, panel->rows, a->D, a->size);
+        for (int l = k + 1; l < panel->near + panel->nears; l++) {
+            while (m->near[to] != m->near[l]) {
+                to++;
+            }
+            int bt = m->offset[l], b = m->panel[m->near[l]].size;
+            less_product(a->size, b, s, panel->L + at * s, s, panel->U + bt, panel->rows, a->U + m->offset[to],
+                         a->rows);
+            less_product(b, a->size, s, panel->L + bt * s, s, panel->U + at, panel->rows,
+                         a->L + (int64_t)m->offset[to] * a->size, a->size);
+        }
+    }
+}
+
+void spari_blocks_watch(spari_blocks *m, int on) {
+    m->watched = on;
+}
+
+int spari_blocks_negative(const spari_blocks *m) {
+    return m->negative;
+}
+
+int spari_blocks_factor(spari_blocks *m) {
+    m->least = INFINITY;
+    m->negative = 0;
+    for (int p = 0; p < m->n; p++) {
+        block_panel *panel = m->panel + p;
+        if (m->watched && panel->size <= SPARI_INERTIA) {
+            m->negative += spari_inertia_negative(panel->size, panel->D, panel->size);
+        }
+        if (factor_block(panel->size, panel->D, panel->size, panel->pivot)) {
+            m->least = 0;
+            return 1;
+        }
+        for (int k = 0; k < panel->size; k++) {
+            m->least = fmin(m->least, fabs(panel->D[k * panel->size + k]));
+        }
+        if (panel->rows > 0) {
+            solve_block(panel->size, panel->D, panel->size, panel->pivot, panel->rows, panel->U, panel->rows);
+            update_later(m, panel);
+        }
+    }
+    return 0;
+}
+
+double spari_blocks_least_pivot(const spari_blocks *m) {
+    return m->least;
+}
+
+int spari_blocks_solve(spari_blocks *m, double *x) {
+    double sum = 0;
+    for (int p = 0; p < m->n; p++) {
+        const block_panel *panel = m->panel + p;
+        double *own = x + panel->first;
+        int s = panel->size;
+        solve_one(s, panel->D, s, panel->pivot, own);
+        for (int k = panel->near; k < panel->near + panel->nears; k++) {
+            const block_panel *a = m->panel + m->near[k];
+            less_product(a->size, 1, s, panel->L + m->offset[k] * s, s, own, 1, x + a->first, 1);
+        }
+    }
+    for (int p = m->n - 1; p >= 0; p--) {
+        const block_panel *panel = m->panel + p;
+        double *own = x + panel->first;
+        for (int k = panel->near; k < panel->near + panel->nears; k++) {
+            const block_panel *a = m->panel + m->near[k];
+            less_product(panel->size, 1, a->size, panel->U + m->offset[k], panel->rows, x + a->first, 1, own, 1);
+        }
+        for (int k = 0; k < panel->size; k++) {
+            sum += 0 * own[k];
+        }
+    }
+    return !isfinite(sum);
+}

@@ -1,0 +1,32 @@
+/* A reused tangent as it was when the step began. A step may form another one, and a rejected step is to leave no
+   trace. The numbers are copied only before a step overwrites them. */
+#ifndef SPARI_SNAPSHOT_H
+#define SPARI_SNAPSHOT_H
+
+#include <stdint.h>
+
+typedef struct spari_snapshot {
+    int open;      /* a step is under way, and what it began with is of use */
+    int taken;     /* the step has overwritten it: `data` holds it, or, -1, there was no memory for that */
+    int64_t count; /* so many numbers */
+    double *data;
+    int64_t room;
+} spari_snapshot;
+
+/* A step begins. useful: there is something to come back to. */
+void spari_snapshot_open(spari_snapshot *s, int useful);
+/* Before the first change: where to copy `count` doubles. NULL: nothing is to be copied. */
+double *spari_snapshot_take(spari_snapshot *s, int64_t count);
+void spari_snapshot_close(spari_snapshot *s);
+void spari_snapshot_free(spari_snapshot *s);
+
+/* The same as doubles, for save and load: these three, and the numbers. is: whether they begin with one of the length
+   `count` that has `expected` numbers, or none. there: load has found what is not copied yet; else it cannot come back.
+ */
+enum { SPARI_SNAPSHOT_HEAD = 3 };
+int64_t spari_snapshot_size(const spari_snapshot *s);
+void spari_snapshot_save(const spari_snapshot *s, double *state);
+int spari_snapshot_is(const double *state, int64_t count, int64_t expected);
+void spari_snapshot_load(spari_snapshot *s, const double *state, int there);
+
+#endif
