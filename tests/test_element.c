@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "aero/element.h"
-#include "base/scene.h"
+#include "base/session.h"
 #include "math/rotation.h"
 #include <cmocka.h>
 

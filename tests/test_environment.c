@@ -1,6 +1,6 @@
 /* The host's surroundings: floating-point traps raise no signal and are there again, also inside its own callbacks;
    flags and rounding stay; numbers are read and written with a point. */
-#include "base/quiet.h"
+#include "base/environment.h"
 #include "scene.h"
 
 #include <fenv.h>

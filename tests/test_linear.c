@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "base/crew.h"
+#include "base/thread_pool.h"
 #include "solve/linear.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "aero/momentum.h"
-#include "base/scene.h"
+#include "base/session.h"
 #include <cmocka.h>
 #include <gsl/gsl_integration.h>
 

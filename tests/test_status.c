@@ -1,6 +1,6 @@
 /* Status codes, texts and messages; the check for non-finite numbers; GSL's error handler. The expected values are the
    interface itself (codes are fixed for ever) and the C standard's arithmetic. */
-#include "base/scene.h"
+#include "base/session.h"
 
 #include <cmocka.h>
 #include <math.h>

@@ -2,7 +2,7 @@
  */
 #include "aero.h"
 #include "../base/message.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include <stdlib.h>
 #include <string.h>

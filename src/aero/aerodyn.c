@@ -5,7 +5,7 @@
    from the third to the second one: the leading edge goes upwind. */
 #include "aerodyn.h"
 #include "../base/message.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "aero.h"
 

@@ -1,7 +1,7 @@
 /* Tables of lift, drag and moment by the angle of attack, and what is read out of them between their rows. */
 #include "polar.h"
 #include "../base/message.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. It is made
    on the calls of spar.h alone. */
 #include "../base/message.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "aero.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #ifndef SPARI_ENTER_H
 #define SPARI_ENTER_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "comm.h"
 
 /* Agrees on a status and on what is called. */

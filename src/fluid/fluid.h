@@ -7,7 +7,7 @@
 
 /* What the session asks of a fluid; the public calls are in nodes.c, map.c, push.c, pull.c and others of this room. */
 
-/* Doubles of work space that each thread takes for it (base/room.h, base/crew.h). */
+/* Doubles of work space that each thread takes for it (base/workspace.h, base/thread_pool.h). */
 int64_t spari_fluid_room(const spar_fluid *fluid);
 /* Whether it has nodes here, or loads of a file. */
 int spari_fluid_touches(const spar_fluid *fluid);

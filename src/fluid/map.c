@@ -1,7 +1,7 @@
 /* The map of a fluid's nodes: where their feet are, and what the host may ask of it. */
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../base/poison.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"
 #include "state.h"

@@ -1,5 +1,5 @@
 /* The nodes of a fluid: created, described by the host, destroyed. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "fluid.h"
 
 #include "../math/predictor.h"

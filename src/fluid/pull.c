@@ -1,6 +1,6 @@
 /* Motion of members, out to the fluid's nodes. */
-#include "../base/crew.h"
-#include "../base/quiet.h"
+#include "../base/thread_pool.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/means.h"
 #include "state.h"

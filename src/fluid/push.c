@@ -1,5 +1,5 @@
 /* Loads of the fluid's nodes, in to the members. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/predictor.h"
 #include "../math/rotation.h"

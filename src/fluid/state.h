@@ -3,7 +3,7 @@
 #ifndef SPARI_FLUID_STATE_H
 #define SPARI_FLUID_STATE_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../transfer/transfer.h"
 #include "fluid.h"
 

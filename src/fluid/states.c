@@ -1,6 +1,6 @@
 /* Numbers of the host's own at a fluid's force nodes: the state of its model, which goes with the run as the fluid's
    loads do. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "state.h"
 
 #include <string.h>

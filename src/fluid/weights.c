@@ -1,6 +1,6 @@
 /* Motion nodes that take part of the section's motion: weights, which the host gives or which fade with the distance.
  */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"

@@ -2,7 +2,7 @@
 #include "added.h"
 
 #include "../base/blas.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "beam.h"

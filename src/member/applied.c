@@ -1,6 +1,6 @@
 /* Loads that a member carries beside the dead ones at its nodes: their forces, tangent and description. */
 #include "applied.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 
 #include "../math/basis.h"
 #include "../math/resample.h"

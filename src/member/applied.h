@@ -6,7 +6,7 @@
 #ifndef SPARI_APPLIED_H
 #define SPARI_APPLIED_H
 
-#include "../base/image.h"
+#include "../base/saved_file.h"
 #include "structure.h"
 
 /* Applied loads are linear in a step, from those in force in the step before to those that the host has given for this

@@ -2,7 +2,7 @@
 #include "beam.h"
 #include "../base/blas.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 

@@ -4,7 +4,7 @@
    beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
 #include "beyond.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "applied.h"
 #include "joint.h"

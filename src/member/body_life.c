@@ -1,7 +1,7 @@
 /* A body created and freed. */
 #include "body.h"
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../base/status.h"
 #include "../math/lanes.h"
 

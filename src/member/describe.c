@@ -1,6 +1,6 @@
 /* The description of a member before commit: creation, setters and what they refuse. */
 #include "../base/blas.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "beam.h"

@@ -1,7 +1,7 @@
 /* Joints: described by the host, placed when the members are there, and what their springs and drives say. */
 #include "joint.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "edge.h"
 

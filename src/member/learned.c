@@ -1,7 +1,7 @@
 /* The added mass learned from iterations: least squares over their differences. See learned.h. */
 #include "learned.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "beam.h"

@@ -3,7 +3,7 @@
    those at which a cantilever of one element deflects by 10 % too little (tests/test_beam.c). */
 #include "beam.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 
 #include <math.h>

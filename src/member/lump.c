@@ -1,6 +1,6 @@
 /* Bodies that sit on a beam: what the host says of them, and where on the elements they are. Each becomes a point of
    the body without stiffness (beam.c), so that inertia, weight and whatever is made of them have it like any other. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "beam.h"
 #include "edge.h"
 

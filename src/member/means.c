@@ -1,7 +1,7 @@
 /* Mean accelerations, as fluids see them: see means.h. */
 #include "means.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/resample.h"
 #include "added.h"
 

@@ -1,5 +1,5 @@
 /* A member as it is described and where it is: counts, reference, motion, loads; and its two numberings. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "added.h"
 #include "applied.h"

@@ -1,7 +1,7 @@
 /* Pretension of a beam: section forces that its reference configuration carries, as the host gives them. They are added
    to those of the strains at the quadrature points (point_lanes.h), so that the tangent has their geometric stiffness,
    and forces, energy, modes and linear members have what they do. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "beam.h"
 #include "edge.h"
 

@@ -5,9 +5,9 @@
    sign changes; its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist turns
    about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
    joined by cubic splines, natural at their ends, over z. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../base/reader.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
 #include "edge.h"

@@ -1,5 +1,5 @@
 /* Forces of a body, and its energy: sums over the quadrature points. docs/theory.md, "The beam". */
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../math/basis.h"
 #include "linear_body.h"
 #include "point.h"

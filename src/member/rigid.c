@@ -1,7 +1,7 @@
 /* What a described rigid body becomes: one node, one point with its mass. */
 #include "beam.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 
 #include <stdlib.h>

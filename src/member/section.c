@@ -1,7 +1,7 @@
 /* What a section of a beam feels, anywhere along the line: strains from the element's own field, as the quadrature
    points take them, and section forces from the balance of what is beyond. */
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
 #include "beyond.h"

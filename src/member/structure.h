@@ -3,8 +3,8 @@
 #ifndef SPARI_STRUCTURE_H
 #define SPARI_STRUCTURE_H
 
-#include "../base/crew.h"
-#include "../base/scene.h"
+#include "../base/thread_pool.h"
+#include "../base/session.h"
 #include "../math/resample.h"
 
 #include <string.h>
@@ -176,7 +176,7 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
 }
 /* Loads of the nodes summed onto the unknowns' nodes. */
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
-/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them (base/crew.h). */
+/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them (base/thread_pool.h). */
 enum { SPARI_MEMBER_SPAN = 512 };
 static inline void spari_member_spread(const spar_member *m, int64_t n, spari_span work, void *context) {
     spari_crew_spread(m->session->crew, n, SPARI_MEMBER_SPAN, work, context);

@@ -1,5 +1,5 @@
 /* A picture of a fluid's nodes on this rank: where they are, where their feet are, and what the map thinks of them. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "vtk.h"

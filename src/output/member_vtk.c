@@ -1,6 +1,6 @@
 /* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. What it
    shows it asks by the calls of spar.h. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "vtk.h"

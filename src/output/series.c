@@ -1,7 +1,7 @@
 /* The index of a series of VTK files (.pvd): what ParaView opens to show them in time. */
 #include "../base/file.h"
 #include "../base/message.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include <errno.h>
 #include <spar/spar_output.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* The iteration of a step with the fluid: which loads come next, and whether it has ended. */
 #include "coupling.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 
 #include "../math/rotation.h"
 #include "../member/added.h"

@@ -2,7 +2,7 @@
 #ifndef SPARI_EXCHANGE_H
 #define SPARI_EXCHANGE_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* Whether this rank's fluids have loads to go on with: the status of a push that was refused, with the call in front of
    its message. Local. */

@@ -2,7 +2,7 @@
 #ifndef SPARI_FORCED_H
 #define SPARI_FORCED_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* A step of dt from the motion now to the motion after, which the caller has put into all members: the host's solver is
    called once, the loads are exchanged into load_pushed, and the step is accepted. What moves is the members' motion,

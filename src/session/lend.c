@@ -1,7 +1,7 @@
 /* The host's fluid solver inside a call of the library's: see lend.h. */
 #include "lend.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 
 int spari_lend_refuse(spar_session *s, const char *call) {

@@ -2,7 +2,7 @@
 #ifndef SPARI_LEND_H
 #define SPARI_LEND_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it.
    Before the ranks meet: the others are not in this call. Local. */

@@ -2,8 +2,8 @@
    checks and gets memory, and only when all ranks can load does the second change the session. Members and fluids may
    live on other ranks than before. No rank has the file in memory: what is alike on all ranks goes to all; of what was
    one rank's own rank 0 tells where it lies, and it then goes piece by piece to those who want it. */
-#include "../base/image.h"
-#include "../base/quiet.h"
+#include "../base/saved_file.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../solve/assembly.h"

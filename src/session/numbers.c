@@ -1,6 +1,6 @@
 /* Numbers of the host's own that advice is to keep. */
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "own.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef SPARI_OWN_H
 #define SPARI_OWN_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/bins.h"
 
 typedef struct spari_record spari_record;     /* trial/trial.h */

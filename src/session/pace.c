@@ -1,7 +1,7 @@
 /* Steps to a tolerance: see pace.h. */
 #include "pace.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../solve/change.h"
 #include "own.h"

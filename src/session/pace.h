@@ -3,7 +3,7 @@
 #ifndef SPARI_PACE_H
 #define SPARI_PACE_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 static inline int spari_pace_is_set(const spar_session *session) {
     return session->tolerance_drift > 0;

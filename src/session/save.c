@@ -2,8 +2,8 @@
    rank by rank, the number of its words before it: the solvers of its members, of its assemblies, its fluids. No rank
    has more in memory than what is its own: where all ranks see the file that rank 0 has begun, each writes its own part
    of it, all at the same time; else the parts go through rank 0 piece by piece. The bytes are the same. */
-#include "../base/image.h"
-#include "../base/quiet.h"
+#include "../base/saved_file.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../solve/assembly.h"

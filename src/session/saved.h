@@ -4,8 +4,8 @@
 #ifndef SPARI_SAVED_H
 #define SPARI_SAVED_H
 
-#include "../base/image.h"
-#include "../base/scene.h"
+#include "../base/saved_file.h"
+#include "../base/session.h"
 
 typedef struct spari_coupling spari_coupling; /* coupling.h */
 

@@ -5,7 +5,7 @@
 #include "spread.h"
 #include "threads.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/joint.h"

@@ -2,7 +2,7 @@
    files of saved runs read. A new setting is a field of the session and a row here, and what computes with it. */
 #include "settings.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"

@@ -2,7 +2,7 @@
 #ifndef SPARI_SETTINGS_H
 #define SPARI_SETTINGS_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* All settings as the header says they begin, and the table of them. */
 void spari_settings_default(spar_session *session);

@@ -6,7 +6,7 @@
 #ifndef SPARI_SPREAD_H
 #define SPARI_SPREAD_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../comm/comm.h"
 
 typedef struct spari_spread spari_spread;

@@ -2,7 +2,7 @@
 #ifndef SPARI_START_H
 #define SPARI_START_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* Begins it for steps dt; call: in whose name. Collective. */
 int spari_start_begin(spar_session *session, const char *call, double dt);

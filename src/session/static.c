@@ -1,5 +1,5 @@
 /* Static equilibrium in a session: of one member, and of all members with the fluid's answer. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"

@@ -1,6 +1,6 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "step.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../fluid/fluid.h"
 #include "../member/added.h"
 #include "../member/edge.h"

@@ -1,6 +1,6 @@
 /* Sums over the ranks for what is built on a session: layers above need no MPI of their own. */
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "../comm/enter.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Threads: asked for, and what they solve. */
 #include "threads.h"
 
-#include "../base/crew.h"
-#include "../base/quiet.h"
+#include "../base/thread_pool.h"
+#include "../base/environment.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/structure.h"

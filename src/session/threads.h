@@ -2,7 +2,7 @@
 #ifndef SPARI_THREADS_H
 #define SPARI_THREADS_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* Room for what the threads are given, if there are threads: before the first solution of a step. */
 int spari_threads_prepare(spar_session *session);

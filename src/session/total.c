@@ -1,5 +1,5 @@
 /* What the loads of a fluid come to over all ranks. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../math/rotation.h"

@@ -1,5 +1,5 @@
 /* A whole step to a tolerance. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../member/edge.h"
 #include "lend.h"

@@ -1,7 +1,7 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
 #include "alpha.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"

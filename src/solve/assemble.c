@@ -1,5 +1,5 @@
 /* Which members joints tie together: assemblies found, sized and released. */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../comm/enter.h"
 #include "assembly.h"
 #include "fidelity.h"

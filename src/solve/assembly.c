@@ -1,7 +1,7 @@
 /* Members that joints tie together, in time: see assembly.h. */
 #include "assembly.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "fidelity.h"
 #include "leave.h"

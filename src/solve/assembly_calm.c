@@ -11,7 +11,7 @@
    nothing sees there: they come in as b^n + b^{n+1}). Places stay, and what is published is of before. */
 #include "tied.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 #include <string.h>
 

@@ -4,8 +4,8 @@
    are projected, so that no multiplier or penalty is left in the eigenproblem, and holds that say a thing twice do no
    harm. */
 #include "../base/blas.h"
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "../member/body.h"
 #include "../member/edge.h"
 #include "../member/joint.h"

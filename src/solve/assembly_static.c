@@ -8,7 +8,7 @@
    Optimization (2006), theorem 16.3). So the iteration goes downhill, and the shift is 0 at its end. */
 #include "assembly.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "tied.h"

@@ -1,7 +1,7 @@
 /* How a step changes a member's acceleration: see change.h. */
 #include "change.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "fidelity.h"
 

@@ -4,8 +4,8 @@
    nothing changes with their angle. */
 #include "swing.h"
 
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "../member/edge.h"

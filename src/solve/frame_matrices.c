@@ -1,7 +1,7 @@
 /* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
 #include "carriage.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"

@@ -1,7 +1,7 @@
 /* Linear and modal beams: their frame created and freed, and their rows of the table. */
 #include "frame.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"

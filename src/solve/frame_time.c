@@ -3,7 +3,7 @@
 
 #include "../base/blas.h"
 #include "../base/poison.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"

@@ -1,7 +1,7 @@
 /* What Newton may leave in a step: see leave.h. */
 #include "leave.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "change.h"
 #include "fidelity.h"
 

@@ -3,7 +3,7 @@
 #ifndef SPARI_LEAVE_H
 #define SPARI_LEAVE_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "scheme.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* The life of a member: see life.h. */
 #include "life.h"
 
-#include "../base/crew.h"
-#include "../base/quiet.h"
+#include "../base/thread_pool.h"
+#include "../base/environment.h"
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"

@@ -1,7 +1,7 @@
 /* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
    one node, and the deformation as generalised-alpha has it of vectors. See limb.h and carriage.h. */
 #include "../base/blas.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "alpha.h"
 #include "carriage.h"

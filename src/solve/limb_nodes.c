@@ -1,7 +1,7 @@
 /* Members of an assembly whose unknowns are the motions of their nodes: exact beams, rigid bodies and beams. See
  * limb.h.
  */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/joint.h"

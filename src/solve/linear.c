@@ -2,7 +2,7 @@
 #include "linear.h"
 
 #include "../base/blas.h"
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../base/status.h"
 #include "../math/lanes.h"
 

@@ -3,7 +3,7 @@
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 
 typedef struct spari_linear spari_linear;
 

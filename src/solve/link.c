@@ -1,7 +1,7 @@
 /* A joint of an assembly: where its nodes are, its relative motion, and its forces on them. */
 #include "tied.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "drive.h"
 

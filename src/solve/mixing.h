@@ -6,7 +6,7 @@
 #ifndef SPARI_MIXING_H
 #define SPARI_MIXING_H
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 
 /* Unknowns of four nodes: lanes of every width begin with the same component. */
 enum { SPARI_MIXED_SUMS = 6, SPARI_MIXED_STRIPE = 24 };

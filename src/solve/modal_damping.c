@@ -2,7 +2,7 @@
    modal mass has the ratio x^T B x / (2 omega), B the beam's own damping matrix. The strain components form three
    groups: bending about y with shear z, bending about z with shear y, torsion with stretch; each of the two modes sets
    the mu of the group that holds most of its strain energy, the third group gets their geometric mean. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/beam.h"
 #include "../member/edge.h"

@@ -6,7 +6,7 @@
 #include "modes.h"
 
 #include "../base/blas.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../member/body.h"
 #include "eigen.h"
 #include "fidelity.h"

@@ -3,7 +3,7 @@
 #ifndef SPARI_OWNERS_H
 #define SPARI_OWNERS_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 /* What solving for a member, or for all those of an assembly and its joints, is expected to take in an iteration,
    instructions; 0: it moves as it is told. Committed; local, alike on all ranks. */

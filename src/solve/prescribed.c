@@ -1,5 +1,5 @@
 /* The prescribed beam: its nodes follow a root that is given, as one rigid body without mass. */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "carried.h"
 #include "fidelity.h"
 #include "reaction.h"

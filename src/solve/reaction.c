@@ -1,7 +1,7 @@
 /* What the root gives a member, and the energies of it. */
 #include "reaction.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"

@@ -1,5 +1,5 @@
 /* Redundant constraints of an assembly: those that close a loop and follow from the rest of it. */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "tied.h"
 
 #include <stdio.h>

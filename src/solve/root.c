@@ -1,7 +1,7 @@
 /* Stages of a substep, and what is seen from a driven root. */
 #include "root.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "alpha_nodes.h"

@@ -1,7 +1,7 @@
 /* Generalised-alpha and TR-BDF2 for every member: see scheme.h. */
 #include "scheme.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"

@@ -2,7 +2,7 @@
 #include "solver.h"
 
 #include "../base/poison.h"
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added.h"
 #include "../member/applied.h"

@@ -4,7 +4,7 @@
 #ifndef SPARI_SOLVER_H
 #define SPARI_SOLVER_H
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "arms.h"

@@ -5,7 +5,7 @@
    such a point, or whose iterations pass a tangent of negative determinant (a jump to another branch), is halved; when
    it cannot be halved any more the point has been found. Moments of fixed axes and follower loads have no potential:
    their paths are not watched (a beam rolled up by a moment, say, is held to its plane by nothing but symmetry). */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "solver.h"

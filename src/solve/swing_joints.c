@@ -1,5 +1,5 @@
 /* Joints in the equations of small motions: springs, dampers, the turning of their loads, and what they hold. */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "fidelity.h"

@@ -1,6 +1,6 @@
 /* What Newton's iteration of a member has taken and left, for the host. */
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "assembly.h"
 #include "fidelity.h"
 

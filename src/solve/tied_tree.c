@@ -1,5 +1,5 @@
 /* The tree of an assembly's interface nodes: see tied.h. */
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "tied.h"
 
 #include <stdlib.h>

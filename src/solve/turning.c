@@ -1,7 +1,7 @@
 /* How an assembly turns as one: see turning.h. */
 #include "turning.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "fidelity.h"

@@ -1,8 +1,8 @@
 /* The work that loads and the root have done on a member. */
 #include "work.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/edge.h"

@@ -1,7 +1,7 @@
 /* The nearest point of a curved line, found for sure: balls around its pieces, then zeros of a polynomial. */
 #include "projection.h"
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../base/status.h"
 #include "../math/roots.h"
 #include "../math/rotation.h"

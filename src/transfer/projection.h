@@ -3,7 +3,7 @@
 #ifndef SPARI_PROJECTION_H
 #define SPARI_PROJECTION_H
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 
 typedef struct spari_line spari_line;
 
@@ -13,7 +13,7 @@ void spari_line_free(spari_line *line);
 
 /* Feet of points x [n][3]: element [n], local xi [n], foot [n][3], flags [n] (SPAR_MAP_END, SPAR_MAP_AMBIGUOUS). The
    foot is the place of smallest distance; of several, the one with the smallest coordinate along the line, flagged.
-   crew: who looks for them (base/crew.h). SPAR_OK, or SPAR_ERR_MEMORY without a message. */
+   crew: who looks for them (base/thread_pool.h). SPAR_OK, or SPAR_ERR_MEMORY without a message. */
 int spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
                        double *xi, double *foot, uint8_t *flags);
 /* Place (and derivative, NULL: not wanted) of the line. */

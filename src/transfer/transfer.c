@@ -1,7 +1,7 @@
 /* Between lines and nodes: which kernels this processor has, and what they are given. */
 #include "transfer.h"
 
-#include "../base/crew.h"
+#include "../base/thread_pool.h"
 #include "../base/status.h"
 #include "../math/lanes.h"
 #include "../math/rotation.h"

@@ -2,7 +2,7 @@
    with a share of the tolerance for each, what of the structure can be left out; then the coupling and dt together;
    then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
    those of whole runs, costs what is counted in them (cost.h). */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "apply.h"
 #include "cost.h"
 #include "plan.h"

@@ -1,7 +1,7 @@
 /* Advice comes into force: settings, and members made anew in place as trials make them, to stay. */
 #include "apply.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"

@@ -1,5 +1,5 @@
 /* Who solves how much. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"

@@ -1,7 +1,7 @@
 /* Reproducible sums of loads go over to other nodes: see carry.h. */
 #include "carry.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../comm/enter.h"
 
 #include <stdlib.h>

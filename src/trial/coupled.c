@@ -4,7 +4,7 @@
 #include "reduced.h"
 #include "shapes.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../session/exchange.h"
 #include "../solve/assembly.h"

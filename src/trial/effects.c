@@ -1,5 +1,5 @@
 /* What an effect is worth: its size in a run, and trials with it and without. */
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "trial.h"
 
 #include "../math/rotation.h"

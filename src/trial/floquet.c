@@ -6,7 +6,7 @@
 #include "trial.h"
 
 #include "../base/blas.h"
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../math/rotation.h"
 #include "../session/exchange.h"

@@ -1,7 +1,7 @@
 /* What the nodes of a beam leave of error: its equations in more nodes, started from the shape that it has ((E3)
    of docs/theory.md). */
-#include "../base/quiet.h"
-#include "../base/scene.h"
+#include "../base/environment.h"
+#include "../base/session.h"
 #include "../comm/comm.h"
 #include "../math/basis.h"
 #include "../math/resample.h"

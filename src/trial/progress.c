@@ -1,7 +1,7 @@
 /* The host's progress call: see progress.h. */
 #include "progress.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/comm.h"
 
 spari_progress spari_progress_of(const spar_session *s, const char *call) {

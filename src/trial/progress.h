@@ -2,7 +2,7 @@
 #ifndef SPARI_PROGRESS_H
 #define SPARI_PROGRESS_H
 
-#include "../base/scene.h"
+#include "../base/session.h"
 
 typedef struct spari_progress {
     const char *call;

@@ -1,7 +1,7 @@
 /* What a run leaves behind: see record.h. */
 #include "record.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../comm/comm.h"
 #include "../math/basis.h"
 #include "../math/resample.h"

@@ -1,7 +1,7 @@
 /* Members made anew in other elements or of another fidelity for a trial, and put back. */
 #include "remake.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "../member/added.h"

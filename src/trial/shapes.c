@@ -1,7 +1,7 @@
 /* The shapes that structure and fluid are seen in: see shapes.h. */
 #include "shapes.h"
 
-#include "../base/scene.h"
+#include "../base/session.h"
 #include "../solve/fidelity.h"
 
 #include <math.h>

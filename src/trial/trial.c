@@ -5,7 +5,7 @@
 #include "cost.h"
 #include "retie.h"
 
-#include "../base/quiet.h"
+#include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/edge.h"

@@ -1,5 +1,5 @@
 /* The words of a saved session: in memory, and piece by piece to a file and from it, with a check sum. */
-#include "image.h"
+#include "saved_file.h"
 
 #include "status.h"
 

@@ -1,7 +1,7 @@
 /* Messages: of a session, and of the thread where there is none. */
-#include "scene.h"
+#include "session.h"
 
-#include "quiet.h"
+#include "environment.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #define SPARI_SCENE_H
 
 #include "message.h"
-#include "room.h"
+#include "workspace.h"
 
 #include <math.h>
 

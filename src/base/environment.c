@@ -1,5 +1,5 @@
 /* The host's floating-point traps, rounding, locale and GSL error handler, held while the library computes. */
-#include "quiet.h"
+#include "environment.h"
 
 #include "blas.h"
 

@@ -1,5 +1,5 @@
-/* Work space that is kept: see room.h. */
-#include "room.h"
+/* Work space that is kept: see workspace.h. */
+#include "workspace.h"
 
 #include "status.h"
 

@@ -1,9 +1,9 @@
-/* A small crew of POSIX threads: see crew.h. */
-#include "crew.h"
+/* A small crew of POSIX threads: see thread_pool.h. */
+#include "thread_pool.h"
 
 #include "poison.h"
-#include "quiet.h"
-#include "room.h"
+#include "environment.h"
+#include "workspace.h"
 #include "status.h"
 
 #include <pthread.h>
