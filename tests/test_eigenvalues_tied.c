@@ -1,7 +1,7 @@
 /* Eigenvalues of assemblies: members that joints tie together, and parts that turn against each other. */
 #include "scene.h"
 
-#include "solve/pencil.h"
+#include "algebra/pencil.h"
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_sort_vector.h>

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/thread_pool.h"
-#include "solve/linear.h"
+#include "algebra/linear.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,6 +5,6 @@
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
-#include "solve/linear.c"
+#include "algebra/linear.c"
 
 #include "test_linear.c"

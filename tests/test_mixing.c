@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "solve/mixing.h"
+#include "algebra/anderson.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "../solve/snapshot.h"
 #include "accelerate.h"
-#include "secants.h"
+#include "../algebra/secants.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -23,7 +23,7 @@
 
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "linear.h"
+#include "../algebra/linear.h"
 #include "scheme.h"
 #include "snapshot.h"
 

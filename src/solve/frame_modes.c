@@ -7,8 +7,8 @@
 #include "../member/added.h"
 #include "../member/pose.h"
 #include "carriage.h"
-#include "eigen.h"
-#include "pencil.h"
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */

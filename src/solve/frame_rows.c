@@ -10,7 +10,7 @@
 #include "carriage.h"
 #include "fidelity.h"
 #include "limb.h"
-#include "pencil.h"
+#include "../algebra/pencil.h"
 #include "reaction.h"
 
 #include <math.h>

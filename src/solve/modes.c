@@ -8,7 +8,7 @@
 #include "../base/blas.h"
 #include "../base/session.h"
 #include "../member/body.h"
-#include "eigen.h"
+#include "../algebra/eigen.h"
 #include "fidelity.h"
 
 #include <gsl/gsl_blas.h>

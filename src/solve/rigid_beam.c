@@ -5,10 +5,10 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "carried.h"
-#include "eigen.h"
+#include "../algebra/eigen.h"
 #include "fidelity.h"
 #include "limb.h"
-#include "pencil.h"
+#include "../algebra/pencil.h"
 #include "reaction.h"
 #include "turn.h"
 

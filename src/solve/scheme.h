@@ -5,7 +5,7 @@
 #define SPARI_SCHEME_H
 
 #include "../member/structure.h"
-#include "linear.h"
+#include "../algebra/linear.h"
 
 #include <float.h>
 

@@ -8,9 +8,9 @@
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "arms.h"
-#include "condense.h"
+#include "../algebra/condense.h"
 #include "effort.h"
-#include "mixing.h"
+#include "../algebra/anderson.h"
 #include "scheme.h"
 #include "snapshot.h"
 

@@ -4,7 +4,7 @@
 #define SPARI_SWING_H
 
 #include "../member/joint.h"
-#include "pencil.h"
+#include "../algebra/pencil.h"
 
 typedef struct swing_part {
     const spar_member *member;

@@ -8,7 +8,7 @@
 #define SPARI_TIED_H
 
 #include "../member/joint.h"
-#include "block_matrix.h"
+#include "../algebra/block_matrix.h"
 #include "limb.h"
 
 /* Numbers in `turning` of a link. */

@@ -4,7 +4,7 @@
    of which are found; each is then brought to A(s) itself. */
 #include "reduced.h"
 
-#include "../math/schur.h"
+#include "../algebra/schur.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef SPARI_REDUCED_H
 #define SPARI_REDUCED_H
 
-#include "../math/decay.h"
+#include "../algebra/prony.h"
 #include "answer.h"
 
 typedef struct spari_reduced {

@@ -1,5 +1,5 @@
-/* Newton's corrections mixed with those before them: see mixing.h. */
-#include "mixing.h"
+/* Newton's corrections mixed with those before them: see anderson.h. */
+#include "anderson.h"
 
 #include "../base/status.h"
 #include "../math/lanes.h"
@@ -10,7 +10,7 @@
 
 enum { STRIPE = SPARI_MIXED_STRIPE, SPAN = 256 * 6, VECTORS = 6 };
 
-#define SPARI_KERNELS "../solve/mixing_lanes.h"
+#define SPARI_KERNELS "../algebra/anderson_lanes.h"
 #include "../math/widths.h"
 
 typedef struct mixing_kernels {

@@ -17,7 +17,7 @@
 /* Columns of a dense matrix are solved for so many at a time. */
 enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 
-#define SPARI_KERNELS "../solve/linear_lanes.h"
+#define SPARI_KERNELS "../algebra/linear_lanes.h"
 #include "../math/widths.h"
 
 /* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */

@@ -1,12 +1,12 @@
-/* Linear systems from how they come to rest: see decay.h. Y_(i + j) in block row i and column j is O X, of as many
+/* Linear systems from how they come to rest: see prony.h. Y_(i + j) in block row i and column j is O X, of as many
    independent rows as there are states, and Y_(i + j + 1) is O A X: with O X = U S V^T, A = S^-1/2 U^T (O A X) V
    S^-1/2. Rows and columns need not follow each other: a few, near each other at first and far apart later, see fast
    parts and slow ones. */
-#include "decay.h"
+#include "../algebra/prony.h"
 
 #include "../base/blas.h"
 #include "../base/status.h"
-#include "schur.h"
+#include "../algebra/schur.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>

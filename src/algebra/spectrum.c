@@ -9,8 +9,8 @@
    Schur vectors (Stewart 2001). */
 #include "../base/blas.h"
 #include "../base/status.h"
-#include "../math/band.h"
-#include "../math/schur.h"
+#include "band.h"
+#include "schur.h"
 #include "arnoldi.h"
 #include "pencil.h"
 

@@ -1,4 +1,4 @@
-/* What mixing does of W unknowns at once. Included by mixing.c once per width with the macros of math/width.h. No
+/* What mixing does of W unknowns at once. Included by anderson.c once per width with the macros of math/width.h. No
    include guard: this is a body, not an interface.
 
    Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */

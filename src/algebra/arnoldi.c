@@ -6,7 +6,7 @@
 
 #include "../base/blas.h"
 #include "../base/status.h"
-#include "../math/schur.h"
+#include "schur.h"
 
 #include <float.h>
 #include <gsl/gsl_cblas.h>
