@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "math/rotation.h"
-#include "member/tie.h"
+#include "member/joint_kinematics.h"
 
 #include <math.h>
 #include <spar/spar.h>

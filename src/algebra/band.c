@@ -1,5 +1,5 @@
 /* An order for a narrow band, and the factors in it. */
-#include "../algebra/band.h"
+#include "band.h"
 
 #include "../base/status.h"
 

@@ -2,11 +2,11 @@
    independent rows as there are states, and Y_(i + j + 1) is O A X: with O X = U S V^T, A = S^-1/2 U^T (O A X) V
    S^-1/2. Rows and columns need not follow each other: a few, near each other at first and far apart later, see fast
    parts and slow ones. */
-#include "../algebra/prony.h"
+#include "prony.h"
 
 #include "../base/blas.h"
 #include "../base/status.h"
-#include "../algebra/schur.h"
+#include "schur.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>

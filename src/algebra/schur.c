@@ -1,6 +1,6 @@
 /* Householder's reduction to Hessenberg's form, then QR with Wilkinson's shifts by rotations of two rows: Golub and Van
    Loan, Matrix Computations, chapter 7. */
-#include "../algebra/schur.h"
+#include "schur.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "../base/thread_pool.h"
 #include "../base/environment.h"
 #include "../math/rotation.h"
-#include "../member/means.h"
+#include "../member/mean_acceleration.h"
 #include "state.h"
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "body.h"
-#include "edge.h"
+#include "checks.h"
 
 #include <stdlib.h>
 #include <string.h>

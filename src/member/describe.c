@@ -4,8 +4,8 @@
 #include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "edge.h"
-#include "learned.h"
+#include "checks.h"
+#include "added_mass_fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

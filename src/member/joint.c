@@ -3,7 +3,7 @@
 
 #include "../base/environment.h"
 #include "../math/rotation.h"
-#include "edge.h"
+#include "checks.h"
 
 #include <float.h>
 #include <math.h>

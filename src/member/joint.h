@@ -4,7 +4,7 @@
 #define SPARI_JOINT_H
 
 #include "structure.h"
-#include "tie.h"
+#include "joint_kinematics.h"
 
 /* Relative motion at one time: coordinates (angles of a hinge or universal joint count their turns), rates, and the
    load on a, in the joint's axes on its six motions: of what is held the constraint's, of what is free the spring's,

@@ -1,10 +1,10 @@
 /* A member as it is described and where it is: counts, reference, motion, loads; and its two numberings. */
 #include "../base/environment.h"
 #include "../math/rotation.h"
-#include "added.h"
+#include "added_mass.h"
 #include "applied.h"
 #include "body.h"
-#include "edge.h"
+#include "checks.h"
 #include "joint.h"
 #include "structure.h"
 

@@ -84,7 +84,7 @@ void spari_lanes_collect(const spari_body *body, int e, const double *back, doub
 
 #define SPARI_WIDTH 1
 #include "../math/width.h"
-#include "point_lanes.h"
+#include "section_lanes.h"
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 

@@ -1,9 +1,9 @@
 /* Pretension of a beam: section forces that its reference configuration carries, as the host gives them. They are added
-   to those of the strains at the quadrature points (point_lanes.h), so that the tangent has their geometric stiffness,
+   to those of the strains at the quadrature points (section_lanes.h), so that the tangent has their geometric stiffness,
    and forces, energy, modes and linear members have what they do. */
 #include "../base/environment.h"
 #include "beam.h"
-#include "edge.h"
+#include "checks.h"
 
 static int check_pretension(const spar_member *m, const char *call, int64_t n, const double *eta, const double *force) {
     spar_session *s = m->session;

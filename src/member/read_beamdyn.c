@@ -10,7 +10,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "edge.h"
+#include "checks.h"
 
 #include <ctype.h>
 #include <gsl/gsl_spline.h>

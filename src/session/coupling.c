@@ -3,7 +3,7 @@
 #include "../base/environment.h"
 
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/body.h"
 #include "../member/structure.h"
 #include "own.h"

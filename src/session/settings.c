@@ -6,7 +6,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
-#include "../member/means.h"
+#include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
 #include "accelerate.h"

@@ -4,7 +4,7 @@
 
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "../member/joint.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"

@@ -3,7 +3,7 @@
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "../member/joint.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"

@@ -2,11 +2,11 @@
 #include "step.h"
 #include "../base/environment.h"
 #include "../fluid/fluid.h"
-#include "../member/added.h"
-#include "../member/edge.h"
+#include "../member/added_mass.h"
+#include "../member/checks.h"
 #include "../member/joint.h"
-#include "../member/learned.h"
-#include "../member/means.h"
+#include "../member/added_mass_fit.h"
+#include "../member/mean_acceleration.h"
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
@@ -51,7 +51,7 @@ static int check_learning(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-/* Whether fluids are to see mean accelerations from the step dt on (member/means.h). */
+/* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
     return s->uneven[0] || !spari_steps_even(s, dt) || (!s->touched && spari_scheme_turns(s, dt));
 }

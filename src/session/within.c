@@ -1,7 +1,7 @@
 /* A whole step to a tolerance. */
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "lend.h"
 #include "own.h"
 #include "pace.h"

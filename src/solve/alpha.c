@@ -3,7 +3,7 @@
 #include "alpha.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "alpha_nodes.h"
 #include "leave.h"

@@ -7,7 +7,7 @@
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../member/body.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "../member/joint.h"
 #include "assembly.h"
 #include "fidelity.h"

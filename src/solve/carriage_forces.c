@@ -1,7 +1,7 @@
 /* Forces of a frame whose root joints hold, and their tangent: see carriage.h. */
 #include "../base/blas.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "carriage.h"
 

@@ -8,7 +8,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "assembly.h"
 #include "fidelity.h"
 #include "modes.h"

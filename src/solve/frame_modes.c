@@ -4,7 +4,7 @@
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/pose.h"
 #include "carriage.h"
 #include "../algebra/eigen.h"

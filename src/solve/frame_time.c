@@ -5,7 +5,7 @@
 #include "../base/poison.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/pose.h"

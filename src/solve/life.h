@@ -39,7 +39,7 @@ int spari_member_begin_start(spar_member *member);
 void spari_member_again(spar_member *member);
 void spari_member_end_start(spar_member *member, int found);
 /* After an accepted step: whether what it has shown of the fluid's added mass has put another one into the member's
-   equations (learned.h). And that in force as it stands, as when a file has been read. */
+   equations (added_mass_fit.h). And that in force as it stands, as when a file has been read. */
 int spari_member_learn(spar_member *member);
 void spari_member_put_learned(spar_member *member);
 /* Puts the session's gravity in force. */

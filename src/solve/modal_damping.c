@@ -5,7 +5,7 @@
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/beam.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "fidelity.h"
 #include "modes.h"
 

@@ -5,7 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "../member/joint.h"
 #include "fidelity.h"
 

@@ -3,7 +3,7 @@
 
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "drive.h"

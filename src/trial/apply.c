@@ -8,7 +8,7 @@
 #include "../math/predictor.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
-#include "../member/means.h"
+#include "../member/mean_acceleration.h"
 #include "../session/exchange.h"
 #include "../session/own.h"
 #include "../session/spread.h"

@@ -4,10 +4,10 @@
 #include "../base/session.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
-#include "../member/added.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../member/means.h"
+#include "../member/mean_acceleration.h"
 #include "../solve/fidelity.h"
 #include "../solve/life.h"
 

@@ -8,7 +8,7 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
-#include "../member/edge.h"
+#include "../member/checks.h"
 #include "../session/coupling.h"
 #include "../session/exchange.h"
 #include "../session/lend.h"

@@ -1,11 +1,11 @@
 /* The fluid's added mass as the iterations of the coupling show it, in the form of the guess that a host gives
-   (added.h): of each difference of two iterations of a step, the loads that came back against the accelerations that
+   (added_mass.h): of each difference of two iterations of a step, the loads that came back against the accelerations that
    they answer to. See docs/theory.md, "Known added mass". Every rank that has the motion and the loads of a member
    learns the same. */
 #ifndef SPARI_LEARNED_H
 #define SPARI_LEARNED_H
 
-#include "added.h"
+#include "added_mass.h"
 
 enum { SPARI_LEARNED_STATIONS = 20 }; /* at most */
 

@@ -1,5 +1,5 @@
 /* Checks at the public edge that the calls on members share. */
-#include "edge.h"
+#include "checks.h"
 
 #include "../comm/enter.h"
 #include "../math/rotation.h"

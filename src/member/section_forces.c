@@ -1,8 +1,8 @@
-/* What acts on the part of a beam beyond a section: see beyond.h. Loads are kept element by element, each element's own
+/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each element's own
    share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line, of the
    ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them acts
    beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
-#include "beyond.h"
+#include "section_forces.h"
 
 #include "../base/session.h"
 #include "../math/rotation.h"

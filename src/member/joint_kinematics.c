@@ -1,5 +1,5 @@
-/* The geometry of a joint: see tie.h. */
-#include "tie.h"
+/* The geometry of a joint: see joint_kinematics.h. */
+#include "joint_kinematics.h"
 
 #include "../math/rotation.h"
 

@@ -1,9 +1,9 @@
-/* Mean accelerations, as fluids see them: see means.h. */
-#include "means.h"
+/* Mean accelerations, as fluids see them: see mean_acceleration.h. */
+#include "mean_acceleration.h"
 
 #include "../base/session.h"
 #include "../math/resample.h"
-#include "added.h"
+#include "added_mass.h"
 
 #include <stdlib.h>
 #include <string.h>

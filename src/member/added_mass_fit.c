@@ -1,12 +1,12 @@
-/* The added mass learned from iterations: least squares over their differences. See learned.h. */
-#include "learned.h"
+/* The added mass learned from iterations: least squares over their differences. See added_mass_fit.h. */
+#include "added_mass_fit.h"
 
 #include "../base/environment.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "edge.h"
-#include "means.h"
+#include "checks.h"
+#include "mean_acceleration.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,12 +1,12 @@
-/* A guess of the fluid's added mass: described, and in a member's equations. See added.h. */
-#include "added.h"
+/* A guess of the fluid's added mass: described, and in a member's equations. See added_mass.h. */
+#include "added_mass.h"
 
 #include "../base/blas.h"
 #include "../base/environment.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "edge.h"
+#include "checks.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

@@ -2,7 +2,7 @@
    the body without stiffness (beam.c), so that inertia, weight and whatever is made of them have it like any other. */
 #include "../base/environment.h"
 #include "beam.h"
-#include "edge.h"
+#include "checks.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "beyond.h"
-#include "edge.h"
+#include "section_forces.h"
+#include "checks.h"
 #include "pose.h"
 
 #include <stdlib.h>
