@@ -7,8 +7,8 @@
 
 #include "ranks.h"
 #include "session/own.h"
-#include "trial/apply.h"
-#include "trial/remake.h"
+#include "tune/apply.h"
+#include "trial/rebuild.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "scenes.h"
 #include "solve/fidelity.h"
 #include "trial/cost.h"
-#include "trial/plan.h"
+#include "tune/settings_trial.h"
 
 #include <signal.h>
 #include <stdio.h>

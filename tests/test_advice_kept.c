@@ -2,7 +2,7 @@
    the same scene in its first modes, in steps of a millisecond. */
 #include "scene.h"
 
-#include "trial/record.h"
+#include "trial/run_record.h"
 
 #include <stdio.h>
 

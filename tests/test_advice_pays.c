@@ -1,7 +1,7 @@
 /* What asking for advice costs, beside what it saves: counted in trials, the same on every machine. */
 #include "scene.h"
 
-#include "trial/record.h"
+#include "trial/run_record.h"
 
 #include <stdio.h>
 

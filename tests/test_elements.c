@@ -4,8 +4,8 @@
 
 #include "member/body.h"
 #include "session/own.h"
-#include "trial/apply.h"
-#include "trial/remake.h"
+#include "tune/apply.h"
+#include "trial/rebuild.h"
 
 enum { MOST = 64 };
 

@@ -4,8 +4,8 @@
 
 #include "member/joint.h"
 #include "session/own.h"
-#include "trial/apply.h"
-#include "trial/remake.h"
+#include "tune/apply.h"
+#include "trial/rebuild.h"
 
 enum { MEMBERS = 3, JOINTS = 3, MOST = 40 };
 

@@ -3,7 +3,7 @@
 
 #include "math/basis.h"
 #include "math/resample.h"
-#include "trial/remake.h"
+#include "trial/rebuild.h"
 
 #include <stdio.h>
 

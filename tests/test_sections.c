@@ -4,7 +4,7 @@
 
 #include "fluid/fluid.h"
 #include "math/rotation.h"
-#include "trial/remake.h"
+#include "trial/rebuild.h"
 
 #include <spar/spar_aero.h>
 #include <stdio.h>

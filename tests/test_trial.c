@@ -3,8 +3,8 @@
 
 #include "math/basis.h"
 #include "session/own.h"
-#include "trial/apply.h"
-#include "trial/plan.h"
+#include "tune/apply.h"
+#include "tune/settings_trial.h"
 
 #include <stdio.h>
 

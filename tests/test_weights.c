@@ -6,7 +6,7 @@
 #include "fluid/fluid.h"
 #include "math/rotation.h"
 #include "support/lines.h"
-#include "trial/remake.h"
+#include "trial/rebuild.h"
 
 #include <float.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
 #include "trial.h"
 
-#include "carry.h"
+#include "move_loads.h"
 #include "cost.h"
-#include "retie.h"
+#include "move_joints.h"
 
 #include "../base/environment.h"
 #include "../comm/enter.h"

@@ -8,8 +8,8 @@
 #include "../session/own.h"
 #include "../session/settings.h"
 #include "progress.h"
-#include "record.h"
-#include "remake.h"
+#include "run_record.h"
+#include "rebuild.h"
 
 /* Steps of a run come in such numbers. */
 enum { SPARI_MULTIPLE = 8 };

@@ -1,7 +1,7 @@
 /* Numbers of the host's own that advice is to keep. */
 #include "../base/environment.h"
 #include "../base/session.h"
-#include "own.h"
+#include "../session/own.h"
 
 #include <string.h>
 

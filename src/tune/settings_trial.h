@@ -2,8 +2,8 @@
 #ifndef SPARI_PLAN_H
 #define SPARI_PLAN_H
 
-#include "rules.h"
-#include "trial.h"
+#include "../trial/rules.h"
+#include "../trial/trial.h"
 
 #define SPARI_ADVISE "spar_session_advise"
 

@@ -9,7 +9,7 @@
 #include "../session/pace.h"
 #include "../solve/fidelity.h"
 #include "../solve/solver.h"
-#include "remake.h"
+#include "../trial/rebuild.h"
 
 #include <math.h>
 #include <stdlib.h>

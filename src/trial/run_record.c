@@ -1,5 +1,5 @@
-/* What a run leaves behind: see record.h. */
-#include "record.h"
+/* What a run leaves behind: see run_record.h. */
+#include "run_record.h"
 
 #include "../base/session.h"
 #include "../comm/comm.h"

@@ -13,9 +13,9 @@
 #include "../session/own.h"
 #include "../session/spread.h"
 #include "../solve/work.h"
-#include "carry.h"
-#include "remake.h"
-#include "retie.h"
+#include "../trial/move_loads.h"
+#include "../trial/rebuild.h"
+#include "../trial/move_joints.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #define SPARI_REDUCED_H
 
 #include "../algebra/prony.h"
-#include "answer.h"
+#include "fluid_response.h"
 
 typedef struct spari_reduced {
     int n;

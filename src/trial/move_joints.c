@@ -1,5 +1,5 @@
-/* Joints of members made anew: see retie.h. */
-#include "retie.h"
+/* Joints of members made anew: see move_joints.h. */
+#include "move_joints.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* Reproducible sums of loads go over to other nodes: see carry.h. */
-#include "carry.h"
+/* Reproducible sums of loads go over to other nodes: see move_loads.h. */
+#include "move_loads.h"
 
 #include "../base/session.h"
 #include "../comm/enter.h"

@@ -4,8 +4,8 @@
    those of whole runs, costs what is counted in them (cost.h). */
 #include "../base/environment.h"
 #include "apply.h"
-#include "cost.h"
-#include "plan.h"
+#include "../trial/cost.h"
+#include "settings_trial.h"
 
 #include "../math/basis.h"
 #include "../member/beam.h"

@@ -2,9 +2,9 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "fidelity.h"
-#include "limb.h"
-#include "swing.h"
+#include "../solve/fidelity.h"
+#include "../solve/limb.h"
+#include "small_motions.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Loads by motion along shapes, in trials that solve nothing: see answer.h. */
-#include "answer.h"
+/* Loads by motion along shapes, in trials that solve nothing: see fluid_response.h. */
+#include "fluid_response.h"
 
 #include "../math/rotation.h"
 #include "../session/forced.h"

@@ -1,5 +1,5 @@
 /* Members made anew in other elements or of another fidelity for a trial, and put back. */
-#include "remake.h"
+#include "rebuild.h"
 
 #include "../base/session.h"
 #include "../math/resample.h"

@@ -2,7 +2,7 @@
 #ifndef SPARI_SHAPES_H
 #define SPARI_SHAPES_H
 
-#include "../solve/swing.h"
+#include "small_motions.h"
 
 /* As many as are asked for at most. */
 enum { SPARI_SHAPES_MOST = 200 };

@@ -4,7 +4,7 @@
 #include "../solve/assembly.h"
 #include "../solve/fidelity.h"
 #include "../solve/owners.h"
-#include "cost.h"
+#include "../trial/cost.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* Settings that advice tries: how they are written down, run, measured and compared. */
-#include "plan.h"
+#include "settings_trial.h"
 
-#include "cost.h"
-#include "retie.h"
+#include "../trial/cost.h"
+#include "../trial/move_joints.h"
 
 #include "../math/basis.h"
 #include "../member/applied.h"

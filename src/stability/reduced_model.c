@@ -1,8 +1,8 @@
-/* Eigenvalues of structure and fluid in a few shapes: see reduced.h. Of a fluid with a memory A(s) is the transform of
+/* Eigenvalues of structure and fluid in a few shapes: see reduced_model.h. Of a fluid with a memory A(s) is the transform of
    the loads over that of the pulse, z = e^(s dt): a sum over the pulse, and of what follows the closed form of how it
    comes to rest, so that it is there also where the sum would not end. A rational form near to it has eigenvalues all
    of which are found; each is then brought to A(s) itself. */
-#include "reduced.h"
+#include "reduced_model.h"
 
 #include "../algebra/schur.h"
 

@@ -1,7 +1,7 @@
 /* Eigenvalues of structure and fluid together: a flutter speed without marching in time. The structure is what
    spar_member_solve_eigenvalues takes, in some of its modes; the fluid's answer to motion in these comes from trials.
  */
-#include "reduced.h"
+#include "reduced_model.h"
 #include "shapes.h"
 
 #include "../base/environment.h"

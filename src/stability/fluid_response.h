@@ -3,8 +3,8 @@
 #ifndef SPARI_ANSWER_H
 #define SPARI_ANSWER_H
 
-#include "../solve/swing.h"
-#include "trial.h"
+#include "small_motions.h"
+#include "../trial/trial.h"
 
 /* A pulse of so many steps: a bell of 1.25 steps, 8 of which to either side are all that doubles see of it; its samples
    have then no more than 1e-13 of frequencies that they cannot show. Behind it the motion has been at rest for the two

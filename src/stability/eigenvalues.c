@@ -2,15 +2,15 @@
    turns steadily as one, is seen from a frame that turns with it, where the equations have constant coefficients. Parts
    that turn otherwise than the others (a rotor on its tower) may do so where they are alike all around their axis: then
    nothing changes with their angle. */
-#include "swing.h"
+#include "small_motions.h"
 
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "../member/checks.h"
-#include "assembly.h"
-#include "fidelity.h"
+#include "../solve/assembly.h"
+#include "../solve/fidelity.h"
 #include "modes.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
    a shape, or given its velocity, to and fro, and runs through the period; half the difference of both ends is a
    column. */
 #include "shapes.h"
-#include "trial.h"
+#include "../trial/trial.h"
 
 #include "../base/blas.h"
 #include "../base/environment.h"
