@@ -12,7 +12,7 @@
 
 #include "member/body.h"
 #include "member/structure.h"
-#include "solve/solver.h"
+#include "time/body_solver.h"
 
 /* ---- small tools ---- */
 

@@ -4,7 +4,7 @@
 
 #include "member/structure.h"
 #include "scenes.h"
-#include "solve/fidelity.h"
+#include "time/fidelity.h"
 #include "trial/cost.h"
 #include "tune/settings_trial.h"
 

@@ -4,8 +4,8 @@
 #include "scene.h"
 
 #include "member/structure.h"
-#include "solve/assembly.h"
-#include "solve/tied.h"
+#include "assembly/assembly.h"
+#include "assembly/system.h"
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* Time integration against exact solutions, with the order measured; conservation; invariance. */
 #include "scene.h"
 
-#include "solve/solver.h"
+#include "time/body_solver.h"
 
 #include <float.h>
 #include <stdio.h>

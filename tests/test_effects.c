@@ -1,7 +1,7 @@
 /* Effects of members: what is off is not there, and changes the answer by what the theory says. */
 #include "scene.h"
 
-#include "solve/solver.h"
+#include "time/body_solver.h"
 
 static double K[36], M[36];
 

@@ -3,9 +3,9 @@
 
 #include <stdio.h>
 
-#include "solve/frame.h"
+#include "floating/frame.h"
 #include "solve/rigid_beam.h"
-#include "solve/solver.h"
+#include "time/body_solver.h"
 
 static double K[36], M[36];
 static const double SPIN = 2, DT = 2e-3;

@@ -4,7 +4,7 @@
 #include "math/basis.h"
 #include "member/body.h"
 #include "member/structure.h"
-#include "solve/turn.h"
+#include "time/steady_rotation.h"
 
 static const double two_pi = 6.283185307179586;
 

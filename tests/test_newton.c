@@ -3,8 +3,8 @@
    oracle is the strict run, and one with half its dt: their distance is the error of dt (3/4 of it). */
 #include "scene.h"
 
-#include "solve/fidelity.h"
-#include "solve/solver.h"
+#include "time/fidelity.h"
+#include "time/body_solver.h"
 
 #include <stdio.h>
 

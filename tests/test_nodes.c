@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "math/rotation.h"
-#include "solve/alpha_nodes.h"
+#include "time/node_kinematics.h"
 
 #include <math.h>
 #include <stdlib.h>

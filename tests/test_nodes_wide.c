@@ -4,6 +4,6 @@
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
-#include "solve/alpha_nodes.c"
+#include "time/node_kinematics.c"
 
 #include "test_nodes.c"

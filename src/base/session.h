@@ -136,7 +136,7 @@ static inline void spari_clock_tick(spar_session *s, double dt) {
     s->time_rest = s->time >= step ? (s->time - then) + step : (step - then) + s->time;
     s->time = then;
 }
-/* Whether a step dt of the session is taken by generalised-alpha (solve/scheme.h). */
+/* Whether a step dt of the session is taken by generalised-alpha (time/scheme.h). */
 static inline int spari_steps_even(const spar_session *s, double dt) {
     return s->step == 0 ||
            (spari_steps_alike(dt, s->dt_last[0]) && (s->step == 1 || spari_steps_alike(s->dt_last[0], s->dt_last[1])));

@@ -370,7 +370,7 @@ void spari_added_see(spar_member *m) {
 }
 
 /* (v^{n+1} - v^n) / dt by the true accelerations at both ends and the algorithmic one b^n, and that one after the step
-   (solve/scheme.h). Of a step of TR-BDF2 the acceleration at its stage is taken for linear in between, and b^n stays
+   (time/scheme.h). Of a step of TR-BDF2 the acceleration at its stage is taken for linear in between, and b^n stays
    out. */
 typedef struct integration {
     double a0, b0, a1;                /* of the change of the velocity */

@@ -1,5 +1,5 @@
 /* A joint: what ties a node of a member to a node of another, or to the ground. What it is stands here; how the members
-   it ties are solved, in solve/assembly.h. */
+   it ties are solved, in assembly/assembly.h. */
 #ifndef SPARI_JOINT_H
 #define SPARI_JOINT_H
 

@@ -3,7 +3,7 @@
 #ifndef SPARI_COLUMNS_H
 #define SPARI_COLUMNS_H
 
-#include "../solve/snapshot.h"
+#include "../time/tangent_snapshot.h"
 #include "accelerate.h"
 #include "../algebra/secants.h"
 

@@ -4,7 +4,7 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
-#include "../solve/assembly.h"
+#include "../assembly/assembly.h"
 #include "block.h"
 #include "own.h"
 #include "spread.h"

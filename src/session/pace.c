@@ -3,7 +3,7 @@
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
-#include "../solve/change.h"
+#include "../time/step_error.h"
 #include "own.h"
 
 #include <math.h>

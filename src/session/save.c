@@ -6,8 +6,8 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
 #include "exchange.h"
 #include "saved.h"
 

@@ -10,7 +10,7 @@
 #include "../fluid/fluid.h"
 #include "../member/joint.h"
 #include "../member/structure.h"
-#include "../solve/assembly.h"
+#include "../assembly/assembly.h"
 #include "../solve/life.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "spread.h"
 
 #include "../fluid/fluid.h"
-#include "../solve/assembly.h"
+#include "../assembly/assembly.h"
 #include "block.h"
 #include "own.h"
 

@@ -5,8 +5,8 @@
 
 #include "../comm/comm.h"
 #include "../member/structure.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
 #include "spread.h"
 
 #include <math.h>

@@ -3,13 +3,13 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../algebra/eigen.h"
-#include "fidelity.h"
-#include "limb.h"
+#include "../time/fidelity.h"
+#include "../time/component.h"
 #include "../algebra/pencil.h"
 #include "reaction.h"
-#include "scheme.h"
-#include "solver.h"
-#include "turn.h"
+#include "../time/scheme.h"
+#include "../time/body_solver.h"
+#include "../time/steady_rotation.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,8 +12,8 @@
 #include "../member/checks.h"
 #include "../member/added_mass_fit.h"
 #include "../member/mean_acceleration.h"
-#include "fidelity.h"
-#include "leave.h"
+#include "../time/fidelity.h"
+#include "../time/newton_stop.h"
 #include "work.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "../member/body.h"
 #include "../member/checks.h"
 #include "../member/joint.h"
-#include "fidelity.h"
+#include "../time/fidelity.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,13 +4,13 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "carried.h"
+#include "rigid_nodes.h"
 #include "../algebra/eigen.h"
-#include "fidelity.h"
-#include "limb.h"
+#include "../time/fidelity.h"
+#include "../time/component.h"
 #include "../algebra/pencil.h"
 #include "reaction.h"
-#include "turn.h"
+#include "../time/steady_rotation.h"
 
 #include <stdlib.h>
 #include <string.h>

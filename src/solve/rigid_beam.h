@@ -2,8 +2,8 @@
 #ifndef SPARI_RIGID_BEAM_H
 #define SPARI_RIGID_BEAM_H
 
-#include "arms.h"
-#include "solver.h"
+#include "../time/offset_loads.h"
+#include "../time/body_solver.h"
 
 typedef struct spari_rigid_beam {
     spari_body *body;     /* one node at the root with the mass of the whole */

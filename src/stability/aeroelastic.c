@@ -7,8 +7,8 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../session/exchange.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>

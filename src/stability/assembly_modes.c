@@ -9,8 +9,8 @@
 #include "../member/body.h"
 #include "../member/checks.h"
 #include "../member/joint.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
 #include "modes.h"
 
 #include <gsl/gsl_blas.h>

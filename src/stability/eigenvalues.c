@@ -9,8 +9,8 @@
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "../member/checks.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
 #include "modes.h"
 
 #include <math.h>

@@ -11,7 +11,7 @@
 #include "../math/rotation.h"
 #include "../session/exchange.h"
 #include "../session/lend.h"
-#include "../solve/assembly.h"
+#include "../assembly/assembly.h"
 #include "../solve/life.h"
 
 #include <complex.h>

@@ -6,7 +6,7 @@
 #include "../math/rotation.h"
 #include "../member/beam.h"
 #include "../member/checks.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 #include "modes.h"
 
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "../base/session.h"
 #include "../member/body.h"
 #include "../algebra/eigen.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>

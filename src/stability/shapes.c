@@ -2,7 +2,7 @@
 #include "shapes.h"
 
 #include "../base/session.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>

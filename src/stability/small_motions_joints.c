@@ -2,8 +2,8 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "../solve/fidelity.h"
-#include "../solve/limb.h"
+#include "../time/fidelity.h"
+#include "../time/component.h"
 #include "small_motions.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static void find_columns(const spari_swing *w, const spar_joint *j, int side, sw
     }
 }
 
-/* How the rates of the nodes [12] change with their motion: V = d v / d x, seen from the frame (turn.h), v those of
+/* How the rates of the nodes [12] change with their motion: V = d v / d x, seen from the frame (steady_rotation.h), v those of
  * now. */
 static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swing_side of[2], double v[12],
                            double V[12][12]) {

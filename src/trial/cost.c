@@ -6,7 +6,7 @@
 #include "../member/beam.h"
 #include "../session/coupling.h"
 #include "../session/own.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 #include "rules.h"
 
 #include <math.h>

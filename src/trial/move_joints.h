@@ -3,7 +3,7 @@
 #ifndef SPARI_RETIE_H
 #define SPARI_RETIE_H
 
-#include "../solve/assembly.h"
+#include "../assembly/assembly.h"
 
 typedef struct spari_ties {
     spar_joint *joints; /* [joint_count] as they were; NULL: there is nothing to go back to */

@@ -8,7 +8,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/mean_acceleration.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 #include "../solve/life.h"
 
 #include <stdlib.h>

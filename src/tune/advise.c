@@ -10,7 +10,7 @@
 #include "../math/basis.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,8 +7,8 @@
 #include "../math/resample.h"
 #include "../member/body.h"
 #include "../session/pace.h"
-#include "../solve/fidelity.h"
-#include "../solve/solver.h"
+#include "../time/fidelity.h"
+#include "../time/body_solver.h"
 #include "../trial/rebuild.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 /* Who solves how much. */
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../solve/assembly.h"
-#include "../solve/fidelity.h"
-#include "../solve/owners.h"
+#include "../assembly/assembly.h"
+#include "../time/fidelity.h"
+#include "../assembly/owners.h"
 #include "../trial/cost.h"
 
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../session/accelerate.h"
-#include "../solve/fidelity.h"
+#include "../time/fidelity.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,0 +1,831 @@
+/* Members that joints tie together, in time: see assembly.h. */
+#include "assembly.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../time/fidelity.h"
+#include "../time/newton_stop.h"
+#include "../time/newton.h"
+#include "system.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- one substep ---- */
+
+/* Whether any part has starting values of that kind; the others keep their velocities then. */
+static int predict(spari_assembly *a, spari_guess stays) {
+    int any = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        int has = p->row->predict(p, stays);
+        any = has || any;
+        if (!has) {
+            (void)p->row->predict(p, SPARI_KEEP_VELOCITY);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].joint->after = a->link[i].begin;
+    }
+    return any;
+}
+
+/* Residuals of all parts and gaps of all links at the latest iterate; what rounding in the former is relative to, or
+   NaN. */
+static double balance(spari_assembly *a, double s, double dt, double *noise) {
+    double scale = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        scale += a->limb[i].row->balance(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link_find(a->link + i, s, dt, 1);
+    }
+    spari_links_add(a);
+    *noise = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        double left = a->limb[i].row->noise(a->limb + i);
+        *noise = fmax(*noise, left);
+        scale += 0 * left;
+    }
+    return scale;
+}
+
+static int form(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        if (a->limb[i].row->tangent(a->limb + i)) {
+            return 1;
+        }
+    }
+    spari_tied_keep(a);
+    return 0;
+}
+
+/* Takes as much of the links' corrections off their loads. */
+static void correct_loads(spari_assembly *a, double cut) {
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->link[i].joint->after.load[k] -= cut * a->link[i].correction[k];
+        }
+    }
+}
+
+/* Takes the corrections off, all shortened alike; their size before. */
+static double correct(spari_assembly *a, double longest) {
+    double largest = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].change = a->limb[i].row->change(a->limb + i);
+        largest = fmax(largest, a->limb[i].change);
+    }
+    double cut = largest > longest ? longest / largest : 1;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->correct(a->limb + i, cut);
+    }
+    correct_loads(a, cut);
+    return largest;
+}
+
+/* Brings the rates onto the constraints' while the places stay: what the correction before it, for the places' sake,
+   leaves of the rates' gaps as they were then. *size: at least that of what it takes off. */
+static int correct_rates(spari_assembly *a, double cut, double *size) {
+    double most = 0;
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        for (int k = 0; k < 6; k++) {
+            l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) / a->limb[0].scheme.rate - l->gap[k] : 0;
+            most = fmax(most, fabs(l->gap[k]));
+        }
+    }
+    if (!(most > 0)) {
+        return 0;
+    }
+    if (spari_tied_close(a, a->limb[0].scheme.cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_scheme *c = &a->limb[i].scheme;
+        *size = fmax(*size, a->limb[i].row->change(a->limb + i));
+        a->limb[i].row->shift_rates(a->limb + i, cut * c->rate, cut * c->cm, cut * c->cb);
+    }
+    correct_loads(a, cut);
+    return 0;
+}
+
+/* What of a correction as large as `largest` may be left: strict by the largest way of all parts. A part is asked for
+   no more than a tenth of what the one that errs most is, to whose motion it is tied. */
+static double tolerance(const spari_assembly *a, double largest) {
+    const spar_session *s = a->session;
+    double size = 0, most = 0, worst = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        double way = p->row->way(p);
+        p->leave = s->newton_strict ? 0 : spari_leave(p->member, &p->scheme, way);
+        size = fmax(size, way);
+        most = fmax(most, p->leave);
+    }
+    for (int i = 0; i < a->limbs && !s->newton_strict; i++) {
+        worst = fmax(worst, a->limb[i].change / fmax(a->limb[i].leave, 0.1 * most));
+    }
+    int stage = a->limb[0].scheme.rule != SPARI_ALPHA;
+    double strict = stage ? spari_leave_stage(s, &a->limb[0].scheme, size) : s->newton_atol + s->newton_rtol * size;
+    return worst > 0 ? fmax(strict, largest / worst) : strict;
+}
+
+static int kept_serves(const spari_assembly *a) {
+    int kept = a->factored;
+    for (int i = 0; i < a->limbs; i++) {
+        kept = kept && a->limb[i].row->serves(a->limb + i);
+    }
+    return kept;
+}
+
+/* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
+   contracts by about as much. */
+static const double near_tied = 0.01;
+enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
+
+/* What is left of the tangents for the next solution (see tied.h) after one of so many iterations; took: of those that
+   it was found with, 0: it formed them. New ones take about ten iterations to form and serve for many solutions, so
+   that they are made when they would spare more than one iteration. */
+static int tangents_after(int iterations, int took) {
+    int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
+    if (took == 0) {
+        return iterations;
+    }
+    return iterations <= patience ? took : 0;
+}
+
+/* A substep of all, as newton.h has it. */
+typedef struct tied_step {
+    spari_assembly *a;
+    double s, dt;
+    int took; /* of the tangents that it began with */
+} tied_step;
+
+static int guess_tied(void *self, spari_guess stays) {
+    const tied_step *t = self;
+    return predict(t->a, stays);
+}
+
+static int begin_tied(void *self, int kept) {
+    tied_step *t = self;
+    t->took = t->a->factored;
+    t->a->factored = kept && kept_serves(t->a);
+    t->a->standing = 0; /* what a solution begins with is not to depend on those before it */
+    return t->a->factored;
+}
+
+/* Of positions. So much of a gap is none: in a step h it would ask for an acceleration of the gap / h^2, 1 m/s^2 in
+   1e-8 s. */
+static double rounding_of(const spari_link *l) {
+    double size = 0;
+    for (int side = 0; side < 2; side++) {
+        size = fmax(size, spari_norm(l->place[side].x));
+        size = fmax(size, l->limb[side] ? spari_member_length(l->limb[side]->member) : 0);
+    }
+    return 8 * DBL_EPSILON * size;
+}
+
+static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
+    const tied_step *t = self;
+    spari_assembly *a = t->a;
+    double noise, scale = balance(a, t->s, t->dt, &noise);
+    if (!isfinite(scale)) {
+        return "met numbers that are not finite";
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double rounding = rounding_of(l);
+        for (int k = 0; k < 6; k++) {
+            double gap = spari_link_holds(l, k) ? spari_link_gap(l, k) : 0;
+            l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
+        }
+    }
+    if (!a->factored && form(a)) {
+        return "found a singular tangent";
+    }
+    a->factored = 1;
+    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+        return "found a singular tangent";
+    }
+    it->correction = correct(a, longest);
+    double cut = it->correction > longest ? longest / it->correction : 1;
+    if (a->violent && correct_rates(a, cut, &it->correction)) {
+        return "found a singular tangent";
+    }
+    a->moved += it->correction;
+    /* How places go beside the scheme is not to depend on where the system was factored. */
+    a->standing = a->standing && a->moved < near_tied && a->limb[0].scheme.rule == SPARI_ALPHA;
+    it->tolerance = tolerance(a, it->correction);
+    it->small = it->correction < 1e-11;
+    it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
+    return NULL;
+}
+
+static void renew_tied(void *self) {
+    const tied_step *t = self;
+    t->a->factored = 0;
+}
+
+static void end_tied(void *self, int iterations, int fresh) {
+    const tied_step *t = self;
+    t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
+}
+
+/* Velocities onto the constraints, as near as the tangent tells distances. */
+static int project(spari_assembly *a, double s, double dt) {
+    for (int pass = 0; pass < 8; pass++) {
+        double worst = 0, size = 0;
+        for (int i = 0; i < a->links; i++) {
+            spari_link *l = a->link + i;
+            spari_link_find(l, s, dt, 1);
+            for (int k = 0; k < 6; k++) {
+                l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) : 0;
+                worst = fmax(worst, fabs(l->gap[k]));
+            }
+            for (int k = 0; k < 12; k++) {
+                size = fmax(size, fabs(l->v[k]));
+            }
+        }
+        if (worst <= 8 * DBL_EPSILON * size) {
+            return 0;
+        }
+        if (spari_tied_close(a, a->limb[0].scheme.cv)) {
+            return 1;
+        }
+        for (int i = 0; i < a->limbs; i++) {
+            a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
+        }
+    }
+    return 0;
+}
+
+/* A line that goes taut or slack in a step shows it by its second correction: a contraction below counts as this. */
+#define LEAST_RATE 0.02
+
+/* NULL, or what went wrong in the last attempt. A far correction may lead to another way of closing a loop. */
+static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
+    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_tied, begin_tied,
+                                     iterate_tied,  renew_tied, end_tied};
+    tied_step step = {a, s, dt, 0};
+    return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max,
+                              spari_leave_begin(a->session, &a->trace), iterations);
+}
+
+/* Where the last solution has led to. */
+static int guess_onward(void *self, spari_guess stays) {
+    (void)self;
+    return stays == SPARI_KEEP_VELOCITY;
+}
+
+/* Driven joints that jump, in so many parts of their way: from the place of before each from where the last has led. */
+static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
+    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_onward, begin_tied,
+                                     iterate_tied,  renew_tied, end_tied};
+    tied_step step = {a, s, dt, 0};
+    const char *wrong = NULL;
+    (void)predict(a, SPARI_KEEP_PLACE);
+    for (int part = 1; part <= parts && !wrong; part++) {
+        for (int i = 0; i < a->links; i++) {
+            spari_link *l = a->link + i;
+            for (int k = 0; k < 6; k++) {
+                l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
+            }
+        }
+        a->trace.rate = 0;
+        wrong = spari_newton_solve(&how, &step, 0, a->session->newton_max, &a->trace, iterations);
+    }
+    return wrong;
+}
+
+/* The last resort; wrong: what went wrong before. */
+static const char *walk_drives(spari_assembly *a, double s, double dt, const char *wrong, int *iterations) {
+    int jumps = 0;
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        l->to = l->drive;
+        for (int k = 0; k < 6; k++) {
+            jumps = jumps || ((l->joint->driven >> k & 1) && fabs(l->to.z[k] - l->begin.z[k]) > 0);
+        }
+    }
+    for (int parts = 8; parts <= 128 && jumps && wrong; parts *= 4) {
+        wrong = walk_drives_in(a, s, dt, parts, iterations);
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].drive = a->link[i].to;
+    }
+    return wrong;
+}
+
+/* The states at the end of a substep. */
+static int newton_all(spari_assembly *a, double s, double dt) {
+    int iterations = 0;
+    const char *wrong = attempts_of(a, s, dt, &iterations);
+    if (wrong && !a->violent && !a->limb[0].scheme.still) {
+        a->violent = 1;
+        wrong = attempts_of(a, s, dt, &iterations);
+    }
+    wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
+    SPARI_REQUIRE(
+        a->session, !wrong, SPAR_ERR_NUMERIC,
+        "the members that joint '%s' ties together: Newton %s (%d iterations in several attempts, each of %d at "
+        "most) in the step from t = %g; take a smaller dt, more substeps or a smaller rho_inf, or look at the "
+        "loads",
+        a->link[0].joint->name, wrong, iterations, a->session->newton_max, a->session->time);
+    return SPAR_OK;
+}
+
+/* Generalised-alpha with constraints at position level keeps velocities that are off them by -C h^2 times the rate of
+   the acceleration, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. It
+   begins smoothly if they are put there; else accelerations and multipliers ring with an amplitude of first order.
+   Rates of the accelerations at the joints are those of what turns steadily at t^0 (time 0), later those of the time
+   that has passed since t^n. 0 or 1. */
+static int shift_for_alpha(spari_assembly *a, double cv, double time) {
+    const spari_scheme *c = &a->limb[0].alpha;
+    double C = spari_scheme_error(c);
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double jerk[12] = {0}, rate[6];
+        for (int k = 0; k < 12; k += 3) {
+            int side = k / 6;
+            const spar_member *m = l->joint->member[side];
+            if (l->limb[side] && time > 0) {
+                for (int j = k; j < k + 3; j++) {
+                    jerk[j] = (l->a[j] - m->now.a[6 * l->joint->seat[side] + j % 6]) / time;
+                }
+            } else if (l->limb[side] && k % 6 == 0) {
+                spari_steady_rate(m, l->v + 6 * side + 3, l->a + k, jerk + k);
+            }
+        }
+        spari_link_times(l->B, jerk, rate);
+        const spari_relative found = l->joint->after;
+        if (!(time > 0)) { /* those of rigid bodies are there already */
+            spari_link_find(l, 0, 0, 1);
+        }
+        for (int k = 0; k < 6; k++) {
+            double off = time > 0 ? 0 : spari_link_rate_gap(l, k);
+            l->gap[k] = spari_link_holds(l, k) ? off + C * c->h * c->h * rate[k] : 0;
+        }
+        l->joint->after = found;
+    }
+    if (spari_tied_close(a, cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
+    }
+    return 0;
+}
+
+/* ---- the start ---- */
+
+enum { START_REFINEMENTS = 3 };
+
+/* What is left of the balance at t^0, and of the constraints' accelerations. */
+static void start_residual(spari_assembly *a, double cm) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->unbalance(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double drift[6], rate[6];
+        spari_link_find(l, 0, 0, 1);
+        spari_tie_drift(&l->joint->tie, &l->place[0], &l->place[1], l->v, drift);
+        spari_link_times(l->B, l->a, rate);
+        for (int k = 0; k < 6; k++) {
+            double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
+            l->gap[k] = spari_link_holds(l, k) ? (rate[k] + drift[k] - asked) / cm : 0;
+        }
+    }
+    spari_links_add(a);
+}
+
+/* A driven motion begins as the members do; later it is where it was driven to. */
+static void begin_drive(spari_link *l) {
+    spar_joint *j = l->joint;
+    for (int k = 0; k < 6; k++) {
+        if (j->session->step == 0 && (j->driven >> k & 1)) {
+            j->drive[0].z[k] = j->after.z[k];
+            j->drive[0].rate[k] = j->after.rate[k];
+            j->drive[0].acceleration[k] = 0;
+        }
+    }
+    l->drive = j->drive[0];
+}
+
+/* Accelerations at t^0 of the parts and loads of the joints that belong together: body_newton.c's start, with the joints. */
+static int start_all(spari_assembly *a) {
+    double cm = a->limb[0].scheme.cm;
+    int singular = 0;
+    for (int i = 0; i < a->limbs; i++) { /* all of them: links look at their states */
+        singular = a->limb[i].row->start(a->limb + i) || singular;
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link_find(a->link + i, 0, 0, 1);
+        begin_drive(a->link + i);
+    }
+    spari_tied_keep(a);
+    singular = singular || project(a, 0, 0);
+    for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
+        start_residual(a, cm);
+        singular = spari_tied_solve(a, 0);
+        for (int i = 0; i < a->limbs && !singular; i++) {
+            a->limb[i].row->correct_start(a->limb + i);
+        }
+        correct_loads(a, 1);
+    }
+    for (int i = 0; i < a->limbs && !singular; i++) {
+        a->limb[i].row->end_start(a->limb + i);
+    }
+    if (a->session->step == 0) { /* later the accelerations that a trial begins with are not those of a steady motion */
+        singular = singular || shift_for_alpha(a, 0, 0);
+    }
+    for (int i = 0; i < a->limbs && !singular; i++) {
+        if (a->limb[i].row->shift_start) {
+            a->limb[i].row->shift_start(a->limb + i);
+        }
+    }
+    a->factored = 0;
+    SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
+                  "the members that joint '%s' ties together: their mass and stiffness are singular at the start; give "
+                  "mass or rotary inertia to every direction in which they can move freely",
+                  a->link[0].joint->name);
+    for (int i = 0; i < a->links; i++) {
+        spari_joint_balance(a->link[i].joint);
+    }
+    return SPAR_OK;
+}
+
+void spari_assembly_forget(spari_assembly *a) {
+    a->factored = 0;
+}
+
+/* ---- the step ---- */
+
+/* Places and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of its
+   nodes depend on the velocities, and only the scheme's own are those that its loads have answered to. */
+static void publish_limb(spari_limb *p, double *rates) {
+    const spar_member *m = p->member;
+    size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
+    m->row->publish(p->member);
+    memcpy(rates, m->after.v, size);
+    p->row->keep_rates(p, 1);
+    m->row->publish(p->member);
+    memcpy(m->after.v, rates, size);
+}
+
+static int fail_singular(const spari_assembly *a) {
+    return spari_fail(
+        a->session, SPAR_ERR_NUMERIC,
+        "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take "
+        "a smaller dt",
+        a->link[0].joint->name, a->session->time);
+}
+
+/* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
+   which are off them by dt^2: with velocities put onto them the accelerations, and so the joints' loads, would be of
+   first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
+ */
+static int publish_all(spari_assembly *a, double dt) {
+    int moves = !a->limb[0].scheme.still;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->keep_rates(a->limb + i, 0);
+    }
+    int singular = moves && project(a, 1, dt);
+    for (int i = 0; i < a->limbs; i++) {
+        publish_limb(a->limb + i, a->rates);
+    }
+    singular = singular || spari_tied_calm(a, 1, dt);
+    return singular ? fail_singular(a) : SPAR_OK;
+}
+
+/* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself: of
+   what joints turn by, and of what their nodes, and with them the directions of what is held, turn by. */
+static const double farthest_turn = 0.1, farthest_spin = 0.2;
+
+/* In a long chain short links turn back and forth in less than a step under its tension: their ringing feeds itself
+   whatever they turn by (tests/stability/chains.c). So many joints with free motions are a long chain. */
+enum { CHAIN = 8 };
+
+static int ties_a_chain(const spari_assembly *a) {
+    int joints = 0;
+    for (int i = 0; i < a->links; i++) {
+        int holds = spari_link_holds_count(a->link + i);
+        joints += holds > 1 && holds < 6;
+        for (int side = 0; side < 2; side++) {
+            if (a->link[i].limb[side] && a->link[i].limb[side]->frame) { /* its velocities are shifted at its root */
+                return 0;
+            }
+        }
+    }
+    return joints >= CHAIN;
+}
+
+/* By the rates at the beginning of a step, in a substep h. */
+static int turns_far(const spari_assembly *a, double h) {
+    int far = 0;
+    for (int i = 0; i < a->links; i++) {
+        const spar_joint *j = a->link[i].joint;
+        far = far || (!j->tie.line && spari_norm(j->now.rate + 3) * h > farthest_turn);
+        for (int side = 0; side < 2 && !j->tie.line; side++) {
+            const spar_member *m = j->member[side];
+            far = far || (m && spari_norm(m->now.v + 6 * j->seat[side] + 3) * h > farthest_spin);
+        }
+    }
+    return far;
+}
+
+static void begin_links(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].joint->after = a->link[i].joint->now;
+    }
+}
+
+/* Joints whose nodes all move as they are told: their springs. */
+static void look_at_links(spari_assembly *a, double dt) {
+    begin_links(a);
+    for (int i = 0; i < a->links; i++) {
+        spari_link_find(a->link + i, 1, dt, 1);
+    }
+}
+
+/* A step begins at t^n, in the first one with the accelerations there. */
+static int begin_step(spari_assembly *a, double dt) {
+    int started = 1;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        started = p->row->take(p, dt / a->session->substeps) && started;
+        p->alpha = p->scheme;
+    }
+    begin_links(a);
+    if (a->limbs > 0 && !started && !a->limb[0].scheme.still) {
+        SPARI_TRY(start_all(a));
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->begin(a->limb + i);
+    }
+    return SPAR_OK;
+}
+
+int spari_assembly_balance(spari_assembly *a, double dt) {
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(begin_step(a, dt));
+    for (int i = 0; i < a->links && a->limbs == 0; i++) {
+        spari_link_find(a->link + i, 0, 0, 1);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].member->row->publish(a->limb[i].member);
+    }
+    return SPAR_OK;
+}
+
+/* Tangents where the step has ended. */
+static int form_after(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        double power = p->solver->power;
+        (void)p->row->balance(p);
+        p->solver->power = power;
+    }
+    return form(a);
+}
+
+/* Stored in the springs of a joint and in what the host's load and the preload can give. */
+static double potential_of(const spar_joint *j, double left, const double z[6]) {
+    double sum = 0;
+    for (int p = 0; p < 6; p++) {
+        double force = j->preload[p] + spari_joint_load_at(j, p, left);
+        for (int q = 0; q < 6; q++) {
+            force -= 0.5 * j->stiffness[6 * p + q] * z[q];
+        }
+        sum -= force * z[p];
+    }
+    return sum;
+}
+
+/* Of all members and joints; not known where something is driven. */
+static int gains_of_all(void *self, const spari_part *part) {
+    spari_assembly *a = self;
+    double gain = 0, size = 0;
+    int near = 1;
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->arms ||
+            p->solver->body->linear[0]) {
+            return 0;
+        }
+        near = near && spari_stage_is_near(p->solver, p->member, p->scheme.h);
+    }
+    for (int i = 0; i < a->links && !near; i++) {
+        const spari_link *l = a->link + i;
+        const spar_joint *j = l->joint;
+        for (int side = 0; side < 2; side++) {
+            near = near || (!l->limb[side] && j->member[side]);
+        }
+        if (j->driven || j->tie.line || near) {
+            return 0;
+        }
+        double left = 1 - 0.5 * (part->from + part->to),
+               change = potential_of(j, left, j->after.z) - potential_of(j, left, l->begin.z);
+        gain += change;
+        size += fabs(change);
+    }
+    for (int i = 0; i < a->limbs && !near; i++) {
+        spari_limb *p = a->limb + i;
+        double more, of;
+        spari_stage_energy(p->solver, p->member, part, &more, &of);
+        gain += more;
+        size += of;
+    }
+    return !near && gain > SPARI_GAIN * size;
+}
+
+static void name_all(const void *self, char *text, int size) {
+    const spari_assembly *a = self;
+    (void)snprintf(text, (size_t)size, "the members that joint '%s' ties together", a->link[0].joint->name);
+}
+
+static void enter_all(void *self, const spari_part *part) {
+    spari_assembly *a = self;
+    (void)part;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->enter(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        a->link[i].begin = a->link[i].joint->after;
+    }
+}
+
+static double turning_of_all(const void *self) {
+    const spari_assembly *a = self;
+    double most = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        most = fmax(most, spari_stage_turning(p->solver, p->member));
+    }
+    return most;
+}
+
+/* Coefficients of a stage, of each member by whether it has inertia. */
+static void set_scheme(spari_assembly *a, const spari_scheme *c) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        const spari_scheme own = c->h < p->alpha.h ? spari_scheme_resize(&p->alpha, c->h) : p->alpha;
+        p->scheme = c->rule == SPARI_ALPHA ? own : spari_scheme_stage(&own, c->rule);
+    }
+}
+
+/* Constraints are held at velocity level too where dt changes (Gear, Gupta and Leimkuhler, J. Comput. Appl. Math. 12
+   (1985)): at position level alone velocities are off them by dt^2, which a shorter step pays back as an acceleration
+   of dt_old^2 / dt_new. */
+static int stage_of_all(void *self, const spari_scheme *c, const spari_part *part) {
+    spari_assembly *a = self;
+    set_scheme(a, c);
+    a->violent = a->turns_far || c->rule != SPARI_ALPHA;
+    if (c->rule == SPARI_TRAPEZOIDAL) { /* how places go beside the scheme is a matter of the tangent: one that does not
+                                           depend on what has been solved before */
+        a->factored = 0;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again) {
+            p->row->take_velocities(p);
+        }
+        SPARI_TRY(p->row->stage(p, part));
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_joint_drive_at(a->link[i].joint, part->end, part->dt, &a->link[i].drive);
+        a->link[i].joint->left = 1 - part->end;
+    }
+    return newton_all(a, part->end, part->dt);
+}
+
+static int leave_all(void *self, const spari_scheme *c, const spari_part *part) {
+    spari_assembly *a = self;
+    (void)c;
+    if (part->to < 1 && spari_tied_calm(a, part->to, part->dt)) {
+        return fail_singular(a);
+    }
+    if (part->to < 1 && part->last && shift_for_alpha(a, a->limb[0].scheme.cv, part->to * part->dt)) {
+        return fail_singular(a);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->end(a->limb + i);
+    }
+    return SPAR_OK;
+}
+
+int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
+    static const spari_stepper how = {enter_all, turning_of_all, stage_of_all, leave_all, gains_of_all, name_all};
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    if (a->limbs == 0) {
+        look_at_links(a, dt);
+        return SPAR_OK;
+    }
+    SPARI_TRY(begin_step(a, dt));
+    a->turns_far = !a->limb[0].scheme.still && (ties_a_chain(a) || turns_far(a, dt / a->session->substeps));
+    spari_pattern pattern = a->limb[0].solver->steps.begin;
+    int status = spari_scheme_run(&how, a, &a->limb[0].alpha, &a->limb[0].member->cuts, &pattern, a->session, dt);
+    if (status != SPAR_OK) {
+        a->factored = 0;
+        return status;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].solver->steps.solved = pattern;
+    }
+    SPARI_TRY(publish_all(a, dt));
+    if (a->limb[0].scheme.rule == SPARI_BACKWARD && pattern.even == SPARI_EVEN - 1 &&
+        shift_for_alpha(a, a->limb[0].scheme.cv, dt)) {
+        return fail_singular(a);
+    }
+    a->solved = 1;
+    if (answers && !a->factored && form_after(a) == 0) {
+        a->factored = LEAST_PATIENCE;
+    }
+    return SPAR_OK;
+}
+
+/* ---- its answer ---- */
+
+/* Where a member's own begin among those of all. */
+static double *stacked_of(const spar_member *member, double *stacked) {
+    for (const spar_member *m = member->session->members; m != member; m = m->next) {
+        stacked += 6 * m->nodes;
+    }
+    return stacked;
+}
+
+static int has_loads(const spari_assembly *a, double *stacked) {
+    for (int i = 0; i < a->limbs; i++) {
+        const spar_member *m = a->limb[i].member;
+        const double *load = stacked_of(m, stacked);
+        for (int64_t k = 0; k < 6 * m->nodes; k++) {
+            if (load[k] != 0) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* One answer of those tangents, stacked. */
+static int answer_one(spari_assembly *a, double *stacked) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->take_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+    }
+    for (int i = 0; i < a->links; i++) {
+        memset(a->link[i].gap, 0, sizeof a->link[i].gap);
+    }
+    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->show_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+    }
+    return 0;
+}
+
+/* Where the parts and links stood when the step was written to the file that it was read from. What joints have
+   moved by stays: its rates are those that were published. */
+static void look_back(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->look_back(a->limb + i);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        const spari_relative kept = j->after;
+        spari_link_find(a->link + i, 1, a->session->dt, 1);
+        j->after = kept;
+    }
+    a->solved = 1;
+}
+
+int spari_assembly_answer(spari_assembly *a, int64_t count, int64_t apart, double *stacked) {
+    if (!a->here || a->limbs == 0) {
+        return 0;
+    }
+    if (!a->factored && (!a->solved || form_after(a))) {
+        return 1;
+    }
+    if (!a->solved) {
+        look_back(a);
+    }
+    int singular = 0;
+    a->standing = 0; /* that system is of parts a little way from here */
+    for (int64_t k = 0; k < count && !singular; k++) {
+        singular = has_loads(a, stacked + k * apart) && answer_one(a, stacked + k * apart);
+    }
+    a->standing = 0;
+    return singular;
+}
+
+double spari_assembly_answer_of_mass(const spari_assembly *a) {
+    double force = a->here && a->limbs > 0 ? a->limb[0].scheme.cm * a->mass : 0;
+    return force > 0 ? 1 / force : 0;
+}

@@ -1,0 +1,332 @@
+/* Which members joints tie together: assemblies found, sized and released. */
+#include "../base/session.h"
+#include "../comm/enter.h"
+#include "assembly.h"
+#include "../time/fidelity.h"
+#include "../solve/life.h"
+#include "owners.h"
+#include "system.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Whether a member's motion is unknown in an assembly. */
+static int is_part(const spar_member *m) {
+    return m && m->row->limb;
+}
+
+/* ---- one assembly ---- */
+
+static void assembly_free(spari_assembly *a) {
+    spari_tied_free(a);
+    spari_snapshot_free(&a->before);
+    free(a->limb);
+    free(a->link);
+    free(a);
+}
+
+static void take_member(spari_assembly *a, spar_member *m) {
+    a->limb[a->limbs++] = (spari_limb){.member = m, .owner_before = m->owner};
+    m->assembly = a;
+}
+
+/* All that is tied to its first member, in the order in which joints reach it. */
+static void gather(spari_assembly *a, spar_member *first) {
+    take_member(a, first);
+    for (int i = 0; i < a->limbs; i++) {
+        for (spar_joint *j = a->session->joints; j; j = j->next) {
+            for (int side = 0; side < 2; side++) {
+                spar_member *other = j->member[1 - side];
+                if (j->member[side] == a->limb[i].member && is_part(other) && !other->assembly) {
+                    take_member(a, other);
+                }
+            }
+        }
+    }
+}
+
+static spari_limb *part_of(spari_assembly *a, const spar_member *m) {
+    for (int i = 0; i < a->limbs; i++) {
+        if (a->limb[i].member == m) {
+            return a->limb + i;
+        }
+    }
+    return NULL;
+}
+
+/* Where the nodes are in the reference. */
+static void look_at_reference(spari_link *l) {
+    const spar_joint *j = l->joint;
+    double z[6];
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        l->place[side] = (spari_place){.q = {1, 0, 0, 0}};
+        if (m) {
+            memcpy(l->place[side].x, m->xr + 3 * j->seat[side], sizeof l->place[side].x);
+        }
+    }
+    spari_tie_motion(&j->tie, &l->place[0], &l->place[1], z, l->B);
+}
+
+/* Its members and joints, in the order in which joints reach them. first NULL: of `only`, whose nodes both move as they
+   are told. */
+static int assembly_create(spar_session *s, spar_member *first, spar_joint *only) {
+    spari_assembly *a = spari_zalloc(1, sizeof *a);
+    if (!a) {
+        return SPAR_ERR_MEMORY;
+    }
+    a->session = s;
+    a->next = s->assemblies;
+    s->assemblies = a;
+    a->limb = spari_zalloc(s->member_count, sizeof *a->limb);
+    a->link = spari_zalloc(only ? 1 : s->joint_count, sizeof *a->link);
+    if (!a->limb || !a->link) {
+        return SPAR_ERR_MEMORY;
+    }
+    if (first) {
+        gather(a, first);
+    }
+    for (spar_joint *j = only ? only : s->joints; j; j = only ? NULL : j->next) {
+        spari_limb *of[2] = {part_of(a, j->member[0]), part_of(a, j->member[1])};
+        if (of[0] || of[1] || only) {
+            spari_link *l = a->link + a->links++;
+            l->joint = j;
+            l->limb[0] = of[0], l->limb[1] = of[1];
+            j->held = spari_joint_given(j);
+        }
+    }
+    return SPAR_OK;
+}
+
+static double mass_of_all(const spari_assembly *a) {
+    double sum = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_body *b = a->limb[i].member->body;
+        for (int64_t k = 0; k < b->slot[b->elements] && b->mass; k++) {
+            sum += b->weight[k] * *SPARI_BLOCK(b->mass, 10, k);
+        }
+    }
+    return sum;
+}
+
+/* What solves it, on its owner. */
+static int make_system(spari_assembly *a) {
+    a->here = a->owner == spari_comm_rank(a->session->comm) || a->limbs == 0;
+    if (!a->here || a->limbs == 0) {
+        return SPAR_OK;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row = a->limb[i].member->row->limb;
+        SPARI_TRY(a->limb[i].row->make(a->limb + i));
+    }
+    SPARI_TRY(spari_tied_tree(a));
+    for (int i = 0; i < a->links; i++) {
+        look_at_reference(a->link + i);
+    }
+    SPARI_TRY(spari_tied_drop_redundant(a));
+    a->mass = mass_of_all(a);
+    return spari_tied_room(a);
+}
+
+/* ---- where it is solved ---- */
+
+/* Its members' solvers on its owner; what they had waits. */
+static int move_members(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->member->owner != a->owner) {
+            p->moved = 1;
+            SPARI_TRY(spari_member_move(p->member, a->owner, &p->solution_before));
+        }
+    }
+    return SPAR_OK;
+}
+
+static void end_moves(spari_assembly *a, int back) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->moved) {
+            spari_member_end_move(p->member, p->owner_before, p->solution_before, back);
+        }
+        p->moved = 0;
+    }
+}
+
+/* ---- all of them ---- */
+
+static int check_committed(const spar_joint *j, const spar_member *m) {
+    SPARI_REQUIRE(j->session, m->committed, SPAR_ERR_STATE,
+                  "joint '%s': member '%s' is not committed; call spar_member_commit first", j->name, m->name);
+    return SPAR_OK;
+}
+
+static int check_members(const spar_joint *j) {
+    SPARI_TRY(check_committed(j, j->member[0]));
+    SPARI_TRY(j->member[1] ? check_committed(j, j->member[1]) : SPAR_OK);
+    SPARI_REQUIRE(j->session, j->member[0] != j->member[1] || !j->member[0]->row->whole, SPAR_ERR_ARGUMENT,
+                  "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
+                  j->member[0]->name);
+    SPARI_REQUIRE(
+        j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_given(j), SPAR_ERR_ARGUMENT,
+        "joint '%s' holds or drives motions of nodes that all move as they are told ('%s'); leave its motions "
+        "free, with springs for what lies between them",
+        j->name, j->member[0]->name);
+    return SPAR_OK;
+}
+
+/* A beam that one body carries is held there: a rigid arm leads to the node. Of others the limb knows the nodes that
+   joints tie, in its own order. */
+static void lead_to_limbs(spar_joint *j) {
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        if (is_part(m) && m->row->whole) {
+            j->unique[side] = 0;
+            j->seat[side] = 0;
+            for (int k = 0; k < 3; k++) {
+                j->tie.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
+            }
+        }
+        if (is_part(m) && m->row->end_of) {
+            j->unique[side] = m->row->end_of(m, j->unique[side]);
+        }
+    }
+}
+
+static int gather_all(spar_session *s) {
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        int parts = 0;
+        for (int side = 0; side < 2; side++) {
+            spar_member *m = j->member[side];
+            parts += is_part(m);
+            if (is_part(m) && !m->assembly) {
+                SPARI_TRY(assembly_create(s, m, NULL));
+            }
+        }
+        if (parts == 0) {
+            SPARI_TRY(assembly_create(s, NULL, j));
+        }
+    }
+    return SPAR_OK;
+}
+
+int spari_members_retie(spar_session *s) {
+    if (s->joints_stale) {
+        spari_assemblies_free(s); /* they are of what is made anew */
+    }
+    for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
+        if (m->committed && m->row->retie) {
+            int status = m->row->retie(m);
+            SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
+            SPARI_TRY(status);
+        }
+    }
+    return SPAR_OK;
+}
+
+/* Nothing is changed until all of them can be placed. */
+static int check_joints(const spar_session *s) {
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        SPARI_TRY(check_members(j));
+        SPARI_TRY(spari_joint_check_place(j));
+    }
+    return SPAR_OK;
+}
+
+int spari_joints_place(spar_session *s) {
+    SPARI_TRY(s->joints_stale ? check_joints(s) : SPAR_OK);
+    SPARI_TRY(spari_members_retie(s));
+    for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
+        spari_joint_place(j);
+        lead_to_limbs(j);
+    }
+    return SPAR_OK;
+}
+
+/* This rank's part. */
+static int make_all(spar_session *s) {
+    SPARI_TRY(spari_joints_place(s));
+    int status = gather_all(s);
+    status = status == SPAR_OK ? spari_owners_of_assemblies(s) : status;
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
+        status = move_members(a);
+        status = status == SPAR_OK ? make_system(a) : status;
+    }
+    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the members that joints tie together");
+    return status;
+}
+
+/* Whether all ranks have made theirs, of joints that are described alike. */
+static int agree_on_joints(const spar_session *s, const char *call, int status) {
+    char what[SPARI_MESSAGE_SIZE / 2];
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        const spari_alike alike[] = {spari_hash("descriptions of it", spari_joint_hash(j)),
+                                     spari_hash("springs, loads or drives of it", spari_joint_setting(j))};
+        (void)snprintf(what, sizeof what, "%s: joint '%s'", call, j->name);
+        status = spari_enter_alike(j->session, what, alike, 2, status);
+        SPARI_TRY(status);
+    }
+    return SPAR_OK;
+}
+
+int spari_solvers_place(spar_session *s, const char *call) {
+    SPARI_TRY(s->joints ? spari_assemblies_make(s, call) : SPAR_OK);
+    return s->started ? SPAR_OK : spari_owners_settle(s);
+}
+
+int spari_assemblies_make(spar_session *s, const char *call) {
+    if (!s->joints_stale) {
+        return SPAR_OK;
+    }
+    int status = check_joints(s), changed = status == SPAR_OK;
+    if (changed) {
+        spari_assemblies_free(s);
+        status = make_all(s);
+    }
+    status = agree_on_joints(s, call, status);
+    for (spari_assembly *a = s->assemblies; a; a = a->next) {
+        end_moves(a, status != SPAR_OK);
+    }
+    if (status != SPAR_OK && changed) {
+        spari_assemblies_free(s);
+    }
+    SPARI_TRY(status);
+    s->joints_stale = 0;
+    return SPAR_OK;
+}
+
+void spari_assemblies_free(spar_session *s) {
+    spari_assemblies_drop(spari_assemblies_take(s));
+}
+
+spari_assembly *spari_assemblies_take(spar_session *s) {
+    spari_assembly *all = s->assemblies;
+    for (spar_member *m = s->members; m; m = m->next) {
+        m->assembly = NULL;
+    }
+    s->assemblies = NULL;
+    s->joints_stale = s->joints != NULL;
+    return all;
+}
+
+void spari_assemblies_give(spar_session *s, spari_assembly *all) {
+    spari_assemblies_free(s);
+    s->assemblies = all;
+    for (spari_assembly *a = all; a; a = a->next) {
+        for (int i = 0; i < a->limbs; i++) {
+            a->limb[i].member->assembly = a;
+        }
+    }
+}
+
+void spari_assemblies_drop(spari_assembly *all) {
+    while (all) {
+        spari_assembly *a = all;
+        all = a->next;
+        assembly_free(a);
+    }
+}
+
+spari_assembly *spari_assembly_next(const spari_assembly *a) {
+    return a->next;
+}

@@ -1,0 +1,129 @@
+/* A joint of an assembly: where its nodes are, its relative motion, and its forces on them. */
+#include "system.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../time/driven_root.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A node that moves as it is told: of a point, of the host's own member, of one that follows its root. */
+static spari_pose told(const spar_member *m, int64_t node, double s, double dt) {
+    const spari_motion *now = &m->now, *after = &m->after;
+    const spari_pose from = spari_pose_of(now->q + 7 * node, now->v + 6 * node, now->a + 6 * node),
+                     to = spari_pose_of(after->q + 7 * node, after->v + 6 * node, after->a + 6 * node);
+    return spari_drive_between(&from, &to, s, dt);
+}
+
+/* Place, velocity and acceleration of one side of a link in a state of its part, or at the part s of the step. */
+static void find_side(spari_link *l, int side, double s, double dt) {
+    const spar_joint *j = l->joint;
+    const spar_member *m = j->member[side];
+    spari_place *p = &l->place[side];
+    spari_pose x = {.q = {0, 0, 0, 1, 0, 0, 0}};
+    if (l->limb[side]) {
+        const spari_state *state = l->limb[side]->state;
+        int u = j->unique[side];
+        x = spari_pose_of(state->q + 7 * u, state->v + 6 * u, state->a + 6 * u);
+    } else if (m) {
+        x = told(m, j->seat[side], s, dt);
+    }
+    for (int k = 0; k < 3; k++) {
+        p->x[k] = x.q[k] + (m ? m->xr[3 * j->seat[side] + k] : 0);
+    }
+    memcpy(p->q, x.q + 3, sizeof p->q);
+    memcpy(l->v + 6 * side, x.v, sizeof x.v);
+    memcpy(l->a + 6 * side, x.a, sizeof x.a);
+}
+
+void spari_link_times(double B[6][12], const double v[12], double rate[6]) {
+    for (int k = 0; k < 6; k++) {
+        rate[k] = 0;
+        for (int i = 0; i < 12; i++) {
+            rate[k] += B[k][i] * v[i];
+        }
+    }
+}
+
+/* Change of the rates of a step with its coordinates; at one moment (dt 0) they are not tied. */
+static double speed_of_step(const spari_link *l, double dt) {
+    const spari_limb *p = l->limb[0] ? l->limb[0] : l->limb[1];
+    return p && dt > 0 ? p->scheme.rate : INFINITY;
+}
+
+void spari_link_find(spari_link *l, double s, double dt, double factor) {
+    spar_joint *j = l->joint;
+    spari_relative *r = &j->after;
+    double near[6];
+    memcpy(near, r->z, sizeof near);
+    r->found = 1;
+    find_side(l, 0, s, dt);
+    find_side(l, 1, s, dt);
+    spari_tie_motion(&j->tie, &l->place[0], &l->place[1], r->z, l->B);
+    spari_joint_count_turns(j, near, r->z);
+    spari_link_times(l->B, l->v, r->rate);
+    l->springs = spari_joint_spring(j, r->z, r->rate, speed_of_step(l, dt), factor, r->load);
+}
+
+double spari_link_gap(const spari_link *l, int k) {
+    const spar_joint *j = l->joint;
+    double target = j->driven >> k & 1 ? l->drive.z[k] : j->tie.line ? j->length : 0;
+    return j->after.z[k] - target;
+}
+
+double spari_link_rate_gap(const spari_link *l, int k) {
+    return l->joint->after.rate[k] - (l->joint->driven >> k & 1 ? l->drive.rate[k] : 0);
+}
+
+void spari_links_add(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        double f[12];
+        spari_tie_forces(l->B, l->joint->after.load, f);
+        for (int side = 0; side < 2; side++) {
+            spari_limb *p = l->limb[side];
+            for (int k = 0; k < 6 && p; k++) {
+                p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+            }
+        }
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        memset(a->limb[i].force, 0, (size_t)spari_member_held(a->limb[i].member) * sizeof(double));
+    }
+}
+
+int spari_link_standing(const spari_link *l) {
+    const spar_joint *j = l->joint;
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        if (!l->limb[side] && !(m && spari_norm(m->after.v + 6 * j->seat[side]) > 0) &&
+            !(m && spari_norm(m->after.v + 6 * j->seat[side] + 3) > 0)) {
+            return side;
+        }
+    }
+    return -1;
+}
+
+void spari_link_turning_dampers(spari_link *l, const double w[3]) {
+    const spar_joint *j = l->joint;
+    int side = spari_link_standing(l), given = spari_joint_given(j);
+    double R[6][12], W[9];
+    if (side < 0 || !l->springs) {
+        return;
+    }
+    spari_skew(w, W);
+    spari_tie_rates(&j->tie, &l->place[0], &l->place[1], l->v, R);
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i < 9; i++) {
+            R[k][6 * (1 - side) + i % 3] += l->B[k][6 * (1 - side) + i / 3] * W[i];
+        }
+    }
+    for (int pq = 0; pq < 36; pq++) {
+        int p = pq / 6, q = pq % 6;
+        double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
+        for (int i = 0; i < 144 && d != 0; i++) {
+            l->turning[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
+        }
+    }
+}

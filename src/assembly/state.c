@@ -1,0 +1,141 @@
+/* What an assembly's owner tells the other ranks, and what it keeps from step to step. */
+#include "assembly.h"
+#include "system.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+enum { RELATIVE = sizeof(spari_relative) / sizeof(double), DRIVEN = sizeof(spari_driven) / sizeof(double) };
+
+/* Of a joint: the motion after, and in the first step what it began with at t^0. */
+enum { SHARED = 1 + 2 * RELATIVE + DRIVEN };
+
+int spari_assembly_owner(const spari_assembly *a) {
+    return a->owner;
+}
+
+int64_t spari_assembly_share_size(const spari_assembly *a) {
+    return (int64_t)SHARED * a->links;
+}
+
+void spari_assembly_pack(const spari_assembly *a, double *to) {
+    for (int i = 0; i < a->links; i++, to += SHARED) {
+        const spar_joint *j = a->link[i].joint;
+        to[0] = j->balanced;
+        memcpy(to + 1, &j->after, sizeof j->after);
+        memcpy(to + 1 + RELATIVE, &j->now, sizeof j->now);
+        memcpy(to + 1 + 2 * RELATIVE, &j->drive[0], sizeof j->drive[0]);
+    }
+}
+
+void spari_assembly_unpack(spari_assembly *a, const double *from) {
+    for (int i = 0; i < a->links; i++, from += SHARED) {
+        spar_joint *j = a->link[i].joint;
+        if (from[0] != 0 && !j->balanced) {
+            memcpy(&j->after, from + 1 + RELATIVE, sizeof j->after);
+            spari_joint_balance(j);
+            memcpy(&j->drive[0], from + 1 + 2 * RELATIVE, sizeof j->drive[0]);
+        }
+        memcpy(&j->after, from + 1, sizeof j->after);
+    }
+}
+
+double spari_assembly_left(const spari_assembly *a) {
+    return a->trace.left;
+}
+
+/* ---- begin, accept and reject ---- */
+
+void spari_assembly_begin(spari_assembly *a) {
+    a->factored_begun = a->factored;
+    a->trace_begun = a->trace;
+    spari_snapshot_open(&a->before, 1);
+}
+
+void spari_assembly_accept(spari_assembly *a) {
+    spari_snapshot_close(&a->before);
+}
+
+void spari_assembly_reject(spari_assembly *a) {
+    if (!a->before.open) {
+        return;
+    }
+    a->factored = a->before.taken >= 0 ? a->factored_begun : 0;
+    a->trace = a->trace_begun;
+    const double *from = a->before.taken > 0 ? a->before.data : NULL;
+    for (int i = 0; i < a->links && from; i++, from += SPARI_TURNING) {
+        memcpy(a->link[i].turning, from, sizeof a->link[i].turning);
+    }
+}
+
+/* ---- save and load ---- */
+
+enum { KEPT_HEAD = 7 };
+
+/* Of a factored system: what remains of the members at the joints' nodes, and of the loads' turning. */
+static int64_t kept_size(const spari_assembly *a) {
+    int64_t n = (int64_t)SPARI_TURNING * a->links;
+    for (int i = 0; i < a->limbs; i++) {
+        n += spari_condensed_state_size(a->limb[i].condensed);
+    }
+    return n;
+}
+
+int64_t spari_assembly_state_size(const spari_assembly *a) {
+    int64_t kept = a->factored ? kept_size(a) : 0;
+    return !a->here || a->limbs == 0 ? 0 : KEPT_HEAD + kept + spari_snapshot_size(&a->before);
+}
+
+void spari_assembly_save(const spari_assembly *a, double *state) {
+    state[0] = a->factored;
+    state[1] = a->limbs;
+    state[2] = a->trace.rate;
+    state[3] = a->trace.left;
+    state[4] = a->factored_begun;
+    state[5] = a->trace_begun.rate;
+    state[6] = a->trace_begun.left;
+    state += KEPT_HEAD;
+    for (int i = 0; i < a->limbs && a->factored; i++) {
+        spari_condensed_save(a->limb[i].condensed, state);
+        state += spari_condensed_state_size(a->limb[i].condensed);
+    }
+    for (int i = 0; i < a->links && a->factored; i++, state += SPARI_TURNING) {
+        memcpy(state, a->link[i].turning, sizeof a->link[i].turning);
+    }
+    spari_snapshot_save(&a->before, state);
+}
+
+static int is_iterations(double x) {
+    return x >= 0 && x < INT_MAX && x == floor(x);
+}
+
+int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
+    if (count < KEPT_HEAD || state[1] != a->limbs || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
+        !is_iterations(state[4]) || !spari_trace_is(state + 5)) {
+        return 0;
+    }
+    int64_t own = KEPT_HEAD + (state[0] == 0 ? 0 : kept_size(a));
+    return count >= own && spari_snapshot_is(state + own, count - own, (int64_t)SPARI_TURNING * a->links);
+}
+
+void spari_assembly_load(spari_assembly *a, const double *state) {
+    a->factored = state ? (int)state[0] : 0;
+    a->trace = (spari_trace){state ? state[2] : 0, state ? state[3] : 0};
+    a->factored_begun = state ? (int)state[4] : 0;
+    a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
+    a->solved = 0;
+    state = state ? state + KEPT_HEAD : NULL;
+    for (int i = 0; i < a->limbs && a->factored; i++) {
+        spari_condensed *c = a->limb[i].condensed;
+        spari_condensed_load(c, spari_member_held(a->limb[i].member), state);
+        state += spari_condensed_state_size(c);
+    }
+    for (int i = 0; i < a->links && a->factored; i++, state += SPARI_TURNING) {
+        memcpy(a->link[i].turning, state, sizeof a->link[i].turning);
+    }
+    spari_snapshot_close(&a->before);
+    if (state) {
+        spari_snapshot_load(&a->before, state, a->factored);
+    }
+}

@@ -1,0 +1,365 @@
+/* Members that joints tie together, in equilibrium: Newton with exact tangents, in load steps that halve where it
+   fails.
+
+   Where the loads hold what no stiffness does (a body that hangs on a hinge), the tangent is singular until the joints'
+   loads are known; and Newton goes to any equilibrium, a body upside down too. There a stiffness of every motion is
+   added (a shift), as large as makes the system that of a minimum: its eigenvalues are counted (Levenberg and
+   Marquardt, with the inertia of the KKT system as in interior-point methods; Nocedal and Wright, Numerical
+   Optimization (2006), theorem 16.3). So the iteration goes downhill, and the shift is 0 at its end. */
+#include "assembly.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "system.h"
+#include "rotation_check.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { REST_ITERATIONS = 60, REST_HALVINGS = 14 };
+
+/* A system whose weakest pivot is smaller than so much of its largest stiffness holds a motion by rounding alone. */
+static const double loose = 1e-13;
+
+/* Forces less loads at the factor f, gaps with driven motions so far on their way. */
+static double balance_at_rest(spari_assembly *a, double f, double *noise) {
+    double scale = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        scale = fmax(scale, a->limb[i].row->balance_rest(a->limb + i, f));
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        const spar_joint *j = l->joint;
+        spari_link_find(l, 1, 1, f);
+        for (int k = 0; k < 6; k++) {
+            l->drive.z[k] = j->now.z[k] + f * (j->drive[1].z[k] - j->now.z[k]);
+            l->gap[k] = spari_link_holds(l, k) ? spari_link_gap(l, k) : 0;
+            scale = fmax(scale, fabs(j->after.load[k]));
+        }
+    }
+    spari_links_add(a);
+    *noise = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        double left = a->limb[i].row->noise(a->limb + i);
+        *noise = fmax(*noise, left);
+        scale += 0 * left;
+    }
+    return scale;
+}
+
+/* Corrections of all parts at rest; 0, or 1 where something is not held. */
+static int solve_at_rest(spari_assembly *a, double f) {
+    for (int i = 0; i < a->limbs; i++) {
+        if (a->limb[i].row->tangent_rest(a->limb + i, f)) {
+            return 1;
+        }
+    }
+    spari_tied_keep(a);
+    return spari_tied_solve(a, 0);
+}
+
+/* Shortened corrections come off; their size before. */
+static double shift_parts(spari_assembly *a, double longest, double *cut) {
+    double largest = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        largest = fmax(largest, a->limb[i].row->change(a->limb + i));
+    }
+    *cut = largest > longest ? longest / largest : 1;
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->shift(a->limb + i, *cut);
+    }
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->link[i].joint->after.load[k] -= *cut * a->link[i].correction[k];
+        }
+    }
+    return largest;
+}
+
+/* The largest correction of a joint's load. */
+static double change_of_loads(const spari_assembly *a) {
+    double largest = 0;
+    for (int i = 0; i < a->links; i++) {
+        for (int k = 0; k < 6; k++) {
+            largest = fmax(largest, fabs(a->link[i].correction[k]));
+        }
+    }
+    return largest;
+}
+
+/* Whether an iteration that moves nothing is the last one: joints' loads hold or loosen what they tie, and a tangent
+   with those of before says nothing of it. */
+static int loads_stand(const spari_assembly *a, int it, double scale) {
+    return it >= 3 || change_of_loads(a) <= 1e-6 * scale;
+}
+
+typedef enum rest { FOUND, FAILED, LOOSE, UNSTABLE } rest;
+
+/* Whether all forces have a potential: none follow, no moments of fixed axes, and nothing turns. */
+static int has_potential(const spari_assembly *a, const double *(*fluid)(const spar_member *)) {
+    for (int i = 0; i < a->limbs; i++) {
+        const spar_member *m = a->limb[i].member;
+        const double *other = fluid(m);
+        for (int64_t k = 0; k < m->nodes; k++) {
+            if (spari_norm(m->dead + 6 * k + 3) > 0 || spari_norm(other + 6 * k + 3) > 0) {
+                return 0;
+            }
+        }
+        if (m->applied && !spari_applied_potential(m)) {
+            return 0;
+        }
+    }
+    return !a->turns;
+}
+
+/* Corrections with the least shift, 0 or of a row that grows by 4, that makes the system one of a minimum. *kept: the
+   last that was not 0. What was wrong without it. */
+static rest solve_downhill(spari_assembly *a, double f, double *kept) {
+    enum { SHIFTS = 30 };
+    rest why = FOUND;
+    a->shift = 0;
+    if (solve_at_rest(a, f) || spari_tied_weakest(a) < loose) {
+        why = LOOSE;
+    } else if (spari_tied_downward(a) > 0) {
+        why = UNSTABLE;
+    }
+    double shift = 0.25 * *kept;
+    for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
+        a->standing = 0;
+        a->shift = *kept = shift;
+        wrong = spari_tied_solve(a, 0) || spari_tied_weakest(a) < loose || spari_tied_downward(a) > 0;
+        if (wrong && i == SHIFTS - 1) {
+            return FAILED;
+        }
+    }
+    return why;
+}
+
+/* Stable equilibrium at the factor f from the states `to`, downhill all the way. LOOSE: nothing holds some motion
+   there; UNSTABLE: it has come to one that is unstable. */
+static rest find_downhill(spari_assembly *a, double f) {
+    enum { ITERATIONS = 400 };
+    const double longest = 0.3;
+    double last = 0, kept = 0;
+    rest why = FOUND;
+    for (int it = 0; it < ITERATIONS && why != FAILED; it++) {
+        double noise, cut, scale = balance_at_rest(a, f, &noise);
+        if (!isfinite(scale)) {
+            return FAILED;
+        }
+        if (it == 0) {
+            kept = 16 * (noise > 0 ? noise : 1) / spari_member_length(a->limb[0].member);
+        }
+        why = solve_downhill(a, f, &kept);
+        if (why == FAILED) {
+            break;
+        }
+        double largest = shift_parts(a, longest, &cut);
+        int small = cut == 1 && it >= 3 && (largest < 1e-9 || (largest < 1e-7 && last > 0 && largest > 0.5 * last));
+        if (small) {
+            return why;
+        }
+        last = largest;
+    }
+    return FAILED;
+}
+
+/* Whether the equilibrium found is a maximum or saddle; what nothing holds is no matter here. */
+static int is_unstable(spari_assembly *a, double f) {
+    spari_blocks_watch(a->system, 1);
+    int singular = solve_at_rest(a, f);
+    spari_blocks_watch(a->system, 0);
+    return !singular && spari_tied_weakest(a) >= loose && spari_tied_downward(a) > 0;
+}
+
+/* Equilibrium at the factor f from the states `to`. */
+static rest find_rest_at(spari_assembly *a, double f) {
+    double last = 0;
+    a->shift = 0;
+    for (int it = 0; it < REST_ITERATIONS; it++) {
+        double noise, cut, scale = balance_at_rest(a, f, &noise);
+        if (!isfinite(scale)) {
+            return FAILED;
+        }
+        if (solve_at_rest(a, f) || spari_tied_weakest(a) < loose) {
+            return LOOSE;
+        }
+        double largest = shift_parts(a, 0.8, &cut);
+        if (cut == 1 && loads_stand(a, it, scale) &&
+            (largest < 1e-9 || (noise <= 16 * DBL_EPSILON * scale && largest < 1e-7) ||
+             (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
+            return a->potential && is_unstable(a, f) ? UNSTABLE : FOUND;
+        }
+        last = largest;
+    }
+    return FAILED;
+}
+
+/* The states and multipliers of the last point found. */
+static void keep_point(spari_assembly *a, int back) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->keep_places(a->limb + i, back);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        *(back ? &l->joint->after : &l->begin) = back ? l->begin : l->joint->after;
+    }
+}
+
+/* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
+static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].turning = a->turns ? &a->turning : NULL;
+        a->limb[i].row->rest(a->limb + i, fluid(a->limb[i].member), onward);
+    }
+    for (int i = 0; i < a->links && !onward; i++) {
+        a->link[i].joint->after = a->link[i].joint->now;
+    }
+    keep_point(a, 0);
+}
+
+/* What ended the way of the loads, and the motion that nothing holds, or that leaves the equilibrium. */
+typedef struct rest_end {
+    rest why;
+    char motion[240];
+} rest_end;
+
+/* One load step: by Newton, and downhill where that finds nothing that lasts. */
+static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
+    rest found = find_rest_at(a, f), why = found;
+    if (found == LOOSE || found == UNSTABLE) {
+        spari_tied_name_free(a, end->motion, sizeof end->motion);
+    }
+    if ((found == LOOSE && first) || found == UNSTABLE) {
+        keep_point(a, 1);
+        spari_blocks_watch(a->system, 1);
+        found = find_downhill(a, f);
+        spari_blocks_watch(a->system, 0);
+        a->shift = 0;
+        if (found == LOOSE || found == UNSTABLE) { /* where it has come to rest, that motion is the one */
+            why = found;
+            spari_tied_name_free(a, end->motion, sizeof end->motion);
+        }
+    }
+    end->why = found == FOUND ? FOUND : why;
+    return end->why;
+}
+
+/* Load steps from 0 to all of the loads, the last point kept. Returns the part reached. */
+static double follow_loads(spari_assembly *a, int load_steps, rest_end *end) {
+    double done = 0, step = 1.0 / load_steps;
+    int halvings = 0;
+    for (int taken = 0; done < 1 && halvings <= REST_HALVINGS && taken < load_steps + SPARI_STATIC_MORE; taken++) {
+        double f = done + step > 1 - 1e-12 ? 1 : done + step;
+        rest found = find_point(a, f, done == 0, end);
+        if (found == FOUND) {
+            done = f;
+            keep_point(a, 0);
+            continue;
+        }
+        keep_point(a, 1);
+        step *= 0.5;
+        halvings += found == LOOSE && done == 0 ? REST_HALVINGS : 1;
+    }
+    return done;
+}
+
+static void give_up_rest(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->leave_rest(a->limb + i);
+    }
+    spari_assembly_leave(a);
+}
+
+/* Nothing has been found: all is as it was. */
+static int refuse_rest(spari_assembly *a, double done, const rest_end *end) {
+    const char *motion = end->motion[0] ? end->motion : "some motion";
+    char text[500] = "; take more load_steps";
+    if (end->why == LOOSE) {
+        (void)snprintf(text, sizeof text, ": nothing holds %s; hold it by a joint or a spring", motion);
+    } else if (end->why == UNSTABLE) {
+        (void)snprintf(text, sizeof text,
+                       ": it is unstable there, and %s would leave it; place the members a little off it, from where a "
+                       "stable one is found, or hold that motion by a joint or a spring",
+                       motion);
+    }
+    give_up_rest(a);
+    return spari_fail(a->session, SPAR_ERR_NUMERIC,
+                      "the members that joint '%s' ties together: no %sequilibrium found beyond %.6g of the loads%s; "
+                      "the state is as it was",
+                      a->link[0].joint->name, end->why == UNSTABLE ? "stable " : "", done, text);
+}
+
+/* Joints whose nodes all move as they are told: their springs. */
+static int look_at_rest(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        j->after = j->now;
+        spari_link_find(a->link + i, 1, 1, 1);
+    }
+    return SPAR_OK;
+}
+
+static int find_equilibrium_of(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
+                               int onward) {
+    rest_end end = {FAILED, ""};
+    a->potential = has_potential(a, fluid);
+    begin_rest(a, fluid, onward);
+    double done = onward ? follow_loads(a, 1, &end) : 0;
+    if (done < 1) {
+        begin_rest(a, fluid, 0);
+        end = (rest_end){FAILED, ""};
+        done = follow_loads(a, load_steps, &end);
+    }
+    a->factored = 0;
+    spari_snapshot_close(&a->before);
+    if (done < 1) {
+        return refuse_rest(a, done, &end);
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        a->limb[i].row->end_rest(a->limb + i);
+    }
+    for (int i = 0; i < a->links && !a->turns; i++) {
+        memset(a->link[i].joint->after.rate, 0, sizeof a->link[i].joint->after.rate);
+    }
+    return SPAR_OK;
+}
+
+int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
+    if (!a->here || a->limbs == 0) {
+        return a->here ? look_at_rest(a) : SPAR_OK;
+    }
+    int status = spari_turning_begin(a);
+    status = status == SPAR_OK ? find_equilibrium_of(a, fluid, load_steps, onward) : status;
+    if (status == SPAR_OK && a->turns) {
+        status = spari_turning_check(a);
+        if (status != SPAR_OK) {
+            give_up_rest(a);
+        }
+    }
+    spari_turning_end(a);
+    return status;
+}
+
+void spari_assembly_settle(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spar_joint *j = a->link[i].joint;
+        j->now = j->after;
+        memcpy(j->before, j->given, sizeof j->before);
+        j->drive[0] = j->drive[1];
+        for (int k = 0; k < 6; k++) { /* of what turns; else 0 */
+            j->drive[0].rate[k] = j->driven >> k & 1 ? j->after.rate[k] : 0;
+        }
+        memset(j->drive[0].acceleration, 0, sizeof j->drive[0].acceleration);
+    }
+}
+
+void spari_assembly_leave(spari_assembly *a) {
+    for (int i = 0; i < a->links; i++) {
+        spari_joint_reject(a->link[i].joint);
+    }
+}

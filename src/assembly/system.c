@@ -1,0 +1,781 @@
+/* The linear system of an assembly: see system.h. */
+#include "system.h"
+
+#include "../math/rotation.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double *turn_of_side(const spari_link *l, int side) {
+    const spari_limb *p = l->limb[side];
+    return p ? p->row->turn(p, l->joint->unique[side]) : NULL;
+}
+
+/* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
+static void turn_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
+    double half[9];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            const double *row = K + from * i;
+            half[3 * i + j] = row[0] * Q[3 * j] + row[1] * Q[3 * j + 1] + row[2] * Q[3 * j + 2];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out[to * i + j] = R[3 * i] * half[j] + R[3 * i + 1] * half[3 + j] + R[3 * i + 2] * half[6 + j];
+        }
+    }
+}
+
+/* turn NULL: none */
+static void matrix_of_turn(const double *turn, double R[9]) {
+    const double none[4] = {1, 0, 0, 0};
+    spari_quat_matrix(turn ? turn : none, R);
+}
+
+/* Whether a link only makes one cluster of its nodes. */
+static int is_rigid(const spari_link *l) {
+    return l->role == SPARI_LINK_TREE && spari_link_holds_count(l) == 6;
+}
+
+void spari_tied_keep(spari_assembly *a) {
+    double *before = a->factored_begun ? spari_snapshot_take(&a->before, (int64_t)SPARI_TURNING * a->links) : NULL;
+    for (int i = 0; i < a->links && before; i++, before += SPARI_TURNING) {
+        memcpy(before, a->link[i].turning, sizeof a->link[i].turning);
+    }
+    a->standing = 0;
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        memset(l->turning, 0, sizeof l->turning);
+        if (is_rigid(l)) {
+            continue;
+        }
+        spari_tie_tangent(&l->joint->tie, &l->place[0], &l->place[1], l->joint->after.load, l->turning);
+        if (a->turns) {
+            spari_link_turning_dampers(l, a->turning.turn.w);
+        }
+    }
+}
+
+/* K -= B^T (stiffness + cv damping) B of the free motions */
+static void release_springs(const spari_link *l, double cv, double K[12][12]) {
+    const spar_joint *j = l->joint;
+    int given = spari_joint_given(j);
+    for (int p = 0; p < 6; p++) {
+        double row[12] = {0};
+        int some = 0;
+        for (int q = 0; q < 6; q++) {
+            double stiff = j->stiffness[6 * p + q] + cv * j->damping[6 * p + q];
+            if ((given >> p & 1) || (given >> q & 1) || stiff == 0) {
+                continue;
+            }
+            some = 1;
+            for (int i = 0; i < 12; i++) {
+                row[i] += stiff * l->B[q][i];
+            }
+        }
+        for (int i = 0; i < 12 && some; i++) {
+            for (int k = 0; k < 12; k++) {
+                K[i][k] -= l->B[p][i] * row[k];
+            }
+        }
+    }
+}
+
+/* K[12][12] := what the link takes from the tangent: the turning of its load, springs and dampers. */
+static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
+    double R[2][9];
+    matrix_of_turn(turn_of_side(l, 0), R[0]);
+    matrix_of_turn(turn_of_side(l, 1), R[1]);
+    for (int i = 0; i < 12; i += 3) {
+        for (int k = 0; k < 12; k += 3) {
+            turn_block(R[i / 6], R[k / 6], 12, &l->turning[i][k], 12, &K[i][k]);
+        }
+    }
+    if (l->springs) {
+        release_springs(l, cv, K);
+    }
+}
+
+/* A force at the end of an arm: its moment about the beginning comes to it, f[stride 0 to 5]. So do the columns of what
+   is multiplied by the motion there. */
+static void carry_force(const double d[3], int stride, double *f) {
+    const double x = f[0], y = f[stride], z = f[2 * stride];
+    f[3 * stride] += d[1] * z - d[2] * y;
+    f[4 * stride] += d[2] * x - d[0] * z;
+    f[5 * stride] += d[0] * y - d[1] * x;
+}
+
+static const spari_interface *moving(const spari_assembly *a, int node) {
+    return node < 0 || a->interface[node].cluster < 0 ? NULL : a->interface + node;
+}
+
+static int fixed_in(const spari_assembly *a, const spari_interface *v) {
+    return a->interface[v->cluster].fixed;
+}
+
+/* f times the stiffness K between interface nodes v and w into the system. */
+static void add_stiffness(spari_assembly *a, int v, int w, double f, const double *K, int stride) {
+    const spari_interface *row = moving(a, v), *column = moving(a, w);
+    if (!row || !column) {
+        return;
+    }
+    int to, first = fixed_in(a, column);
+    double *block = spari_blocks_at(a->system, row->block, column->block, &to), moved[36];
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            moved[6 * i + j] = f * K[stride * i + j];
+        }
+        carry_force(column->arm, 1, moved + 6 * i);
+    }
+    for (int j = 0; j < 6; j++) {
+        carry_force(row->arm, 6, moved + j);
+    }
+    for (int i = fixed_in(a, row); i < 6; i++) {
+        for (int j = first; j < 6; j++) {
+            block[to * i + j] += moved[6 * i + j];
+        }
+    }
+}
+
+/* What remains of a part, in global axes. */
+static void turn_part(spari_limb *p) {
+    const spari_condensed *c = p->condensed;
+    int m = 6 * c->ends;
+    for (int e = 0; e < c->ends; e++) {
+        double R[9];
+        matrix_of_turn(p->row->turn(p, p->end[e]), R);
+        for (int o = 0; o < c->ends; o++) {
+            double Q[9];
+            matrix_of_turn(p->row->turn(p, p->end[o]), Q);
+            for (int k = 0; k < 4; k++) {
+                int at = m * (6 * e + 3 * (k / 2)) + 6 * o + 3 * (k % 2);
+                turn_block(R, Q, m, c->K + at, m, p->K + at);
+            }
+        }
+    }
+}
+
+static void add_part(spari_assembly *a, spari_limb *p) {
+    int ends = p->condensed->ends, m = 6 * ends;
+    turn_part(p);
+    for (int e = 0; e < ends; e++) {
+        for (int o = 0; o < ends; o++) {
+            add_stiffness(a, p->at / 6 + e, p->at / 6 + o, 1, p->K + 6 * m * e + 6 * o, m);
+        }
+    }
+    for (int i = 0; i < m; i++) {
+        a->scale = fmax(a->scale, fabs(p->K[(m + 1) * i]));
+    }
+}
+
+/* Inside a cluster the load turns with its nodes, of which one is d from the other: its moment on the cluster, which is
+   0, has the derivative (theta x d) x f = (d f^T - d . f) theta. */
+static void add_rigid_load(spari_assembly *a, const spari_link *l) {
+    const spari_interface *v = moving(a, l->node[0] < 0 ? l->node[1] : l->node[0]);
+    double d[3], f[3], along = 0;
+    int stride;
+    if (!v) {
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        d[i] = l->place[0].x[i] - l->place[1].x[i];
+        f[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            f[i] += l->B[k][i] * l->joint->after.load[k];
+        }
+        along += d[i] * f[i];
+    }
+    double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            block[stride * (3 + i) + 3 + j] += d[i] * f[j] - (i == j ? along : 0);
+        }
+    }
+}
+
+/* The turning of its load, springs and dampers. */
+static void add_link_stiffness(spari_assembly *a, spari_link *l, double cv) {
+    l->stiff = 0;
+    if (is_rigid(l)) {
+        add_rigid_load(a, l);
+        return;
+    }
+    link_tangent(l, cv, l->K);
+    for (int i = 0; i < 144 && !l->stiff; i++) {
+        l->stiff = l->K[i / 12][i % 12] != 0;
+    }
+    for (int n = 0; n < 4 && l->stiff; n++) {
+        int i = n / 2, j = n % 2;
+        add_stiffness(a, l->node[i], l->node[j], -1, &l->K[6 * i][6 * j], 12);
+    }
+}
+
+/* The rows of a link as the cluster of its node on a side moves; 0: that does not move. */
+static int rows_of_side(const spari_assembly *a, const spari_link *l, int side, double rows[6][6]) {
+    const spari_interface *v = moving(a, l->node[side]);
+    int held = 0;
+    for (int k = 0; k < 6 && v; k++) {
+        if (spari_link_holds(l, k)) {
+            memcpy(rows[held], l->rows[k] + 6 * side, sizeof rows[held]);
+            carry_force(v->arm, 1, rows[held]);
+            memset(rows[held], 0, (size_t)fixed_in(a, v) * sizeof rows[held][0]);
+            held++;
+        }
+    }
+    return held;
+}
+
+/* The largest stiffness of the clusters that a link ties, and of its own. */
+static double scale_of_link(spari_assembly *a, const spari_link *l) {
+    double scale = 0;
+    for (int i = 0; i < 144 && l->stiff; i++) {
+        scale = fmax(scale, fabs(l->K[i / 12][i % 12]));
+    }
+    for (int side = 0; side < 2; side++) {
+        const spari_interface *v = l->node[side] < 0 ? NULL : a->interface + l->node[side];
+        if (v && v->cluster >= 0) {
+            int stride;
+            const double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
+            for (int k = 0; k < 6; k++) {
+                scale = fmax(scale, fabs(block[(stride + 1) * k]));
+            }
+        }
+    }
+    return scale > 0 ? scale : a->scale;
+}
+
+/* The multipliers of a link stand in block `own` from row `first` on. */
+static void add_constraint(spari_assembly *a, const spari_link *l, int own, int first) {
+    for (int side = 0; side < 2; side++) {
+        double rows[6][6];
+        int held = rows_of_side(a, l, side, rows), across, down;
+        if (held == 0) {
+            continue;
+        }
+        int block = a->interface[l->node[side]].block;
+        double *left = spari_blocks_at(a->system, own, block, &across),
+               *above = spari_blocks_at(a->system, block, own, &down);
+        for (int k = 0; k < held; k++) {
+            for (int j = 0; j < 6; j++) {
+                left[across * (first + k) + j] -= l->scale * rows[k][j];
+                above[down * j + first + k] -= l->scale * rows[k][j];
+            }
+        }
+    }
+}
+
+/* A link that closes a loop may be all that holds what it ties. The penalty keeps the blocks before its own from being
+   singular; its constraint makes nothing of it (the augmented Lagrangian of the constraint). */
+static void add_penalty(spari_assembly *a, const spari_link *l, double penalty) {
+    double rows[2][6][6];
+    int held[2];
+    for (int side = 0; side < 2; side++) {
+        held[side] = rows_of_side(a, l, side, rows[side]);
+    }
+    for (int n = 0; n < 4; n++) {
+        int i = n / 2, j = n % 2, stride;
+        if (held[i] == 0 || held[j] == 0) {
+            continue;
+        }
+        double *block =
+            spari_blocks_at(a->system, a->interface[l->node[i]].block, a->interface[l->node[j]].block, &stride);
+        for (int k = 0; k < 36 * held[i]; k++) {
+            int row = k / 6 % 6, column = k % 6;
+            block[stride * row + column] += penalty * l->scale * rows[i][k / 36][row] * rows[j][k / 36][column];
+        }
+    }
+}
+
+/* E := the inverse of A. 0 or 1. */
+static int invert_rotation(const double *A, int stride, double E[9]) {
+    double det = 0;
+    for (int i = 0; i < 9; i++) {
+        int r = i / 3, c = i % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+        double minor = A[stride * r1 + c1] * A[stride * r2 + c2] - A[stride * r1 + c2] * A[stride * r2 + c1];
+        E[3 * c + r] = minor;
+        det += r == 0 ? A[c] * minor : 0;
+    }
+    for (int i = 0; i < 9; i++) {
+        E[i] /= det;
+    }
+    return !(fabs(det) > 0);
+}
+
+/* The clusters, by the links as they stand. 0 or 1. */
+static int find_clusters(spari_assembly *a) {
+    for (int n = 0; n < a->interfaces; n++) {
+        spari_interface *v = a->interface + a->order[n];
+        const spari_interface *parent = v->parent < 0 ? NULL : a->interface + v->parent;
+        memset(v->arm, 0, sizeof v->arm);
+        if (v->cluster == a->order[n] || v->link < 0) {
+            continue;
+        }
+        const spari_link *l = a->link + v->link;
+        v->block = v->cluster < 0 ? -1 : a->interface[v->cluster].block;
+        for (int k = 0; k < 3 && parent; k++) {
+            v->arm[k] = parent->arm[k] + l->place[v->side].x[k] - l->place[1 - v->side].x[k];
+        }
+        if (invert_rotation(l->rows[3] + 6 * v->side + 3, 12, v->E)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* The shift against every motion of the clusters, turns by their members' lengths. */
+static void add_shift(spari_assembly *a) {
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        double length = spari_member_length(p->member);
+        for (int e = 0; e < p->condensed->ends; e++) {
+            const spari_interface *v = a->interface + p->at / 6 + e;
+            int stride, own = v->cluster == p->at / 6 + e;
+            double *block = own ? spari_blocks_at(a->system, v->block, v->block, &stride) : NULL;
+            for (int k = own ? v->fixed : 6; k < 6; k++) {
+                block[(stride + 1) * k] += a->shift * (k < 3 ? 1 : length * length);
+            }
+        }
+    }
+}
+
+static void fill_system(spari_assembly *a, double cv, double penalty) {
+    a->penalty = penalty;
+    spari_blocks_zero(a->system);
+    a->scale = 0;
+    for (int i = 0; i < a->limbs; i++) {
+        add_part(a, a->limb + i);
+    }
+    a->scale = a->scale > 0 ? a->scale : 1;
+    for (int i = 0; i < a->links; i++) {
+        add_link_stiffness(a, a->link + i, cv);
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        if (l->joint->held && (l->role == SPARI_LINK_LOOP || spari_link_holds_count(l) < 6)) {
+            l->scale = scale_of_link(a, l);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        if (l->block >= 0) {
+            add_penalty(a, l, penalty);
+            add_constraint(a, l, l->block, 0);
+        }
+    }
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        if (v->cluster == i && v->link >= 0) {
+            add_constraint(a, a->link + v->link, v->block, 6);
+        }
+        for (int k = 0; k < v->fixed && v->cluster == i; k++) {
+            int stride;
+            double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
+            block[(stride + 1) * k] = a->scale;
+        }
+    }
+    if (a->shift > 0) {
+        add_shift(a);
+    }
+}
+
+/* The system of the parts and links as they stand. 0 or 1. */
+static int form_system(spari_assembly *a, double cv, double penalty) {
+    for (int i = 0; i < a->links; i++) {
+        memcpy(a->link[i].rows, a->link[i].B, sizeof a->link[i].rows);
+    }
+    if (find_clusters(a)) {
+        return 1;
+    }
+    fill_system(a, cv, penalty);
+    return 0;
+}
+
+/* Forms and factors it. With one penalty a block may be singular by chance; not with two. 0 or 1. */
+static int factor_system(spari_assembly *a, double cv) {
+    static const double penalty[2] = {8, 27}, weak = 1e-11;
+    int singular = 0;
+    for (int i = 0; i < 2; i++) {
+        if (form_system(a, cv, penalty[i])) {
+            return 1;
+        }
+        singular = spari_blocks_factor(a->system);
+        if (!a->loops || spari_tied_weakest(a) > weak) {
+            break;
+        }
+    }
+    return singular;
+}
+
+/* y[6] += f A x, of row stride `stride`; with A^T. */
+static void add_block_times(double f, const double *A, int stride, const double x[6], double y[6]) {
+    for (int i = 0; i < 6; i++, A += stride) {
+        y[i] += f * ((A[0] * x[0] + A[1] * x[1] + A[2] * x[2]) + (A[3] * x[3] + A[4] * x[4] + A[5] * x[5]));
+    }
+}
+
+static void add_block_transposed(double f, const double *A, int stride, const double x[6], double y[6]) {
+    for (int i = 0; i < 6; i++, A += stride) {
+        double by = f * x[i];
+        for (int j = 0; j < 6; j++) {
+            y[j] += by * A[j];
+        }
+    }
+}
+
+/* y += K u of the parts and links, [interfaces][6] */
+static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        int ends = p->condensed->ends, m = 6 * ends;
+        for (int n = 0; n < ends * ends; n++) {
+            int row = 6 * (n / ends), column = 6 * (n % ends);
+            add_block_times(1, p->K + m * row + column, m, u + p->at + column, y + p->at + row);
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        for (int n = 0; n < 4 && l->stiff; n++) {
+            int row = l->node[n / 2], column = l->node[n % 2];
+            if (row >= 0 && column >= 0) {
+                add_block_times(-1, &l->K[6 * (n / 2)][6 * (n % 2)], 12, u + 6 * column, y + 6 * row);
+            }
+        }
+    }
+}
+
+/* The rows of a rigid link for one node's own motion are [A C; 0 F], A orthogonal and F^-1 = E: the motion that they
+   give x, and the loads that balance a force y there. */
+static void solve_for_motion(const spari_link *l, const spari_interface *v, double x[6]) {
+    double motion[6] = {0};
+    for (int i = 0; i < 9; i++) {
+        motion[3 + i / 3] += v->E[i] * x[3 + i % 3];
+    }
+    for (int k = 0; k < 3; k++) {
+        const double *row = l->rows[k] + 6 * v->side;
+        double left = x[k] - (row[3] * motion[3] + row[4] * motion[4] + row[5] * motion[5]);
+        for (int i = 0; i < 3; i++) {
+            motion[i] += row[i] * left;
+        }
+    }
+    memcpy(x, motion, sizeof motion);
+}
+
+static void solve_for_loads(const spari_link *l, const spari_interface *v, const double y[6], double load[6]) {
+    double moment[3] = {y[3], y[4], y[5]};
+    for (int k = 0; k < 3; k++) {
+        const double *row = l->rows[k] + 6 * v->side;
+        load[k] = row[0] * y[0] + row[1] * y[1] + row[2] * y[2];
+        for (int i = 0; i < 3; i++) {
+            moment[i] -= row[3 + i] * load[k];
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        load[3 + k] = v->E[k] * moment[0] + v->E[3 + k] * moment[1] + v->E[6 + k] * moment[2];
+    }
+}
+
+/* What the gaps ask of the interface nodes while their clusters stand; whether that is anything. */
+static int find_gaps(spari_assembly *a) {
+    int any = 0;
+    for (int n = 0; n < a->interfaces; n++) {
+        spari_interface *v = a->interface + a->order[n];
+        const spari_link *l = a->link + v->link;
+        memset(v->gap, 0, sizeof v->gap);
+        if (v->cluster == a->order[n] || v->link < 0) {
+            continue;
+        }
+        if (v->parent >= 0) {
+            add_block_times(-1, l->rows[0] + 6 * (1 - v->side), 12, a->interface[v->parent].gap, v->gap);
+        }
+        for (int k = 0; k < 6; k++) {
+            v->gap[k] += l->gap[k];
+            any = any || v->gap[k] != 0;
+        }
+        solve_for_motion(l, v, v->gap);
+    }
+    return any;
+}
+
+/* What is left of a link's gaps beside them, of the held motions one after the other. */
+static void gaps_left(const spari_assembly *a, const spari_link *l, double left[6]) {
+    int held = 0;
+    for (int k = 0; k < 6; k++) {
+        if (spari_link_holds(l, k)) {
+            double gap = l->gap[k];
+            for (int i = 0; i < 12; i++) {
+                gap -= l->node[i / 6] < 0 ? 0 : l->rows[k][i] * a->interface[l->node[i / 6]].gap[i % 6];
+            }
+            left[held++] = gap;
+        }
+    }
+}
+
+/* The right-hand side, of the forces y that the interface nodes' balance has too many. */
+static void load_system(spari_assembly *a, const double *y) {
+    memset(a->b, 0, (size_t)spari_blocks_rows(a->system) * sizeof *a->b);
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        double *b = v->cluster < 0 ? NULL : a->b + spari_blocks_first(a->system, v->block);
+        if (b) {
+            double f[6];
+            memcpy(f, y + 6 * i, sizeof f);
+            carry_force(v->arm, 1, f);
+            for (int k = fixed_in(a, v); k < 6; k++) {
+                b[k] -= f[k];
+            }
+        }
+        if (v->cluster == i && v->link >= 0) {
+            const spari_link *l = a->link + v->link;
+            double left[6];
+            gaps_left(a, l, left);
+            for (int k = 0; k < spari_link_holds_count(l); k++) {
+                b[6 + k] = -l->scale * left[k];
+            }
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        double left[6], rows[6][6];
+        if (l->block < 0) {
+            continue;
+        }
+        gaps_left(a, l, left);
+        for (int k = 0; k < spari_link_holds_count(l); k++) {
+            a->b[spari_blocks_first(a->system, l->block) + k] = -l->scale * left[k];
+        }
+        for (int side = 0; side < 2; side++) {
+            int held = rows_of_side(a, l, side, rows);
+            for (int k = 0; k < 6 * held; k++) {
+                int block = a->interface[l->node[side]].block;
+                a->b[spari_blocks_first(a->system, block) + k % 6] +=
+                    a->penalty * l->scale * rows[k / 6][k % 6] * left[k / 6];
+            }
+        }
+    }
+}
+
+/* The motion of the interface nodes with their clusters. */
+static void show_motion(const spari_assembly *a, double *x) {
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        const double *b = v->cluster < 0 ? NULL : a->b + spari_blocks_first(a->system, v->block);
+        double *to = x + 6 * i;
+        memset(to, 0, sizeof v->gap);
+        if (b) {
+            spari_cross(b + 3, v->arm, to);
+            for (int k = 0; k < 3; k++) {
+                to[k] += b[k];
+                to[3 + k] = b[3 + k];
+            }
+        }
+    }
+}
+
+/* Multipliers that stand in the system. y: what forces do not balance, they take their part off. */
+static void read_multipliers(spari_link *l, const double *b, double *y) {
+    int held = 0;
+    for (int k = 0; k < 6; k++) {
+        l->correction[k] = spari_link_holds(l, k) ? l->scale * b[held++] : 0;
+        for (int i = 0; i < 12; i++) {
+            if (l->node[i / 6] >= 0) {
+                y[6 * l->node[i / 6] + i % 6] -= l->rows[k][i] * l->correction[k];
+            }
+        }
+    }
+}
+
+/* Corrections of the multipliers: those of clusters balance the forces y that are left on their nodes, from the ends of
+   the tree on. */
+static void find_link_loads(spari_assembly *a, double *y) {
+    for (int i = 0; i < a->links; i++) {
+        spari_link *l = a->link + i;
+        memset(l->correction, 0, sizeof l->correction);
+        if (l->block >= 0) {
+            read_multipliers(l, a->b + spari_blocks_first(a->system, l->block), y);
+        }
+    }
+    for (int n = a->interfaces - 1; n >= 0; n--) {
+        const spari_interface *v = a->interface + a->order[n];
+        if (v->link < 0) {
+            continue;
+        }
+        spari_link *l = a->link + v->link;
+        if (v->cluster == a->order[n]) {
+            read_multipliers(l, a->b + spari_blocks_first(a->system, v->block) + 6, y);
+            continue;
+        }
+        solve_for_loads(l, v, y + 6 * a->order[n], l->correction);
+        if (v->parent >= 0) {
+            add_block_transposed(-1, l->rows[0] + 6 * (1 - v->side), 12, l->correction, y + 6 * v->parent);
+        }
+    }
+}
+
+/* With what is left of the parts' forces at their ends in x. */
+static int solve_reduced(spari_assembly *a, double cv) {
+    if (!a->standing || fabs(a->cv - cv) > 0) {
+        a->standing = 0;
+        if (factor_system(a, cv)) {
+            return 1;
+        }
+        a->standing = 1, a->cv = cv, a->moved = 0;
+    }
+    int n = 6 * a->interfaces, gaps = find_gaps(a);
+    for (int i = 0; i < n; i++) {
+        a->y[i] = -a->x[i];
+    }
+    if (gaps) {
+        for (int i = 0; i < a->interfaces; i++) {
+            memcpy(a->x + 6 * i, a->interface[i].gap, sizeof a->interface[i].gap);
+        }
+        add_forces_of(a, a->x, a->y);
+    }
+    load_system(a, a->y);
+    if (spari_blocks_solve(a->system, a->b)) {
+        return 1;
+    }
+    show_motion(a, a->x);
+    if (a->clusters) {
+        add_forces_of(a, a->x, a->y);
+    }
+    find_link_loads(a, a->y);
+    for (int i = 0; i < n && gaps; i++) {
+        a->x[i] += a->interface[i / 6].gap[i % 6];
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        p->row->expand(p, a->x + p->at);
+    }
+    return 0;
+}
+
+int spari_tied_solve(spari_assembly *a, double cv) {
+    /* first: it says how the parts have turned, which the system goes by */
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        if (p->row->reduce(p, a->x + p->at)) {
+            return 1;
+        }
+    }
+    return solve_reduced(a, cv);
+}
+
+int spari_tied_close(spari_assembly *a, double cv) {
+    for (int i = 0; i < a->limbs; i++) {
+        spari_limb *p = a->limb + i;
+        p->row->clear(p);
+        memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
+    }
+    return solve_reduced(a, cv);
+}
+
+double spari_tied_weakest(const spari_assembly *a) {
+    return spari_blocks_least_pivot(a->system) / a->scale;
+}
+
+int spari_tied_downward(const spari_assembly *a) {
+    int multipliers = spari_blocks_rows(a->system);
+    for (int i = 0; i < a->interfaces; i++) {
+        multipliers -= a->interface[i].cluster == i ? 6 : 0;
+    }
+    return spari_blocks_negative(a->system) - multipliers;
+}
+
+/* Relative motion k of a link in the motion x of the system, turns by the length of its member. */
+static double slip_of(const spari_link *l, const double *x, int k) {
+    double slip = 0, length = 1;
+    for (int i = 0; i < 12; i++) {
+        slip += l->node[i / 6] >= 0 ? l->B[k][i] * x[6 * l->node[i / 6] + i % 6] : 0;
+    }
+    for (int side = 0; side < 2; side++) {
+        length = l->limb[side] ? spari_member_length(l->limb[side]->member) : length;
+    }
+    return fabs(slip) * (k < 3 ? 1 : length);
+}
+
+/* The motion in b to a largest entry of 1, multipliers to 0. */
+static void scale_motion(spari_assembly *a) {
+    double largest = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < a->interfaces; i++) {
+            const spari_interface *v = a->interface + i;
+            double *b = v->cluster == i ? a->b + spari_blocks_first(a->system, v->block) : NULL;
+            for (int k = 0; k < 6 && b; k++) {
+                largest = pass ? largest : fmax(largest, fabs(b[k]));
+                b[k] /= pass && largest > 0 ? largest : 1;
+            }
+            for (int k = 0; b && v->link >= 0 && k < spari_link_holds_count(a->link + v->link); k++) {
+                b[6 + k] = 0;
+            }
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        for (int k = 0; l->block >= 0 && k < spari_link_holds_count(l); k++) {
+            a->b[spari_blocks_first(a->system, l->block) + k] = 0;
+        }
+    }
+}
+
+/* x: the motion that the system resists least, by two steps of inverse iteration from a motion of no symmetry; every
+   motion is given a little stiffness, so that there are factors. 0 or 1. */
+static int free_motion(spari_assembly *a) {
+    int n = spari_blocks_rows(a->system);
+    a->standing = 0;
+    if (form_system(a, 0, 8)) {
+        return 1;
+    }
+    for (int i = 0; i < a->interfaces; i++) {
+        int block = a->interface[i].cluster == i ? a->interface[i].block : -1, stride;
+        for (int k = 0; k < 6 && block >= 0; k++) {
+            double *entry = spari_blocks_at(a->system, block, block, &stride);
+            entry[(stride + 1) * k] += 1e-12 * a->scale;
+        }
+    }
+    if (spari_blocks_factor(a->system)) {
+        return 1;
+    }
+    for (int i = 0; i < n; i++) {
+        a->b[i] = 1 + 0.37 * sin(2.7 * i);
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        scale_motion(a);
+        if (spari_blocks_solve(a->system, a->b)) {
+            return 1;
+        }
+    }
+    scale_motion(a);
+    show_motion(a, a->x);
+    return 0;
+}
+
+/* Joints that move name it best; where none does, the whole goes, and the farthest motion of a member's node does. */
+void spari_tied_name_free(spari_assembly *a, char *text, int size) {
+    static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+    double most = 0, farthest = 0;
+    if (free_motion(a)) {
+        return;
+    }
+    for (int i = 0; i < a->limbs; i++) {
+        const spari_limb *p = a->limb + i;
+        for (int k = 0; k < 6 * p->condensed->ends; k++) {
+            double x = fabs(a->x[p->at + k]) * (k % 6 < 3 ? 1 : spari_member_length(p->member));
+            if (x > farthest) {
+                farthest = x;
+                (void)snprintf(text, (size_t)size, "%s of '%.80s' (global axes)", motion[k % 6], p->member->name);
+            }
+        }
+    }
+    for (int i = 0; i < a->links; i++) {
+        const spari_link *l = a->link + i;
+        for (int k = 0; k < (l->joint->tie.line ? 1 : 6); k++) {
+            double slip = slip_of(l, a->x, k);
+            if (slip > 1e-3 * farthest && slip > most) {
+                most = slip;
+                (void)snprintf(text, (size_t)size, "%s of joint '%.80s'", l->joint->tie.line ? "the length" : motion[k],
+                               l->joint->name);
+            }
+        }
+    }
+}

@@ -1,0 +1,554 @@
+/* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
+   one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
+#include "../base/blas.h"
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../time/body_newton.h"
+#include "floating_root.h"
+#include "../time/driven_root.h"
+#include "../time/fidelity.h"
+#include "../time/component.h"
+
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <string.h>
+
+static int make_frame(spari_limb *p) {
+    p->frame = p->member->solution;
+    spari_carriage *c = p->frame->carriage;
+    p->solver = c->root;
+    p->condensed = c->condensed;
+    p->end = c->order;
+    p->force = c->force;
+    return SPAR_OK;
+}
+
+static const double *turn_of_frame(const spari_limb *p, int node) {
+    (void)node; /* all go with the root */
+    return p->solver->turn;
+}
+
+static spari_rates deformation_rates(const spari_frame_state *s) {
+    return (spari_rates){s->v + 6, s->a + 6, s->b + 6, NULL};
+}
+
+/* The root of the state and what links see of it. */
+static void see_from_root(spari_limb *p, const spari_state *root, spari_frame_state *s) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    s->root = spari_pose_of(root->q, root->v, root->a);
+    memcpy(c->seen.q, root->q, 7 * sizeof(double));
+    memcpy(c->seen.v, root->v, 6 * sizeof(double));
+    memcpy(c->seen.a, root->a, 6 * sizeof(double));
+    for (int e = 1; e <= c->ends; e++) {
+        int at = spari_carriage_at(f, e);
+        spari_frame_node(p->member, &s->root, c->node[e - 1], s->y + at, s->v + at, s->a + at, c->seen.q + 7 * e,
+                         c->seen.v + 6 * e, c->seen.a + 6 * e);
+    }
+    p->state = &c->seen;
+}
+
+static void look_at_end_of_step(spari_limb *p) {
+    see_from_root(p, &p->stage.ends.seen, &p->frame->to);
+}
+
+/* What the forces r leave on the ends, in global axes. */
+static void show_forces(spari_limb *p, const spari_frame_state *s) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    for (int e = 0; e <= c->ends; e++) {
+        memcpy(c->force + 6 * e, f->r + spari_carriage_at(f, e), 6 * sizeof(double));
+    }
+    spari_carriage_push(f, p->member, s->y, c->force);
+    for (int k = 0; k < 6 * (1 + c->ends); k += 3) {
+        spari_rotate(s->root.q + 3, c->force + k, c->force + k);
+    }
+}
+
+/* ---- a step ---- */
+
+static int take_frame(spari_limb *p, double h) {
+    spari_frame *f = p->frame;
+    spari_scheme_loads(p->member, &f->steps);
+    p->scheme = spari_scheme_of(p->member, f->D != NULL, h);
+    return f->steps.started;
+}
+
+static void copy_to(spari_frame *f) {
+    spari_solver *s = f->carriage->root;
+    memcpy(f->to.y, f->begin.y, (size_t)(4 * f->n) * sizeof *f->to.y);
+    f->to.root = f->begin.root;
+    memcpy(s->to.q, s->begin.q, 25 * sizeof *s->to.q);
+}
+
+static void begin_frame_limb(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_frame_poison(f);
+    spari_solver_poison(p->solver);
+    copy_to(f);
+    p->stage.before = p->member->drive[0];
+    p->member->dissipated_step = 0;
+    p->stage.power = spari_frame_damped_power(f, &f->begin);
+}
+
+static void enter_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    const spari_frame_state y = f->from;
+    spari_stage_enter(p->solver);
+    f->from = f->to, f->to = y;
+}
+
+static int stage_of_frame(spari_limb *p, const spari_part *part) {
+    const spar_member *m = p->member;
+    spari_frame *f = p->frame;
+    spari_scheme_mix_loads(m, &f->steps, 6 * f->nodes, part->end);
+    SPARI_TRY(spari_stage_root(p->solver, m, &p->scheme, part, &p->stage));
+    spari_frame_stage(f, m, &p->scheme, part, &p->stage.root);
+    spari_carriage_turn(f, &f->from, p->scheme.span);
+    p->state = &f->carriage->seen;
+    return SPAR_OK;
+}
+
+static void take_velocities_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    memcpy(p->solver->from.v, p->member->now.v, 6 * sizeof(double));
+    spari_frame_take_velocities(f, p->member, &f->from);
+}
+
+static void end_frame_limb(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_stage_restart(p->solver, p->member, &p->scheme, &p->stage);
+    spari_frame_restart_scheme(f, &p->scheme);
+    p->stage.before = p->stage.root;
+    spari_scheme_dissipate(p->member, &p->scheme, &p->stage.power, spari_frame_damped_power(f, &f->to));
+}
+
+static void keep_rates_of_frame(spari_limb *p, int back) {
+    spari_frame *f = p->frame;
+    double *kept = f->carriage->kept, *root = p->stage.ends.to.v, *v = f->to.v;
+    memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
+    memcpy(back ? v : kept, back ? kept : v, (size_t)f->n * sizeof *v);
+    if (back) {
+        spari_root_show(p->solver, p->member, &p->stage.ends);
+        look_at_end_of_step(p);
+    }
+}
+
+/* ---- an iteration ---- */
+
+static int predict_frame(spari_limb *p, spari_guess stays) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    double *x = f->dx + 6;
+    int n = f->n - 6;
+    if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: nothing leads astray */
+        return 0;
+    }
+    if (p->scheme.still) {
+        spari_alpha_carry(s, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, s->increment);
+        memset(x, 0, (size_t)n * sizeof *x);
+        memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
+    } else {
+        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->stage.ends, s->increment);
+        spari_rates from = deformation_rates(&f->from);
+        from.stage = f->stage_v + 6;
+        spari_scheme_predict(&p->scheme, stays, n, from, x, deformation_rates(&f->to));
+    }
+    for (int k = 6; k < f->n; k++) {
+        f->to.y[k] = f->from.y[k] + f->dx[k];
+    }
+    look_at_end_of_step(p);
+    return 1;
+}
+
+static double balance_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
+    look_at_end_of_step(p);
+    double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
+    show_forces(p, &f->to);
+    return scale;
+}
+
+static double noise_of_frame(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    const spari_condensed *d = p->condensed;
+    double most = 0, poison = 0;
+    for (int i = 6; i < f->n; i++) {
+        int at_end = 0;
+        for (int e = 1; e < d->ends; e++) {
+            at_end = at_end || i / 6 == d->node[e];
+        }
+        most = fmax(most, at_end ? 0 : fabs(f->r[i]));
+        poison += 0 * f->r[i];
+    }
+    for (int k = 0; k < 6 * d->ends; k++) {
+        most = fmax(most, fabs(p->force[k]));
+        poison += 0 * p->force[k];
+    }
+    return most + poison;
+}
+
+static int tangent_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_alpha_operators(p->solver, &p->scheme, &p->stage.ends, p->solver->increment);
+    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
+}
+
+static int frame_serves(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    return f->factored && spari_alpha_close(p->scheme.cm, f->kept_cm) && spari_alpha_close(p->scheme.cv, f->kept_cv);
+}
+
+static void see_turn_of_frame(const spari_limb *p) {
+    const spari_solver *s = p->solver;
+    spari_quat_between(s->kept_q, p->state->q + 3, s->turn);
+}
+
+static int reduce_frame(spari_limb *p, double *x) {
+    spari_frame *f = p->frame;
+    const double *y = f->to.y, *root = p->state->q + 3;
+    int M = 6 * p->condensed->ends;
+    see_turn_of_frame(p);
+    memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
+    if (spari_condensed_reduce(p->condensed, f->linear, f->dx)) {
+        return 1;
+    }
+    for (int k = 0; k < M; k++) { /* what the rest of the member puts on the ends */
+        int u = 6 * p->condensed->node[k / 6] + k % 6;
+        x[k] = u < p->condensed->fixed ? 0 : f->dx[u] - f->r[u];
+    }
+    spari_carriage_push(f, p->member, y, x);
+    for (int k = 0; k < M; k += 3) {
+        spari_rotate(root, x + k, x + k);
+    }
+    for (int k = 0; k < M; k++) {
+        x[k] = k < p->condensed->fixed ? 0 : x[k] + p->force[k];
+    }
+    return 0;
+}
+
+static void expand_frame(spari_limb *p, double *x) {
+    spari_frame *f = p->frame;
+    int M = 6 * p->condensed->ends;
+    memcpy(p->solver->dx, x, 6 * sizeof *x);
+    for (int k = 0; k < M; k += 3) {
+        spari_rotate_back(p->state->q + 3, x + k, x + k);
+    }
+    spari_carriage_see(f, p->member, f->to.y, x);
+    for (int k = 0; k < M; k++) {
+        f->dx[6 * p->condensed->node[k / 6] + k % 6] = x[k];
+    }
+    spari_condensed_expand(p->condensed, f->dx);
+    f->solves++;
+}
+
+/* The largest motion of a node, by the member's length, and turn, of unknowns x. */
+static double size_of_deformation(const spari_limb *p, const double *x) {
+    const spari_frame *f = p->frame;
+    double largest = 0, *own = f->carriage->x;
+    double *y = f->nodal;
+    memcpy(y, x, (size_t)f->n * sizeof *y);
+    memset(y, 0, 6 * sizeof *y);
+    const double *w = spari_frame_nodal(f, y, own);
+    for (int i = 0; i < f->nodes; i++) {
+        largest = fmax(largest, fmax(spari_norm(w + 6 * i) / p->solver->body->length, spari_norm(w + 6 * i + 3)));
+    }
+    return largest;
+}
+
+static double change_of_frame(const spari_limb *p) {
+    return fmax(spari_alpha_size(p->solver, p->solver->dx), size_of_deformation(p, p->frame->dx));
+}
+
+static void correct_frame(spari_limb *p, double cut) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    for (int k = 0; k < 6 && cut < 1; k++) {
+        s->dx[k] *= cut;
+    }
+    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
+    spari_scheme_correct(&p->scheme, cut, f->n - 6, f->dx + 6, f->to.y + 6, deformation_rates(&f->to));
+    look_at_end_of_step(p);
+}
+
+static double way_of_frame(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    double *step = f->increment;
+    for (int k = 0; k < f->n; k++) {
+        step[k] = f->to.y[k] - f->from.y[k];
+    }
+    return fmax(spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried,
+                size_of_deformation(p, step));
+}
+
+static void clear_frame(spari_limb *p) {
+    see_turn_of_frame(p);
+    memset(p->frame->dx, 0, (size_t)p->frame->n * sizeof(double));
+}
+
+static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
+    spari_frame *f = p->frame;
+    double *dx = p->solver->dx;
+    for (int k = 0; k < 6 && p->stage.ends.root; k += 3) {
+        spari_rotate_back(p->stage.ends.root->q + 3, dx + k, dx + k);
+    }
+    spari_alpha_shift_rates(p->solver, &p->scheme, &p->stage.ends, v, a, b);
+    for (int k = 6; k < f->n; k++) {
+        f->to.v[k] -= v * f->dx[k];
+        f->to.a[k] -= a * f->dx[k];
+        f->to.b[k] -= b * f->dx[k];
+    }
+    spari_root_show(p->solver, p->member, &p->stage.ends);
+    look_at_end_of_step(p);
+}
+
+/* ---- its answer ---- */
+
+/* As forces r and on the ends. The first six are force and moment of the whole about the root, arms deformed: modal
+   unknowns have those of the reference already. */
+static void take_more_of_frame(spari_limb *p, const double *load) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    double sum[6] = {0}, *own = f->turned;
+    const double *x = spari_frame_nodal(f, f->to.y, c->x);
+    spari_member_gather(p->member, load, own);
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(f->to.root.q + 3, own + i, own + i);
+    }
+    spari_frame_gather(f, own, f->r);
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3];
+        spari_member_arm(p->member, i, arm);
+        for (int k = 0; k < 3; k++) {
+            sum[k] += own[6 * i + k];
+            sum[3 + k] += own[6 * i + 3 + k];
+            arm[k] += x[6 * i + k];
+        }
+        spari_cross(arm, own + 6 * i, turn);
+        for (int k = 0; k < 3; k++) {
+            sum[3 + k] += turn[k];
+        }
+    }
+    memcpy(f->r, sum, sizeof sum);
+    memset(f->r, 0, (size_t)spari_member_held(p->member) * sizeof *f->r);
+    show_forces(p, &f->to);
+}
+
+/* The root carries the nodes where they are, and the deformation changes. */
+static void show_more_of_frame(spari_limb *p, double *motion) {
+    spari_frame *f = p->frame;
+    spari_carriage *c = f->carriage;
+    const double *root = p->solver->dx, *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, c->x);
+    memset(f->dx, 0, 6 * sizeof *f->dx);
+    const double *change = spari_frame_nodal(f, f->dx, f->nodal);
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3], *out = f->turned + 6 * i;
+        spari_member_arm(p->member, i, arm);
+        for (int k = 0; k < 3; k++) {
+            arm[k] += x[6 * i + k];
+        }
+        spari_rotate(q, arm, arm);
+        spari_cross(root + 3, arm, turn);
+        spari_rotate(q, change + 6 * i, out);
+        spari_rotate(q, change + 6 * i + 3, out + 3);
+        for (int k = 0; k < 3; k++) {
+            out[k] += root[k] + turn[k];
+            out[3 + k] += root[3 + k];
+        }
+    }
+    spari_member_from_unique(p->member, 6, f->turned, motion);
+}
+
+static void look_back_at_frame(spari_limb *p) {
+    spari_solver *s = p->solver;
+    p->scheme = spari_scheme_last(p->member, p->frame->D != NULL, &p->solver->steps.solved);
+    p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
+    look_at_end_of_step(p);
+}
+
+/* ---- the start ---- */
+
+static int start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    int end = spari_member_held(p->member);
+    if (p->member->root != SPAR_ROOT_DRIVEN) {
+        memset(s->begin.a, 0, (size_t)end * sizeof(double));
+        memset(s->begin.v, 0, (size_t)end * sizeof(double));
+    }
+    f->steps.started = 0;
+    copy_to(f); /* the rates are shifted at the end, which is the beginning */
+    p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
+    memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
+    look_at_end_of_step(p);
+    spari_carriage_turn(f, &f->to, 0);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    memset(f->r, 0, (size_t)f->n * sizeof *f->r);
+    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, 0, unit, f->r);
+}
+
+static void unbalance_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    look_at_end_of_step(p);
+    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    show_forces(p, &f->to);
+}
+
+static void correct_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    for (int k = 0; k < 6; k++) {
+        s->begin.a[k] -= p->scheme.cm * s->dx[k];
+    }
+    for (int k = 6; k < f->n; k++) {
+        f->to.a[k] -= p->scheme.cm * f->dx[k];
+    }
+    look_at_end_of_step(p);
+}
+
+static void end_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    spari_stage_remember(s, p->member, &p->scheme);
+    memcpy(f->to.b, f->to.a, (size_t)f->n * sizeof *f->to.b);
+    memcpy(f->begin.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
+    f->begin.root = f->to.root;
+    f->factored = 0;
+    f->steps.started = s->steps.started = 1;
+}
+
+static void shift_start_of_frame(spari_limb *p) {
+    spari_frame *f = p->frame;
+    memcpy(f->begin.v, f->to.v, (size_t)f->n * sizeof *f->to.v);
+}
+
+/* ---- at rest ---- */
+
+static void rest_frame(spari_limb *p, const double *fluid, int onward) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    spari_member_gather(p->member, p->member->dead, f->steps.load);
+    spari_member_gather(p->member, fluid, f->steps.load1);
+    cblas_daxpy(6 * f->nodes, 1, f->steps.load1, 1, f->steps.load, 1);
+    if (!onward) {
+        memcpy(s->to.q, s->begin.q, 7 * sizeof *s->to.q);
+        memcpy(f->to.y, f->begin.y, (size_t)f->n * sizeof *f->to.y);
+    }
+    memset(s->to.v, 0, 18 * sizeof *s->to.v);
+    memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *f->to.v);
+    p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
+    look_at_end_of_step(p);
+}
+
+/* The root turns with the whole, and with it the frame and what rests in that. */
+static void turn_root(spari_limb *p, double factor) {
+    const spar_member *m = p->member;
+    spari_state *to = &p->solver->to;
+    double x[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = m->xr[k] + to->q[k];
+    }
+    spari_turning_rates(p->turning, factor, x, to->v, to->a);
+    look_at_end_of_step(p);
+}
+
+static double balance_frame_at_rest(spari_limb *p, double factor) {
+    spari_frame *f = p->frame;
+    int turning = p->turning && f->M && (p->member->effects & SPAR_EFFECT_INERTIA);
+    spari_turn part = {{0}, {0}, {0}};
+    if (p->turning) {
+        turn_root(p, factor);
+    }
+    if (turning) {
+        part = spari_turn_part(&p->turning->turn, factor);
+        spari_carriage_turn(f, &f->to, 0);
+    }
+    f->carriage->steady = turning;
+    memcpy(f->carriage->steady_turn, part.w, sizeof part.w);
+    double scale = spari_carriage_forces(f, p->member, &f->to, !turning, factor, f->r);
+    show_forces(p, &f->to);
+    return scale;
+}
+
+static int tangent_of_frame_at_rest(spari_limb *p, double factor) {
+    const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    (void)factor; /* that of the forces at rest */
+    int singular = spari_carriage_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
+    p->frame->carriage->steady = 0;
+    return singular;
+}
+
+static void shift_frame(spari_limb *p, double cut) {
+    spari_frame *f = p->frame;
+    spari_static_shift(1, cut, p->solver->dx, p->solver->to.q);
+    for (int k = 6; k < f->n; k++) {
+        f->to.y[k] -= cut * f->dx[k];
+    }
+    look_at_end_of_step(p);
+}
+
+static void keep_places_of_frame(spari_limb *p, int back) {
+    spari_frame *f = p->frame;
+    spari_solver *s = p->solver;
+    double *kept = f->carriage->kept + f->n, *y = f->to.y;
+    memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, 7 * sizeof *y);
+    memcpy(back ? y : kept, back ? kept : y, (size_t)f->n * sizeof *y);
+    look_at_end_of_step(p);
+}
+
+static void leave_rest_of_frame(spari_limb *p) {
+    copy_to(p->frame);
+    p->frame->factored = 0;
+    p->frame->carriage->steady = 0;
+}
+
+static void end_rest_of_frame(spari_limb *p) {
+    keep_places_of_frame(p, 1);
+    if (p->turning) {
+        turn_root(p, 1);
+    }
+    p->frame->factored = 0;
+    p->frame->carriage->steady = 0;
+    p->member->row->publish(p->member);
+}
+
+const spari_limb_row spari_limb_frame = {
+    .make = make_frame,
+    .take = take_frame,
+    .begin = begin_frame_limb,
+    .enter = enter_frame,
+    .stage = stage_of_frame,
+    .take_velocities = take_velocities_of_frame,
+    .end = end_frame_limb,
+    .keep_rates = keep_rates_of_frame,
+    .predict = predict_frame,
+    .balance = balance_frame,
+    .noise = noise_of_frame,
+    .tangent = tangent_of_frame,
+    .serves = frame_serves,
+    .reduce = reduce_frame,
+    .expand = expand_frame,
+    .change = change_of_frame,
+    .correct = correct_frame,
+    .way = way_of_frame,
+    .clear = clear_frame,
+    .shift_rates = shift_rates_of_frame,
+    .take_more = take_more_of_frame,
+    .show_more = show_more_of_frame,
+    .look_back = look_back_at_frame,
+    .start = start_of_frame,
+    .unbalance = unbalance_frame,
+    .correct_start = correct_start_of_frame,
+    .end_start = end_start_of_frame,
+    .shift_start = shift_start_of_frame,
+    .rest = rest_frame,
+    .balance_rest = balance_frame_at_rest,
+    .tangent_rest = tangent_of_frame_at_rest,
+    .shift = shift_frame,
+    .keep_places = keep_places_of_frame,
+    .leave_rest = leave_rest_of_frame,
+    .end_rest = end_rest_of_frame,
+    .turn = turn_of_frame,
+};

@@ -1,0 +1,357 @@
+/* Linear and modal beams: their frame created and freed, and their rows of the table. */
+#include "frame.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/applied.h"
+#include "../member/beam.h"
+#include "../member/joint.h"
+#include "floating_root.h"
+#include "../time/fidelity.h"
+#include "../time/component.h"
+#include "../algebra/pencil.h"
+#include "../solve/reaction.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- life ---- */
+
+static int carve_states(spari_frame *f) {
+    spari_frame_state *states[3] = {&f->begin, &f->from, &f->to};
+    for (int k = 0; k < 3; k++) {
+        double *block = spari_zalloc(4 * (int64_t)f->n, sizeof *block);
+        if (!block) {
+            return 1;
+        }
+        states[k]->y = block, states[k]->v = block + f->n;
+        states[k]->a = block + 2 * f->n, states[k]->b = block + 3 * f->n;
+        states[k]->root.q[3] = 1;
+    }
+    return 0;
+}
+
+static int allocate_matrices(spari_frame *f, const spar_member *m) {
+    int turns = (m->root == SPAR_ROOT_DRIVEN || m->floats) && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
+    double **matrices[] = {&f->K, &f->M, &f->D, &f->A};
+    const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL, m->added != NULL};
+    for (int k = 0; k < 4; k++) {
+        ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
+                               (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
+        ok = ok && (!turns || !m->floats || (f->S[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
+    }
+    ok = ok && (!m->body->pre || (f->pull = spari_zalloc(6 * (int64_t)f->nodes, sizeof *f->pull)));
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!turns || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
+    }
+    return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
+}
+
+static int allocate_work(spari_frame *f, const spar_member *m) {
+    int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
+    double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r, &f->dx, &f->increment, &f->stage_v};
+    int ok = carve_states(f) == 0;
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
+        ok = ok && (*vectors[k] = spari_zalloc(wide, sizeof(double)));
+    }
+    ok = ok && (f->nodal = spari_zalloc(18 * (int64_t)f->nodes, sizeof(double)));
+    ok = ok && (f->turned = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
+    ok = ok && (f->element = spari_zalloc((int64_t)f->block * f->block, sizeof(double)));
+    if (f->N[0] || f->D) { /* else the sums are K and nothing */
+        ok = ok && (f->sumC = spari_zalloc(f->size, sizeof(double)));
+    }
+    if (f->N[0]) {
+        ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
+    }
+    int64_t block = 6 * (int64_t)m->per_element;
+    ok = ok && (!f->A || !m->learned || (f->room_A = spari_zalloc(block * (block + f->n), sizeof(double))));
+    return !ok;
+}
+
+static void frame_free(void *solution) {
+    spari_frame *f = solution;
+    if (!f) {
+        return;
+    }
+    double *all[] = {f->basis,       f->A,           f->K,       f->M,      f->D,         f->sumK,
+                     f->sumC,        f->sumf,        f->begin.y, f->from.y, f->to.y,      f->steps.load,
+                     f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->stage_v,
+                     f->nodal,       f->turned,      f->element, f->room_A, f->gram,      f->pull};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        free(all[k]);
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        free(f->N[k]);
+        free(f->S[k]);
+        free(f->f[k]);
+        free(f->rigid[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        free(f->G[k]);
+        free(f->E[k]);
+    }
+    spari_carriage_free(f->carriage);
+    spari_linear_free(f->linear);
+    spari_snapshot_free(&f->before);
+    free(f);
+}
+
+/* Arms [nodes][3] of the unknowns' nodes from the root. */
+static double *arms_of(const spar_member *m) {
+    double *arm = spari_zalloc(3 * (int64_t)m->body->unique, sizeof *arm);
+    if (arm) {
+        spari_member_to_unique(m, 3, m->xr, arm);
+        for (int64_t i = m->body->unique - 1; i >= 0; i--) {
+            for (int k = 0; k < 3; k++) {
+                arm[3 * i + k] -= arm[k];
+            }
+        }
+    }
+    return arm;
+}
+
+/* The matrices, of the nodes or of m->modes modes. */
+static int fill_frame(spari_frame *f, const spar_member *m) {
+    double *arm = arms_of(m);
+    int cols = (int)m->modes + spari_member_held(m);
+    if (f->carriage) {
+        int most = 6 * (f->nodes - 1 - f->carriage->ends);
+        cols = 6 + 6 * f->carriage->ends + (cols - 6 < most ? cols - 6 : most);
+    }
+    int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK && f->A) {
+        for (int e = 0; e < f->elements; e++) {
+            spari_added_tangent(m, e, 1, NULL, f->A + (int64_t)f->block * f->block * e);
+        }
+    }
+    for (int e = 0; e < f->elements && status == SPAR_OK && m->foundation; e++) {
+        spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
+    }
+    if (status == SPAR_OK && f->carriage) {
+        status = spari_carriage_keep_pushes(f);
+    }
+    if (status == SPAR_OK && m->modes > 0) {
+        status = spari_frame_fill_basis(f, arm, cols);
+        status = status == SPAR_OK && spari_frame_project(f, m, cols) ? SPAR_ERR_MEMORY : status;
+    }
+    free(arm);
+    status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
+    return status == SPAR_OK && f->carriage ? spari_carriage_finish(f, m) : status;
+}
+
+static int frame_create(spar_member *m) {
+    m->floats = spari_member_is_tied(m) && !spari_member_root_is_given(m);
+    SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_given(m) || (m->effects & SPAR_EFFECT_INERTIA),
+                  SPAR_ERR_STATE,
+                  "member '%s' is linear without inertia and nothing holds it: fix or drive its root, or leave INERTIA "
+                  "on",
+                  m->name);
+    SPARI_REQUIRE(
+        m->session, !m->floats || !m->foundation, SPAR_ERR_UNSUPPORTED,
+        "member '%s' is linear in the frame of a root that joints move, and has springs to the ground along it "
+        "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
+        m->name);
+    SPARI_REQUIRE(m->session, !m->floats || m->body->drag == 0, SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is linear in the frame of a root that joints move, and has damping by mass, which is of "
+                  "velocities as they are; keep SPAR_FIDELITY_EXACT, fix the root, or damp with spar_beam_set_damping",
+                  m->name);
+    spari_frame *f = m->solution = spari_zalloc(1, sizeof *f);
+    if (!f) {
+        return SPAR_ERR_MEMORY;
+    }
+    f->held = m->floats ? 6 : spari_member_held(m);
+    f->nodes = m->body->unique;
+    f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
+    f->size = (int64_t)f->elements * f->block * f->block;
+    int status = spari_member_is_tied(m) ? spari_carriage_create(f, m) : SPAR_OK;
+    status = status == SPAR_OK ? fill_frame(f, m) : status;
+    f->factors = 0; /* those of the set-up do not count */
+    SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
+                  "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than asked "
+                  "for; give every section mass and rotary inertia, or ask for fewer modes",
+                  m->name);
+    return status;
+}
+
+/* ---- what the description must have ---- */
+
+static int modal_check(const spar_member *m) {
+    int held = spari_member_held(m);
+    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - held, least = 6 - held;
+    SPARI_REQUIRE(m->session, m->beam->mass, SPAR_ERR_STATE,
+                  "member '%s' has no mass, which a modal member needs; give its sections mass", m->name);
+    SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT,
+                  "member '%s': %lld modes are asked for; its nodes have %lld", m->name, (long long)m->modes,
+                  (long long)most);
+    SPARI_REQUIRE(m->session, m->modes >= least, SPAR_ERR_ARGUMENT,
+                  "member '%s': %lld modes; its first %lld move it as a rigid body, give as many at least", m->name,
+                  (long long)m->modes, (long long)least);
+    return SPAR_OK;
+}
+
+/* The rotation of a root that is given is large all the same. */
+static int frame_effects(const spar_member *m, int effects) {
+    return spari_member_root_is_given(m) ? effects : effects & ~SPAR_EFFECT_LARGE_ROTATION;
+}
+
+/* ---- the rest of the rows ---- */
+
+static void frame_remass(spar_member *m) {
+    spari_frame_remass(m->solution, m);
+}
+
+static void frame_restart(spar_member *m) {
+    spari_frame_restart(m->solution, m);
+}
+
+static int frame_advance(spar_member *m, double dt) {
+    return spari_frame_advance(m->solution, m, dt);
+}
+
+static int frame_balance(spar_member *m, double dt) {
+    return spari_frame_balance(m->solution, m, dt);
+}
+
+static void frame_begin(spar_member *m) {
+    spari_frame_begin(m->solution);
+}
+
+static void frame_accept(spar_member *m) {
+    spari_frame_accept(m->solution);
+}
+
+static void frame_reject(spar_member *m) {
+    spari_frame_reject(m->solution);
+}
+
+static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+    (void)load_steps, (void)onward; /* the equations are linear */
+    return spari_frame_static(m->solution, m, fluid);
+}
+
+static int frame_energy(const spar_member *m, double energy[4]) {
+    SPARI_TRY(spari_energy_of_body(m, energy));
+    return spari_frame_energy(m->solution, m, energy);
+}
+
+static int64_t frame_unknowns(const spar_member *m) {
+    const spari_frame *f = m->solution;
+    return f->n - spari_member_held(m);
+}
+
+static int frame_problem(const spar_member *m, double *K, double *M) {
+    spari_frame_modal(m->solution, m, K, M);
+    return SPAR_OK;
+}
+
+/* Small deformation is seen from the root, which must turn as the frame does. */
+static int frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    double apart[3], own = spari_norm(m->after.v + 3);
+    for (int k = 0; k < 3; k++) {
+        apart[k] = m->after.v[3 + k] - w[k];
+    }
+    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
+        return SPAR_ERR_UNSUPPORTED;
+    }
+    spari_frame_linearise(m->solution, m, to);
+    return SPAR_OK;
+}
+
+static void frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
+    spari_frame_shape(m->solution, m, x, room);
+    spari_member_from_unique(m, 6, room, nodes);
+}
+
+static int frame_answer(spar_member *m, const double *load, double *motion) {
+    return spari_frame_answer(m->solution, m, load, motion);
+}
+
+static int frame_felt(spar_member *m, double *load) {
+    spari_frame *f = m->solution;
+    if (!f->basis) {
+        spari_member_even_loads(m, load);
+        return SPAR_OK;
+    }
+    return spari_frame_felt(f, m, load);
+}
+
+static void frame_effort(const spar_member *m, spari_effort *e) {
+    const spari_frame *f = m->solution;
+    *e = (spari_effort){.iterations = f->solves,
+                        .tangents = f->factors,
+                        .nodes = f->nodes,
+                        .elements = f->elements,
+                        .per_element = m->per_element,
+                        .unknowns = f->n,
+                        .band = spari_effort_band(f->n, f->block)};
+}
+
+static int64_t frame_state_size(const spar_member *m) {
+    return spari_frame_state_size(m->solution);
+}
+
+static void frame_save(const spar_member *m, double *state) {
+    spari_frame_save(m->solution, state);
+}
+
+static int frame_is_state(const spar_member *m, const double *state, int64_t count) {
+    return spari_frame_is_state(m->solution, state, count);
+}
+
+static void frame_load(spar_member *m, const double *state) {
+    spari_frame_load(m->solution, state);
+}
+
+/* Joints have come, or have changed: it is made anew for them. */
+static int frame_retie(spar_member *m) {
+    const spari_frame *f = m->solution;
+    int had = f->carriage != NULL;
+    if (!had && !spari_member_is_tied(m)) {
+        return SPAR_OK;
+    }
+    void *before = m->solution;
+    m->solution = NULL;
+    int floated = m->floats, status = frame_create(m);
+    if (status != SPAR_OK) {
+        frame_free(m->solution);
+        m->solution = before;
+        m->floats = floated;
+        return status;
+    }
+    frame_free(before);
+    if (spari_fidelity_is_here(m)) {
+        frame_restart(m);
+    }
+    return SPAR_OK;
+}
+
+static int frame_end_of(const spar_member *m, int node) {
+    return spari_carriage_end_of(m->solution, node);
+}
+
+static void frame_publish(spar_member *m) {
+    spari_frame *f = m->solution;
+    spari_frame_publish(f, m, &f->to);
+}
+
+/* What the two rows share. */
+#define SPARI_FRAMED                                                                                                   \
+    .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
+    .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
+    .balance = frame_balance, .answer = frame_answer, .felt = frame_felt, .accept = frame_accept,                      \
+    .begin = frame_begin, .reject = frame_reject, .effort = frame_effort, .rest = frame_rest,                          \
+    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
+    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .linearise = frame_linearise,          \
+    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
+    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
+
+const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
+const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,
+                                             .check = modal_check};

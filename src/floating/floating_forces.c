@@ -1,0 +1,612 @@
+/* Forces of a frame whose root joints hold, and their tangent: see floating_root.h. */
+#include "../base/blas.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/applied.h"
+#include "floating_root.h"
+
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum { TURN_PARTS = 1, GYRO_PARTS = 7, EULER_PARTS = 10, ALL_PARTS = 13 };
+
+/* ---- forces ---- */
+
+/* parts[k] := X y */
+static void product_into(spari_frame *f, int k, const double *X, const double *y) {
+    double *to = f->carriage->parts + (int64_t)k * f->n;
+    memset(to, 0, (size_t)f->n * sizeof *to);
+    if (X) {
+        spari_frame_add_times(f, X, y, 1, to);
+    }
+}
+
+/* K + S(w, w), which stays for the substep. */
+static void combine_stretch(spari_frame *f) {
+    spari_carriage *c = f->carriage;
+    memcpy(c->stiff, f->K, (size_t)f->size * sizeof *c->stiff);
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        double by = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
+        if (by != 0) {
+            cblas_daxpy((int)f->size, by, f->S[k], 1, c->stiff, 1);
+        }
+    }
+}
+
+void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h) {
+    spari_carriage *c = f->carriage;
+    double alpha[3];
+    if (!f->S[0]) {
+        return;
+    }
+    spari_rotate_back(s->root.q + 3, s->root.v + 3, c->turns);
+    spari_rotate_back(s->root.q + 3, s->root.a + 3, alpha);
+    for (int k = 0; k < 3; k++) {
+        const double *mean = c->mean + (int64_t)k * f->n + 6;
+        c->turns[k] +=
+            cblas_ddot(f->n - 6, mean, 1, s->v + 6, 1) + h * (alpha[k] + cblas_ddot(f->n - 6, mean, 1, s->a + 6, 1));
+    }
+    combine_stretch(f);
+}
+
+/* E_k y among the parts, and the products of rates with it. */
+static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
+    spari_carriage *c = f->carriage;
+    const double *part = c->parts + (int64_t)(EULER_PARTS + k) * f->n + 6;
+    product_into(f, EULER_PARTS + k, f->E[k], s->v);
+    c->seconds.vEv[k] = cblas_ddot(f->n - 6, s->v + 6, 1, part, 1);
+    product_into(f, EULER_PARTS + k, f->E[k], s->y);
+    c->seconds.vEy[k] = cblas_ddot(f->n - 6, s->v + 6, 1, part, 1);
+    c->seconds.aEy[k] = cblas_ddot(f->n - 6, s->a + 6, 1, part, 1);
+}
+
+/* Momentum and forces of the unknowns are those of the kinetic energy by rotation vectors, on which a moment m works as
+   m + m x theta / 2; E and N are of moments, with m of a rigid motion. To y' . X y that adds m . (theta x theta') / 2.
+   */
+static double half_moments(const spari_frame *f, const double *moments, const double *rate) {
+    const double *x = f->carriage->x;
+    double sum = 0;
+    for (int i = 0; i < f->nodes; i++) {
+        double turn[3];
+        spari_cross(x + 6 * i + 3, rate + 6 * i + 3, turn);
+        sum += 0.5 * spari_dot(moments + 6 * i + 3, turn);
+    }
+    return sum;
+}
+
+static void correct_seconds(spari_frame *f, const spari_frame_state *s) {
+    spari_carriage *c = f->carriage;
+    const double *v = spari_frame_nodal(f, s->v, f->nodal), *a = spari_frame_nodal(f, s->a, f->nodal + 6 * f->nodes);
+    for (int k = 0; k < 3; k++) {
+        c->seconds.vEy[k] += half_moments(f, c->push[3 + k], v);
+        c->seconds.aEy[k] += half_moments(f, c->push[3 + k], a);
+    }
+    for (int k = 0; k < SPARI_TURNS && c->spin[k]; k++) {
+        c->seconds.vNy[k] += half_moments(f, c->spin[k], v);
+    }
+}
+
+/* What does not depend on how the root moves. */
+static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
+    spari_carriage *c = f->carriage;
+    product_into(f, 0, c->still ? NULL : f->M, s->a);
+    memset(&c->seconds, 0, sizeof c->seconds);
+    for (int k = 0; k < SPARI_TURNS && !c->still; k++) {
+        const double *part = c->parts + (int64_t)(TURN_PARTS + k) * f->n + 6;
+        product_into(f, TURN_PARTS + k, f->N[k], s->y);
+        c->seconds.yNy[k] = cblas_ddot(f->n - 6, s->y + 6, 1, part, 1);
+        c->seconds.vNy[k] = cblas_ddot(f->n - 6, s->v + 6, 1, part, 1);
+        if (f->f[k]) {
+            cblas_daxpy(f->n, 1, f->f[k], 1, c->parts + (int64_t)(TURN_PARTS + k) * f->n, 1);
+        }
+    }
+    for (int k = 0; k < 3 && !c->still; k++) {
+        product_into(f, GYRO_PARTS + k, f->G[k], s->v);
+        gather_euler(f, k, s);
+    }
+    c->speeds = s->v, c->rates = s->a;
+    const int stretched = f->S[0] && !c->still;
+    memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
+    spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
+    cblas_daxpy(f->pull ? f->n : 0, c->factor, f->pull, 1, c->elastic, 1);
+    if (f->D) {
+        spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
+    }
+    const double *x = spari_frame_nodal(f, s->y, c->x);
+    if (x != c->x) {
+        memcpy(c->x, x, (size_t)(6 * f->nodes) * sizeof *x);
+    }
+    if (f->S[0] && !c->still) {
+        correct_seconds(f, s);
+    }
+}
+
+/* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
+static int steps_on(const spari_frame *f) {
+    return !f->carriage->still && !f->carriage->steady && f->steps.started;
+}
+
+/* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
+   guess of the fluid's added mass takes of their accelerations. */
+static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
+    spari_carriage *c = f->carriage;
+    int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
+    double *q = f->turned, *v = q + 7 * n, *a = v + n6;
+    memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
+    if (m->applied || guessed) {
+        const double *xd = spari_frame_nodal(f, c->speeds, f->nodal),
+                     *xdd = spari_frame_nodal(f, c->rates, f->nodal + n6);
+        for (int i = 0; i < n; i++) {
+            spari_frame_node(m, root, i, c->x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
+        }
+    }
+    if (m->applied) {
+        spari_applied_residual(m, q, c->factor, c->loads);
+    }
+    if (guessed) {
+        (void)spari_added_times(m, SPARI_UNKNOWNS, SPARI_UNKNOWNS, a, 1, c->loads);
+    }
+    for (int i = 0; i < n6; i++) {
+        c->loads[i] = c->factor * f->steps.load[i] - c->loads[i];
+    }
+}
+
+/* out += what turning of the frame adds */
+static void add_turning(const spari_frame *f, const spari_pose *root, double *out) {
+    const double *parts = f->carriage->parts;
+    double omega[3], alpha[3], c[SPARI_TURNS], less[ALL_PARTS - TURN_PARTS];
+    int n = f->n;
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+        less[k] = -c[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        less[GYRO_PARTS - TURN_PARTS + k] = -omega[k];
+        less[EULER_PARTS - TURN_PARTS + k] = -alpha[k];
+    }
+    spari_linear_less_columns(n, ALL_PARTS - TURN_PARTS, parts + (int64_t)TURN_PARTS * n, less, out);
+}
+
+/* heavy := M R (a - g, alpha) - loads of the nodes, in the axes of the frame; out += the same of the unknowns */
+static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *root, double *out) {
+    spari_carriage *c = f->carriage;
+    int n6 = 6 * f->nodes;
+    double rate[6], omega[3], *load = f->turned;
+    for (int k = 0; k < 6; k++) {
+        rate[k] = (c->still ? 0 : root->a[k]) - (k < 3 ? c->factor * m->body->gravity[k] : 0);
+    }
+    spari_rotate_back(root->q + 3, rate, rate);
+    spari_rotate_back(root->q + 3, rate + 3, rate + 3);
+    for (int i = 0; i < n6; i += 3) {
+        spari_rotate_back(root->q + 3, c->loads + i, load + i);
+    }
+    for (int i = 0; i < n6; i++) {
+        c->heavy[i] = -load[i];
+    }
+    spari_frame_gather(f, c->heavy, f->dx);
+    for (int i = 0; i < f->n; i++) {
+        out[i] += f->dx[i];
+    }
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    for (int k = 0; k < SPARI_TURNS && f->S[0] && !c->still; k++) { /* of those on the unknowns it is among the parts */
+        cblas_daxpy(n6, omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]], c->spin[k], 1, c->heavy, 1);
+    }
+    for (int k = 0; k < 6 && f->rigid[0]; k++) {
+        cblas_daxpy(n6, rate[k], c->push[k], 1, c->heavy, 1);
+        cblas_daxpy(f->n, rate[k], f->rigid[k], 1, out, 1);
+    }
+}
+
+/* Force and moment of the whole about the root, arms deformed, into the first six of out; the elastic forces, which
+   have none, come to the others. */
+static void gather_whole(const spari_frame *f, const spar_member *m, double *out) {
+    const spari_carriage *c = f->carriage;
+    double sum[6] = {0};
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3];
+        const double *r = out + 6 * i;
+        if (!f->basis) {
+            spari_member_arm(m, i, arm);
+            spari_cross(arm, r, turn);
+            for (int k = 0; k < 3; k++) {
+                sum[k] += r[k];
+                sum[3 + k] += r[3 + k] + turn[k];
+            }
+        }
+        spari_cross(c->x + 6 * i, c->heavy + 6 * i, turn);
+        for (int k = 0; k < 3; k++) {
+            sum[3 + k] += turn[k];
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        out[k] = sum[k] + (f->basis ? out[k] : 0);
+    }
+    for (int i = 6; i < f->n; i++) {
+        out[i] += c->elastic[i];
+    }
+}
+
+/* And to the forces on the unknowns, not to those of the whole, m x theta / 2 (see half_moments). */
+static void add_half_moments(spari_frame *f, const spari_pose *root, double *out) {
+    const spari_carriage *c = f->carriage;
+    double omega[3], alpha[3], by[SPARI_TURNS], *half = f->turned;
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
+    for (int t = 0; t < SPARI_TURNS; t++) {
+        by[t] = omega[spari_frame_pair[t][0]] * omega[spari_frame_pair[t][1]];
+    }
+    memset(half, 0, (size_t)(6 * f->nodes) * sizeof *half);
+    for (int i = 3; i < 6 * f->nodes; i += 6) {
+        double m[3];
+        for (int k = 0; k < 3; k++) {
+            m[k] = 0;
+            for (int n = 0; n < 3; n++) {
+                m[k] += 0.5 * alpha[n] * c->push[3 + n][i + k];
+            }
+            for (int t = 0; t < SPARI_TURNS && c->spin[t]; t++) {
+                m[k] += 0.5 * by[t] * c->spin[t][i + k];
+            }
+        }
+        spari_cross(m, c->x + i, half + i);
+    }
+    spari_frame_gather(f, half, f->dx);
+    cblas_daxpy(f->n - 6, 1, f->dx + 6, 1, out + 6, 1);
+}
+
+/* Of second order in the deformation, the moment that goes with N and E: the motion's Lagrangian has
+   omega_k y' . E_k y - y . N(omega, omega) y / 2, and the momentum of the turn is its derivative by omega. */
+static void add_seconds(const spari_frame *f, const spari_pose *root, double moment[3]) {
+    const spari_seconds *s = &f->carriage->seconds;
+    double omega[3], alpha[3], p[3], turn[3];
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
+    memcpy(p, s->vEy, sizeof p);
+    for (int k = 0; k < 3; k++) {
+        moment[k] += s->aEy[k] + s->vEv[k];
+    }
+    for (int t = 0; t < SPARI_TURNS; t++) {
+        int i = spari_frame_pair[t][0], j = spari_frame_pair[t][1];
+        p[i] -= 0.5 * omega[j] * s->yNy[t];
+        p[j] -= 0.5 * omega[i] * s->yNy[t];
+        moment[i] -= 0.5 * alpha[j] * s->yNy[t] + omega[j] * s->vNy[t];
+        moment[j] -= 0.5 * alpha[i] * s->yNy[t] + omega[i] * s->vNy[t];
+    }
+    spari_cross(omega, p, turn);
+    for (int k = 0; k < 3; k++) {
+        moment[k] += turn[k];
+    }
+}
+
+/* The forces with a root that moves so; the rest is gathered. */
+static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *root, double *out) {
+    memcpy(out, f->carriage->parts, (size_t)f->n * sizeof *out);
+    if (m->added) {
+        gather_loads_of(f, m, root);
+    }
+    if (!f->carriage->still) {
+        add_turning(f, root, out);
+    }
+    add_heavy(f, m, root, out);
+    gather_whole(f, m, out);
+    if (!f->carriage->still && f->S[0]) {
+        add_seconds(f, root, out + 3);
+        add_half_moments(f, root, out);
+    }
+}
+
+double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double factor,
+                             double *r) {
+    spari_carriage *c = f->carriage;
+    double scale = 0;
+    c->still = still, c->factor = factor;
+    gather_parts_of(f, s);
+    gather_loads_of(f, m, &s->root);
+    forces_at(f, m, &s->root, r);
+    for (int i = 0; i < f->n; i++) {
+        scale = fmax(scale, fmax(fabs(c->elastic[i]), fabs(c->parts[i])));
+    }
+    for (int i = 0; i < 6 * f->nodes; i++) {
+        scale = fmax(scale, fabs(c->heavy[i]));
+    }
+    memset(r, 0, (size_t)spari_member_held(m) * sizeof *r);
+    return scale;
+}
+
+/* ---- the ends, seen from the root ---- */
+
+/* Where tied node e (from 1) is from the root, and the inverse tangent operator of its rotation. */
+static void look_at_end(const spari_frame *f, const spar_member *m, const double *y, int e, double d[3], double T[9]) {
+    const double *x = y + spari_carriage_at(f, e);
+    spari_member_arm(m, f->carriage->node[e - 1], d);
+    for (int k = 0; k < 3; k++) {
+        d[k] += x[k];
+    }
+    spari_tangent_inverse(x + 3, T);
+}
+
+void spari_carriage_see(const spari_frame *f, const spar_member *m, const double *y, double *x) {
+    for (int e = 1; e <= f->carriage->ends; e++) {
+        double d[3], T[9], turn[3], less[3], *z = x + 6 * e;
+        look_at_end(f, m, y, e, d, T);
+        spari_cross(x + 3, d, turn);
+        for (int k = 0; k < 3; k++) {
+            z[k] -= x[k] + turn[k];
+            less[k] = z[3 + k] - x[3 + k];
+        }
+        for (int k = 0; k < 3; k++) {
+            z[3 + k] = T[3 * k] * less[0] + T[3 * k + 1] * less[1] + T[3 * k + 2] * less[2];
+        }
+    }
+}
+
+void spari_carriage_push(const spari_frame *f, const spar_member *m, const double *y, double *x) {
+    for (int e = 1; e <= f->carriage->ends; e++) {
+        double d[3], T[9], turn[3], *F = x + 6 * e, M[3] = {F[3], F[4], F[5]};
+        look_at_end(f, m, y, e, d, T);
+        spari_cross(d, F, turn);
+        for (int k = 0; k < 3; k++) {
+            F[3 + k] = T[k] * M[0] + T[3 + k] * M[1] + T[6 + k] * M[2];
+            x[k] -= F[k];
+            x[3 + k] -= F[3 + k] + turn[k];
+        }
+    }
+}
+
+/* ---- the tangent ---- */
+
+/* The root moved by `by` along k, in the axes of the frame, with the rates that go along. */
+static spari_pose moved_root(const spari_carriage *c, const spari_pose *root, int k, double by, double cm, double cv,
+                             const double tinv[9]) {
+    spari_pose p = *root;
+    double unit[3] = {0}, axis[3], x[3], turn[4];
+    unit[k % 3] = by;
+    spari_rotate(root->q + 3, unit, axis);
+    if (k < 3) {
+        if (c->steady) {
+            spari_cross(c->steady_turn, axis, x);
+            spari_cross(c->steady_turn, x, x);
+        }
+        for (int i = 0; i < 3; i++) {
+            p.a[i] += cm * axis[i] + (c->steady ? x[i] : 0);
+        }
+        return p;
+    }
+    for (int i = 0; i < 3; i++) {
+        x[i] = tinv[3 * i] * axis[0] + tinv[3 * i + 1] * axis[1] + tinv[3 * i + 2] * axis[2];
+        p.v[3 + i] += cv * x[i];
+        p.a[3 + i] += cm * x[i];
+    }
+    spari_quat_exp(axis, turn);
+    spari_quat_mul(turn, root->q + 3, p.q + 3);
+    return p;
+}
+
+/* Columns of the root: by differences, of forces that are linear in its accelerations and of low order in all else. */
+static void form_columns(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv,
+                         const double tinv[9]) {
+    spari_carriage *c = f->carriage;
+    double fastest = fmax(1, fmax(cv, sqrt(cm)));
+    for (int k = 0; k < 6; k++) {
+        double *column = c->border + (int64_t)(6 + k) * f->n, by = (k < 3 ? m->body->length : 1) * 1e-5 / fastest;
+        for (int side = 0; side < 2; side++) {
+            const spari_pose p = moved_root(c, root, k, side ? -by : by, cm, cv, tinv);
+            forces_at(f, m, &p, c->out + (int64_t)side * f->n);
+        }
+        for (int i = 0; i < f->n; i++) {
+            column[i] = (c->out[i] - c->out[f->n + i]) / (2 * by);
+        }
+    }
+    forces_at(f, m, root, c->out); /* `heavy` is of the root as it is */
+}
+
+/* Rows of the whole: rigid motions times the tangent S of element e. */
+static void add_rows(const spari_frame *f, const spar_member *m, int e, const double *S) {
+    double *rows = f->carriage->border;
+    int first = e * (f->block - f->overlap);
+    for (int i = 0; i < f->block && (!f->basis || i < 6); i++) {
+        double arm[3], weight[6] = {0};
+        weight[f->basis ? i : (first + i) % 6] = 1;
+        if (!f->basis && i % 6 < 3) { /* its moment about the root: arm x unit */
+            double unit[3] = {weight[0], weight[1], weight[2]};
+            spari_member_arm(m, (first + i) / 6, arm);
+            spari_cross(arm, unit, weight + 3);
+        }
+        for (int k = 0; k < 6; k++) {
+            if (weight[k] != 0) {
+                cblas_daxpy(f->block, weight[k], S + (int64_t)f->block * i, 1, rows + (int64_t)k * f->n + first, 1);
+            }
+        }
+    }
+}
+
+/* And of the arms, that change: dx x heavy. */
+static void add_arms_to_rows(const spari_frame *f) {
+    const spari_carriage *c = f->carriage;
+    for (int i = 0; i < f->nodes; i++) {
+        double W[9];
+        spari_skew(c->heavy + 6 * i, W);
+        for (int k = 0; k < 9; k++) {
+            double *row = c->border + (int64_t)(3 + k / 3) * f->n;
+            if (f->basis) {
+                cblas_daxpy(f->n, -W[k], f->basis + (int64_t)(6 * i + k % 3) * f->n, 1, row, 1);
+            } else {
+                row[6 * i + k % 3] -= W[k];
+            }
+        }
+    }
+}
+
+/* The tangent of element e, internal forces of the stretch apart. */
+static void form_element(spari_frame *f, int e, const double alpha[3], double cm, double cv) {
+    const double *K = f->sumK ? f->sumK : f->K;
+    int64_t mm = (int64_t)f->block * f->block;
+    int moving = f->E[0] && !f->carriage->still, guessed = f->A && steps_on(f);
+    for (int64_t i = 0; i < mm; i++) {
+        int64_t at = mm * e + i;
+        f->element[i] =
+            K[at] + (f->sumC ? cv * f->sumC[at] : 0) + (f->M ? cm * f->M[at] : 0) + (guessed ? cm * f->A[at] : 0);
+        for (int k = 0; k < 3 && moving; k++) {
+            f->element[i] += alpha[k] * f->E[k][at];
+        }
+    }
+}
+
+/* Of y x M y'', in the rows of the whole. */
+static void add_euler_to_rows(const spari_frame *f, double cm) {
+    const spari_carriage *c = f->carriage;
+    int m = f->block, step = f->block - f->overlap;
+    for (int k = 0; k < 3 && f->S[0] && !c->still; k++) {
+        double *row = c->border + (int64_t)(3 + k) * f->n;
+        for (int e = 0; e < f->elements; e++) {
+            SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, m, m, 1, f->E[k] + (int64_t)m * m * e, m,
+                                   c->rates + (int64_t)e * step, 1, 1, row + (int64_t)e * step, 1));
+        }
+        cblas_daxpy(f->n - 6, cm, c->parts + (int64_t)(EULER_PARTS + k) * f->n + 6, 1, row + 6, 1);
+    }
+}
+
+/* The tangent of the unknowns into the linear system, and the rows of the whole. */
+static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv) {
+    spari_carriage *c = f->carriage;
+    int64_t mm = (int64_t)f->block * f->block;
+    double alpha[3], turn[6] = {0};
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
+    if (!c->still) {
+        spari_rotate_back(root->q + 3, root->v + 3, turn);
+    }
+    spari_frame_combine(f, turn); /* the acceleration enters element by element */
+    spari_linear_zero(f->linear);
+    memset(c->border, 0, (size_t)(6 * f->n) * sizeof *c->border);
+    for (int e = 0; e < f->elements; e++) {
+        form_element(f, e, alpha, cm, cv);
+        /* pretension's stiffness is not blind to rigid motions: the whole has it by the arms of the ends */
+        cblas_daxpy(f->pull ? (int)mm : 0, -1, f->K + mm * e, 1, f->element, 1);
+        add_rows(f, m, e, f->element);
+        cblas_daxpy(f->pull ? (int)mm : 0, 1, f->K + mm * e, 1, f->element, 1);
+        for (int64_t i = 0; i < mm && f->S[0] && !c->still; i++) {
+            f->element[i] += c->stiff[mm * e + i] - f->K[mm * e + i];
+        }
+        spari_linear_add(f->linear, e, f->element);
+    }
+    add_euler_to_rows(f, cm);
+    add_arms_to_rows(f);
+    for (int i = 0; i < 6; i++) {
+        spari_linear_fix(f->linear, i);
+    }
+}
+
+/* Puts the root's rows and columns where the chain had none. */
+static void put_border(spari_frame *f, const spar_member *m) {
+    const spari_carriage *c = f->carriage;
+    spari_condensed *d = c->condensed;
+    int M = 6 * d->ends, n = f->n;
+    for (int j = spari_member_held(m); j < 6; j++) {
+        double *row = d->rows + (int64_t)n * j, *column = d->W + (int64_t)n * j;
+        memcpy(row, c->border + (int64_t)n * j, (size_t)n * sizeof *row);
+        memcpy(column, c->border + (int64_t)n * (6 + j), (size_t)n * sizeof *row);
+        for (int k = spari_member_held(m); k < M; k++) {
+            int u = 6 * d->node[k / 6] + k % 6;
+            d->K[M * j + k] = k < 6 ? column[u] : row[u]; /* of the root with itself: as the differences have it */
+            if (k >= 6) {
+                d->K[M * k + j] = column[u];
+            }
+        }
+        for (int k = 0; k < M; k++) {
+            row[6 * d->node[k / 6] + k % 6] = column[6 * d->node[k / 6] + k % 6] = 0;
+        }
+    }
+    for (int j = spari_member_held(m); j < 6; j++) {
+        for (int k = spari_member_held(m); k < 6; k++) {
+            d->K[M * j + k] = c->border[(int64_t)n * (6 + k) + j];
+        }
+    }
+}
+
+/* What remains at the ends, from motions seen from the root to absolute ones, in global axes: K := T^T K T, and what
+   the turning of the forces there adds. r: the forces. */
+static void take_ends_out(spari_frame *f, const spar_member *m, const spari_frame_state *s, const double *r,
+                          double *room) {
+    const spari_carriage *c = f->carriage;
+    spari_condensed *d = c->condensed;
+    int M = 6 * d->ends, held = spari_member_held(m);
+    double *K = room, *z = K + (int64_t)M * M, *g = z + M, *force = g + M;
+    for (int k = 0; k < M; k++) {
+        force[k] = r[6 * d->node[k / 6] + k % 6];
+    }
+    spari_carriage_push(f, m, s->y, force);
+    memset(K, 0, (size_t)(M * M) * sizeof *K);
+    for (int j = held; j < M; j++) {
+        memset(z, 0, (size_t)M * sizeof *z);
+        z[j] = 1;
+        spari_carriage_see(f, m, s->y, z);
+        cblas_dgemv(CblasRowMajor, CblasNoTrans, M, M, 1, d->K, M, z, 1, 0, g, 1);
+        memset(g, 0, (size_t)held * sizeof *g);
+        spari_carriage_push(f, m, s->y, g);
+        for (int e = 1; e < d->ends; e++) { /* the arm of its force moves */
+            double turn[3];
+            spari_cross(z + 6 * e, force + 6 * e, turn);
+            for (int k = 0; k < 3; k++) {
+                g[3 + k] -= turn[k];
+            }
+        }
+        for (int k = 0; k < M && j >= 3 && j < 6; k += 3) { /* the frame turns, and with it the forces */
+            double unit[3] = {j == 3, j == 4, j == 5}, turn[3];
+            spari_cross(unit, force + k, turn);
+            for (int i = 0; i < 3; i++) {
+                g[k + i] += turn[i];
+            }
+        }
+        for (int k = held; k < M; k++) {
+            K[M * k + j] = g[k];
+        }
+    }
+    for (int j = 0; j < held; j++) {
+        K[(M + 1) * j] = 1;
+    }
+    memcpy(d->K, K, (size_t)(M * M) * sizeof *K);
+}
+
+/* K [M][M], blocks of three, into global axes */
+static void turn_ends(const double q[4], int M, double *K) {
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < M; i++) {
+            for (int j = 0; j < M; j += 3) {
+                double x[3];
+                for (int k = 0; k < 3; k++) {
+                    x[k] = side ? K[M * (j + k) + i] : K[M * i + j + k];
+                }
+                spari_rotate(q, x, x);
+                for (int k = 0; k < 3; k++) {
+                    *(side ? &K[M * (j + k) + i] : &K[M * i + j + k]) = x[k];
+                }
+            }
+        }
+    }
+}
+
+int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_frame_state *s, double cm, double cv,
+                           const double tinv[9], const double *r) {
+    spari_carriage *c = f->carriage;
+    spari_condensed *d = c->condensed;
+    spari_frame_keep_factors(f);
+    f->factored = 0;
+    if (spari_member_held(m) < 6) {
+        form_columns(f, m, &s->root, cm, cv, tinv);
+    }
+    form_chain(f, m, &s->root, cm, cv);
+    spari_condensed_take(d, f->linear, spari_member_held(m));
+    put_border(f, m);
+    f->factors++;
+    if (spari_linear_factor(f->linear) || spari_condensed_form(d, f->linear)) {
+        return 1;
+    }
+    take_ends_out(f, m, s, r, c->room);
+    turn_ends(s->root.q + 3, 6 * d->ends, d->K);
+    f->factored = 1;
+    f->kept_cm = cm, f->kept_cv = cv;
+    memcpy(c->root->kept_q, s->root.q + 3, 4 * sizeof(double));
+    return 0;
+}

@@ -1,0 +1,249 @@
+/* What a frame has besides where joints tie its member: made, freed, saved; see carriage.h. */
+#include "floating_root.h"
+
+#include "../base/blas.h"
+#include "../math/rotation.h"
+#include "../time/component.h"
+
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int find_tied(spari_carriage *c, const spar_member *m) {
+    c->node = spari_zalloc(spari_limb_joints(m) + 1, sizeof *c->node);
+    if (!c->node) {
+        return SPAR_ERR_MEMORY;
+    }
+    c->ends = spari_limb_nodes_tied(m, c->node);
+    if (c->ends > 0 && c->node[0] == 0) {
+        c->ends--;
+        memmove(c->node, c->node + 1, (size_t)c->ends * sizeof *c->node);
+    }
+    return SPAR_OK;
+}
+
+int spari_carriage_create(spari_frame *f, spar_member *m) {
+    spari_carriage *c = f->carriage = spari_zalloc(1, sizeof *c);
+    if (!c || find_tied(c, m) != SPAR_OK) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_body *body = c->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 0);
+    if (!body) {
+        return SPAR_ERR_MEMORY;
+    }
+    body->length = m->body->length;
+    body->phi[0] = body->weight[0] = 1;
+    spari_body_complete(body);
+    c->root = spari_solver_create(m, body, NULL);
+    return c->root ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* (R^T M R)^-1 X for six right-hand sides in rows, X [6][n], by elimination; motions without mass give nothing. */
+static void solve_whole(double A[6][6], int n, double *X) {
+    for (int p = 0; p < 6; p++) {
+        double size = 0;
+        for (int j = 0; j < 6; j++) {
+            size = fmax(size, fabs(A[j][j]));
+        }
+        int none = !(A[p][p] > 1e-12 * size);
+        double by_pivot = none ? 0 : 1 / A[p][p];
+        for (int i = 0; i < 6; i++) {
+            double by = A[i][p] * by_pivot;
+            for (int j = 0; j < 6 && i != p; j++) {
+                A[i][j] -= by * A[p][j];
+            }
+            cblas_daxpy(i != p ? n : 0, -by, X + (int64_t)n * p, 1, X + (int64_t)n * i, 1);
+        }
+        cblas_dscal(n, by_pivot, X + (int64_t)n * p, 1);
+        for (int j = 0; j < 6; j++) {
+            A[p][j] *= by_pivot;
+        }
+    }
+}
+
+/* c->mean, when the unknowns are known. R_k^T M R_j from the nodes. */
+static int find_mean(spari_frame *f, const spar_member *m) {
+    spari_carriage *c = f->carriage;
+    double A[6][6] = {{0}}, *X = spari_zalloc(6 * (int64_t)f->n, sizeof *X);
+    c->mean = spari_zalloc(3 * (int64_t)f->n, sizeof *c->mean);
+    if (!X || !c->mean) {
+        free(X);
+        return SPAR_ERR_MEMORY;
+    }
+    for (int j = 0; j < 6; j++) {
+        for (int i = 0; i < f->nodes; i++) {
+            const double *push = c->push[j] + 6 * i;
+            double arm[3], turn[3];
+            spari_member_arm(m, i, arm);
+            spari_cross(arm, push, turn);
+            for (int k = 0; k < 3; k++) {
+                A[k][j] += push[k];
+                A[3 + k][j] += push[3 + k] + turn[k];
+            }
+        }
+        memcpy(X + (int64_t)f->n * j, f->rigid[j], (size_t)f->n * sizeof *X);
+    }
+    solve_whole(A, f->n, X);
+    memcpy(c->mean, X + 3 * (int64_t)f->n, (size_t)(3 * f->n) * sizeof *X);
+    free(X);
+    return SPAR_OK;
+}
+
+static double *copy_nodal(const spari_frame *f, const double *x) {
+    double *to = spari_zalloc(6 * (int64_t)f->nodes, sizeof *to);
+    if (to) {
+        memcpy(to, x, (size_t)(6 * f->nodes) * sizeof *to);
+    }
+    return to;
+}
+
+int spari_carriage_keep_pushes(spari_frame *f) {
+    spari_carriage *c = f->carriage;
+    int ok = 1;
+    for (int k = 0; k < 6; k++) {
+        ok = ok && (!f->rigid[k] || (c->push[k] = copy_nodal(f, f->rigid[k])));
+        ok = ok && (!f->S[k] || (c->spin[k] = copy_nodal(f, f->f[k])));
+    }
+    return ok ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+int spari_carriage_at(const spari_frame *f, int e) {
+    return e == 0 ? 0 : f->basis ? 6 * e : 6 * f->carriage->node[e - 1];
+}
+
+int spari_carriage_finish(spari_frame *f, const spar_member *m) {
+    spari_carriage *c = f->carriage;
+    int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends;
+    double **rooms[] = {&c->loads, &c->x,   &c->heavy,  &c->kept, &c->elastic,
+                        &c->parts, &c->out, &c->border, &c->room, &c->stiff};
+    const int64_t size = f->S[0] ? f->size : 0;
+    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends, size};
+    int ok = 1, *at = spari_zalloc(ends, sizeof *at);
+    for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
+        ok = ok && (*rooms[k] = spari_zalloc(sizes[k], sizeof(double)));
+    }
+    ok = ok && (c->block = spari_zalloc(31 * ends, sizeof *c->block));
+    c->order = spari_zalloc(ends, sizeof *c->order);
+    for (int e = 0; e < ends && at && c->order; e++) {
+        c->order[e] = e;
+        at[e] = spari_carriage_at(f, e) / 6;
+    }
+    c->condensed = at ? spari_condensed_create((int)ends, at, f->n) : NULL;
+    free(at);
+    if (!ok || !c->order || !c->condensed) {
+        return SPAR_ERR_MEMORY;
+    }
+    c->seen = (spari_state){c->block, c->block + 7 * ends, c->block + 13 * ends, c->block + 19 * ends};
+    c->force = c->block + 25 * ends;
+    if (size > 0) {
+        memcpy(c->stiff, f->K, (size_t)size * sizeof *c->stiff); /* it stands */
+    }
+    return f->S[0] ? find_mean(f, m) : SPAR_OK;
+}
+
+void spari_carriage_free(spari_carriage *c) {
+    if (!c) {
+        return;
+    }
+    for (int k = 0; k < 6; k++) {
+        free(c->push[k]);
+        free(c->spin[k]);
+    }
+    double *all[] = {c->block, c->kept, c->loads,  c->elastic, c->parts, c->x,
+                     c->heavy, c->out,  c->border, c->room,    c->stiff};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        free(all[k]);
+    }
+    free(c->mean);
+    spari_solver_free(c->root);
+    spari_body_free(c->body);
+    spari_condensed_free(c->condensed);
+    free(c->order);
+    free(c->node);
+    free(c);
+}
+
+int spari_carriage_end_of(const spari_frame *f, int node) {
+    int e = 0;
+    while (node > 0 && e < f->carriage->ends && f->carriage->node[e] != node) {
+        e++;
+    }
+    return node > 0 ? 1 + e : 0;
+}
+
+/* ---- modal: amplitudes of tied nodes ---- */
+
+int spari_carriage_split(const spari_frame *f, double *x, double *y) {
+    const spari_carriage *c = f->carriage;
+    int n6 = 6 * f->nodes;
+    for (int k = 0; k < 6 * c->ends; k++) {
+        y[6 + k] = x[6 * c->node[k / 6] + k % 6];
+    }
+    for (int k = 0; k < 6 * c->ends; k++) {
+        cblas_daxpy(n6, -y[6 + k], f->basis + 6 + k, f->n, x, 1);
+    }
+    return 6 + 6 * c->ends;
+}
+
+void spari_carriage_take(const spari_frame *f, const spar_member *m, const double J[6], double *y) {
+    const spari_carriage *c = f->carriage;
+    int first = 6 + 6 * c->ends;
+    for (int k = first; k < f->n; k++) { /* of the rigid motion what is left beside the tied nodes' shapes */
+        const double *row = f->M + (int64_t)f->n * k;
+        y[k] -= cblas_ddot(6, row, 1, J, 1);
+        for (int e = 0; e < c->ends; e++) {
+            double arm[3], turn[3];
+            spari_member_arm(m, c->node[e], arm);
+            spari_cross(J + 3, arm, turn);
+            for (int i = 0; i < 3; i++) {
+                y[k] += row[6 + 6 * e + i] * (J[i] + turn[i]) + row[9 + 6 * e + i] * J[3 + i];
+            }
+        }
+    }
+    for (int e = 0; e < c->ends; e++) {
+        double arm[3], turn[3];
+        spari_member_arm(m, c->node[e], arm);
+        spari_cross(J + 3, arm, turn);
+        for (int i = 0; i < 3; i++) {
+            y[6 + 6 * e + i] -= J[i] + turn[i];
+            y[9 + 6 * e + i] -= J[3 + i];
+        }
+    }
+}
+
+/* ---- life ---- */
+
+void spari_carriage_restart(spari_frame *f, const spar_member *m) {
+    spari_solver *s = f->carriage->root;
+    memcpy(s->begin.q, m->now.q, 7 * sizeof(double));
+    memcpy(s->begin.v, m->now.v, 6 * sizeof(double));
+    memcpy(s->begin.a, m->now.a, 6 * sizeof(double));
+    spari_solver_restart(s);
+}
+
+int64_t spari_carriage_state_size(const spari_frame *f, int factored) {
+    return spari_solver_state_size(f->carriage->root) + (factored ? spari_linear_state_size(f->linear) : 0);
+}
+
+void spari_carriage_save(const spari_frame *f, double *state) {
+    const spari_solver *s = f->carriage->root;
+    spari_solver_save(s, state);
+    if (f->factored) {
+        spari_linear_save(f->linear, state + spari_solver_state_size(s));
+    }
+}
+
+int spari_carriage_is_state(const spari_frame *f, const double *state, int64_t count, int factored) {
+    int64_t own = spari_solver_state_size(f->carriage->root);
+    return count == spari_carriage_state_size(f, factored) && spari_solver_is_state(f->carriage->root, state, own) &&
+           (!factored || spari_linear_is_state(f->linear, state + own));
+}
+
+void spari_carriage_load(spari_frame *f, const double *state) {
+    spari_solver *s = f->carriage->root;
+    spari_solver_load(s, state);
+    if (f->factored) {
+        spari_linear_load(f->linear, state + spari_solver_state_size(s));
+    }
+}

@@ -1,0 +1,324 @@
+/* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
+#include "floating_root.h"
+
+#include "../base/session.h"
+#include "../math/basis.h"
+#include "../math/rotation.h"
+#include "../member/body.h"
+
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const int spari_frame_pair[SPARI_TURNS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
+    int m = f->block, step = f->block - f->overlap;
+    for (int e = 0; e < f->elements; e++) {
+        spari_linear_add_rows(m, m, X + (int64_t)m * m * e, factor, x + (int64_t)e * step, y + (int64_t)e * step);
+    }
+}
+
+void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
+                        double cm, double *S, int *singular) {
+    int64_t mm = (int64_t)f->block * f->block;
+    spari_linear_zero(f->linear);
+    for (int e = 0; e < f->elements; e++) {
+        for (int64_t i = 0; i < mm; i++) {
+            int64_t at = mm * e + i;
+            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0) + (A ? cm * A[at] : 0);
+        }
+        spari_linear_add(f->linear, e, S);
+    }
+    for (int i = 0; i < f->held; i++) {
+        spari_linear_fix(f->linear, i);
+    }
+    f->factors++;
+    *singular = spari_linear_factor(f->linear);
+}
+
+/* ---- matrices from the exact member's tangents at the reference ---- */
+
+static void product3(const double a[9], const double b[9], double c[9]) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+        }
+    }
+}
+
+/* out += B diag(U, T, U, T, ...) for an element matrix B [m][m]; T NULL: 0 */
+static void times_nodes(int m, const double *B, const double U[9], const double *T, double *out) {
+    for (int i = 0; i < m; i++) {
+        for (int at = 0; at < m; at += 3) {
+            const double *S = at % 6 == 0 ? U : T;
+            const double *b = B + (int64_t)m * i + at;
+            for (int j = 0; j < 3 && S; j++) {
+                out[(int64_t)m * i + at + j] += b[0] * S[j] + b[1] * S[3 + j] + b[2] * S[6 + j];
+            }
+        }
+    }
+}
+
+/* The rigid motion omega of the reference about the root: velocities and centripetal accelerations. */
+static void rigid_motion(const spari_frame *f, const double *arm, const double omega[3], double *v, double *a) {
+    for (int i = 0; i < f->nodes; i++) {
+        spari_cross(omega, arm + 3 * i, v + 6 * i);
+        spari_cross(omega, v + 6 * i, a + 6 * i);
+        memcpy(v + 6 * i + 3, omega, 3 * sizeof *v);
+        memset(a + 6 * i + 3, 0, 3 * sizeof *a);
+    }
+}
+
+/* Work of the set-up: the reference as a state, its arms from the root, velocities and accelerations of a rigid turn,
+ * four element matrices, a field of the nodes. */
+typedef struct setup {
+    const spari_body *body;
+    int m; /* 6 P */
+    const double *arm;
+    double *q, *v, *a, *S[4], *field;
+} setup;
+
+/* What a turn with omega adds: matrices of the place (into N, element after element) and of the rate (into G). A frame
+   that turns gives du-dot = omega x u, d(u-ddot) = 2 omega x u-dot + omega x (omega x u), d(alpha) = omega x theta-dot.
+ */
+static void turn_matrices(const spari_frame *f, const setup *w, const double omega[3], double *N, double *G) {
+    int m = w->m;
+    int64_t mm = (int64_t)m * m;
+    double W[9], WW[9], W2[9];
+    spari_skew(omega, W);
+    product3(W, W, WW);
+    for (int i = 0; i < 9; i++) {
+        W2[i] = 2 * W[i];
+    }
+    rigid_motion(f, w->arm, omega, w->v, w->a);
+    for (int e = 0; e < w->body->elements; e++) {
+        const double *K = f->K + mm * e, *M = f->M + mm * e;
+        double *S = w->S[0], *B = w->S[1];
+        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
+        spari_body_rates(w->body, e, w->q, w->v, w->a, 0, S, B, NULL);
+        for (int64_t i = 0; i < mm; i++) {
+            N[mm * e + i] = S[i] - K[i];
+        }
+        times_nodes(m, B, W, NULL, N + mm * e);
+        times_nodes(m, M, WW, NULL, N + mm * e);
+        if (G) {
+            for (int64_t i = 0; i < mm; i++) {
+                G[mm * e + i] = B[i] - (f->D ? f->D[mm * e + i] : 0);
+            }
+            times_nodes(m, M, W2, W, G + mm * e);
+        }
+    }
+}
+
+/* What an angular acceleration adds: d(u-ddot) = alpha x u, and the sections' inertia, turned. */
+static void euler_matrices(const spari_frame *f, const setup *w, const double alpha[3], double *E) {
+    int m = w->m;
+    int64_t mm = (int64_t)m * m;
+    double A[9];
+    spari_skew(alpha, A);
+    memset(w->v, 0, (size_t)(6 * f->nodes) * sizeof *w->v);
+    for (int i = 0; i < f->nodes; i++) {
+        spari_cross(alpha, w->arm + 3 * i, w->a + 6 * i);
+        memcpy(w->a + 6 * i + 3, alpha, 3 * sizeof *alpha);
+    }
+    for (int e = 0; e < w->body->elements; e++) {
+        double *S = w->S[0];
+        spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
+        for (int64_t i = 0; i < mm; i++) {
+            E[mm * e + i] = S[i] - f->K[mm * e + i];
+        }
+        times_nodes(m, f->M + mm * e, A, NULL, E + mm * e);
+    }
+}
+
+/* K, D, M: at rest and unloaded the tangent is K + cv D + cm M. */
+static void rest_matrices(const spari_frame *f, const setup *w) {
+    int64_t mm = (int64_t)w->m * w->m;
+    for (int e = 0; e < w->body->elements; e++) {
+        double *K = f->K + mm * e;
+        spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, 0, 0, NULL, K);
+        spari_body_rates(w->body, e, w->q, NULL, NULL, 0, K, f->D ? f->D + mm * e : NULL, f->M ? f->M + mm * e : NULL);
+    }
+}
+
+/* What of N and f belongs to omega_i omega_j alone. */
+static void polarise(spari_frame *f) {
+    for (int k = 3; k < SPARI_TURNS; k++) {
+        for (int side = 0; side < 2; side++) {
+            int d = spari_frame_pair[k][side];
+            cblas_daxpy((int)f->size, -1, f->N[d], 1, f->N[k], 1);
+            cblas_daxpy(6 * f->nodes, -1, f->f[d], 1, f->f[k], 1);
+        }
+    }
+}
+
+/* Acceleration of an arm d in the product k of turns: omega_i omega_j = 1. */
+static void centripetal(int k, const double d[3], double a[3]) {
+    const int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
+    memset(a, 0, 3 * sizeof *a);
+    if (i == j) {
+        memcpy(a, d, 3 * sizeof *a);
+        a[i] = 0;
+        a[(i + 1) % 3] *= -1;
+        a[(i + 2) % 3] *= -1;
+    } else { /* e_i x (e_j x d) + e_j x (e_i x d) */
+        a[i] = d[j];
+        a[j] = d[i];
+    }
+}
+
+/* What turning pulls at a point of element e, and where the point is on the element. */
+static double point_pull(const setup *w, int k, int e, int point, double force[3]) {
+    const spari_body *b = w->body;
+    const int P = b->per_element;
+    const int64_t slot = b->slot[e] + point;
+    const double *phi = b->phi + (int64_t)(b->first[e] + point) * P, *arm = w->arm + 3 * (int64_t)e * (P - 1);
+    double x[SPARI_MAX_NODES], mass[10], d[3] = {0}, xi = 0;
+    spari_gll(P, x, NULL, NULL);
+    spari_slot_get(b->mass, 10, slot, mass);
+    for (int l = 0; l < P; l++) {
+        xi += phi[l] * x[l];
+        for (int c = 0; c < 3; c++) {
+            d[c] += phi[l] * arm[3 * l + c];
+        }
+    }
+    for (int c = 0; c < 3; c++) { /* of the mass and of its first moment */
+        d[c] = mass[0] * d[c] + mass[1 + c];
+    }
+    centripetal(k, d, force);
+    for (int c = 0; c < 3; c++) {
+        force[c] *= -b->weight[slot];
+    }
+    return xi;
+}
+
+/* Point masses are points without stiffness. */
+static int is_point_mass(const spari_body *b, int64_t slot) {
+    return *SPARI_BLOCK(b->C, 36, slot) == 0;
+}
+
+/* The axial force that product k of turns puts into element e, into b->pre: of all that is beyond each point. beyond:
+   the force beyond the element, then beyond its beginning. */
+static void element_tension(const setup *w, const spari_body *b, int k, int e, double beyond[3]) {
+    const int P = b->per_element, points = b->first[e + 1] - b->first[e];
+    double x[SPARI_MAX_NODES], share[SPARI_MAX_NODES], load[3 * SPARI_MAX_NODES] = {0}, force[3];
+    spari_gll(P, x, NULL, NULL);
+    for (int i = 0; i < points; i++) {
+        const double *phi = b->phi + (int64_t)(b->first[e] + i) * P;
+        (void)point_pull(w, k, e, i, force);
+        for (int l = 0; l < P && !is_point_mass(b, b->slot[e] + i); l++) {
+            cblas_daxpy(3, phi[l], force, 1, load + 3 * l, 1);
+        }
+    }
+    for (int i = 0; i < points && !is_point_mass(b, b->slot[e] + i); i++) { /* point masses are the last */
+        double sum[3] = {beyond[0], beyond[1], beyond[2]}, pre[6] = {0}, t[3];
+        const double xi = point_pull(w, k, e, i, force);
+        spari_share_beyond(P, x, xi, share);
+        for (int l = 0; l < P; l++) {
+            cblas_daxpy(3, share[l], load + 3 * l, 1, sum, 1);
+        }
+        for (int j = 0; j < points; j++) {
+            if (is_point_mass(b, b->slot[e] + j) && point_pull(w, k, e, j, force) > xi) {
+                cblas_daxpy(3, 1, force, 1, sum, 1);
+            }
+        }
+        spari_slot_get(b->tangent, 3, b->slot[e] + i, t);
+        cblas_daxpy(3, spari_dot(t, sum), t, 1, pre, 1);
+        spari_slot_put(b->pre, 6, b->slot[e] + i, pre);
+    }
+    for (int i = 0; i < points; i++) {
+        (void)point_pull(w, k, e, i, force);
+        cblas_daxpy(3, 1, force, 1, beyond, 1);
+    }
+}
+
+/* Geometric stiffness of the axial forces that each product of turns puts into the member. The deformation under these
+   forces has no part in it: it bends, and bending without its shortening, which is of second order, stretches. */
+static int stretch_terms(spari_frame *f, const setup *w) {
+    const double large = 0x1p60; /* as in spari_body_rates: what is subtracted takes no digits */
+    const int64_t mm = (int64_t)w->m * w->m;
+    spari_body tense = *w->body;
+    if (spari_body_set_pre(&tense)) {
+        return SPAR_ERR_MEMORY;
+    }
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        double beyond[3] = {0}, *to = f->S[k] ? f->S[k] : f->N[k], *S = w->S[0];
+        tense.pre_part = large;
+        for (int e = tense.elements - 1; e >= 0; e--) {
+            element_tension(w, &tense, k, e, beyond);
+            spari_body_tangent(&tense, e, w->q, NULL, NULL, 0, 0, 0, NULL, S);
+            for (int64_t i = 0; i < mm; i++) {
+                to[mm * e + i] += (S[i] - f->K[mm * e + i]) / large;
+            }
+        }
+    }
+    free(tense.pre);
+    return SPAR_OK;
+}
+
+static int turn_terms(spari_frame *f, const setup *w) {
+    double *none = NULL;
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
+        double omega[3] = {0};
+        omega[i] = omega[j] = 1;
+        turn_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
+        rigid_motion(f, w->arm, omega, w->v, w->a);
+        spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
+        cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
+        if (k < 3 && f->E[k]) {
+            euler_matrices(f, w, omega, f->E[k]);
+        }
+    }
+    polarise(f);
+    return stretch_terms(f, w);
+}
+
+/* M times the rigid accelerations of the frame. */
+static void rigid_forces(spari_frame *f, const setup *w) {
+    for (int k = 0; k < 6 && f->M; k++) {
+        double unit[3] = {0};
+        unit[k % 3] = 1;
+        for (int64_t i = 0; i < f->nodes; i++) {
+            memset(w->field + 6 * i, 0, 6 * sizeof *w->field);
+            if (k < 3) {
+                memcpy(w->field + 6 * i, unit, sizeof unit);
+            } else {
+                spari_cross(unit, w->arm + 3 * i, w->field + 6 * i);
+                memcpy(w->field + 6 * i + 3, unit, sizeof unit);
+            }
+        }
+        spari_frame_add_times(f, f->M, w->field, 1, f->rigid[k]);
+    }
+}
+
+int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm) {
+    spari_body undragged = *damped, *body = &undragged;
+    body->drag = 0; /* of the deformation alone, in the end */
+    setup w = {.body = body, .m = 6 * body->per_element, .arm = arm};
+    int64_t mm = (int64_t)w.m * w.m, n = f->nodes;
+    w.q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w.q);
+    if (!w.q) {
+        return SPAR_ERR_MEMORY;
+    }
+    w.v = w.q + 7 * n, w.a = w.v + 6 * n, w.field = w.a + 7 * n;
+    for (int k = 0; k < 4; k++) {
+        w.S[k] = w.field + 6 * n + mm * k;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        w.q[7 * i + 3] = 1;
+    }
+    rest_matrices(f, &w);
+    if (f->pull) {
+        spari_body_residual(body, w.q, NULL, NULL, 0, f->pull, NULL);
+    }
+    rigid_forces(f, &w);
+    int status = f->N[0] ? turn_terms(f, &w) : SPAR_OK;
+    if (damped->drag > 0 && f->M) {
+        cblas_daxpy((int)f->size, damped->drag, f->M, 1, f->D, 1);
+    }
+    free(w.q);
+    return status;
+}

@@ -1,0 +1,339 @@
+/* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
+#include "frame.h"
+
+#include "../base/blas.h"
+#include "../base/status.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/pose.h"
+#include "floating_root.h"
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
+
+#include <float.h>
+#include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
+static void assemble_dense(const spari_frame *f, const double *X, double scale, int from, double *A) {
+    int m = f->block, step = f->block - f->overlap;
+    for (int e = 0; e < f->elements; e++) {
+        spari_eigen_add(e * step - from, m, X + (int64_t)m * m * e, scale, f->n - from, A);
+    }
+}
+
+/* The six rigid motions about the root, as columns of the basis. */
+static void rigid_columns(spari_frame *f, const double *arm, int cols) {
+    for (int i = 0; i < f->nodes; i++) {
+        double W[9], *at = f->basis + (int64_t)6 * i * cols;
+        spari_skew(arm + 3 * i, W);
+        for (int r = 0; r < 3; r++) {
+            at[r * cols + r] = at[(3 + r) * cols + 3 + r] = 1;
+            for (int c = 0; c < 3; c++) {
+                at[r * cols + 3 + c] = -W[3 * r + c];
+            }
+        }
+    }
+}
+
+/* image := M times column k of the basis, which goes into x */
+static void image_of(const spari_frame *f, int cols, int k, double *x, double *image) {
+    cblas_dcopy(6 * f->nodes, f->basis + k, cols, x, 1);
+    memset(image, 0, (size_t)(6 * f->nodes) * sizeof *image);
+    spari_frame_add_times(f, f->M, x, 1, image);
+}
+
+/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `first` on before them;
+   a second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
+static int orthonormalise(spari_frame *f, int cols, int first, int from, int end, double *work) {
+    int n = 6 * f->nodes;
+    double *x = work, *image = work + n;
+    for (int k = from; k < end; k++) {
+        for (int pass = 0; pass < 2; pass++) {
+            image_of(f, cols, k, x, image);
+            for (int j = first; j < k; j++) {
+                cblas_daxpy(n, -cblas_ddot(n, f->basis + j, cols, image, 1), f->basis + j, cols, f->basis + k, cols);
+            }
+        }
+        image_of(f, cols, k, x, image);
+        double square = cblas_ddot(n, x, 1, image, 1);
+        if (!(square > 0)) {
+            return 1;
+        }
+        cblas_dscal(n, 1 / sqrt(square), f->basis + k, cols);
+    }
+    return 0;
+}
+
+static int is_tied(const spari_frame *f, int node) {
+    int found = 0;
+    for (int e = 0; f->carriage && e < f->carriage->ends; e++) {
+        found = found || f->carriage->node[e] == node;
+    }
+    return found;
+}
+
+/* Takes rows and columns of tied nodes out of K and M over the nodes beside the root; how many are left. NULL: no
+   memory. */
+static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **M) {
+    gsl_matrix **both[2] = {K, M};
+    size_t all = (size_t)(6 * f->nodes - 6), n = all - (f->carriage ? (size_t)(6 * f->carriage->ends) : 0);
+    for (int side = 0; side < 2 && n < all; side++) {
+        gsl_matrix *from = *both[side], *to = n > 0 ? gsl_matrix_alloc(n, n) : NULL;
+        size_t r = 0;
+        for (int i = 6; i < 6 * f->nodes && to; i++) {
+            size_t c = 0;
+            for (int j = 6; j < 6 * f->nodes && !is_tied(f, i / 6); j++) {
+                if (!is_tied(f, j / 6)) {
+                    gsl_matrix_set(to, r, c++, gsl_matrix_get(from, (size_t)(i - 6), (size_t)(j - 6)));
+                }
+            }
+            r += !is_tied(f, i / 6);
+        }
+        gsl_matrix_free(from);
+        *both[side] = to;
+    }
+    return n;
+}
+
+/* The lowest modes seen from the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes beside
+   it, where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
+   deformation. Nodes that joints tie are held too. Beams that nothing holds have a singular K, but not here: rigid
+   motions are columns of their own. Solved for 1 / lambda, in which the low modes keep their digits. */
+static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
+    size_t n = (size_t)(6 * f->nodes - 6);
+    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = NULL;
+    gsl_vector *mu = NULL;
+    int status = K && M ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        double *x = work, *image = work + 6 * f->nodes;
+        assemble_dense(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
+        assemble_dense(f, f->M, 1, 6, M->data);
+        for (int k = f->held; k < 6; k++) {
+            image_of(f, cols, k, x, image);
+            gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
+            gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
+        }
+        n = leave_out_tied(f, &K, &M);
+        z = gsl_matrix_alloc(n, n);
+        mu = gsl_vector_alloc(n);
+        status = K && M && z && mu ? spari_eigen(M, K, mu, z) : SPAR_ERR_MEMORY;
+    }
+    for (int k = first; k < cols && status == SPAR_OK; k++) {
+        size_t mode = (size_t)(k - first), at = 0;
+        int massive = gsl_vector_get(mu, mode) > DBL_EPSILON * gsl_vector_get(mu, 0);
+        status = massive ? status : SPAR_ERR_NUMERIC;
+        for (int i = 6; i < 6 * f->nodes; i++) {
+            f->basis[(size_t)i * (size_t)cols + (size_t)k] = is_tied(f, i / 6) ? 0 : gsl_matrix_get(z, at++, mode);
+        }
+    }
+    gsl_matrix_free(K);
+    gsl_matrix_free(M);
+    gsl_matrix_free(z);
+    gsl_vector_free(mu);
+    return status;
+}
+
+/* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
+static int tied_columns(spari_frame *f, int cols, double *work) {
+    int ends = f->carriage ? f->carriage->ends : 0, n = 6 * f->nodes;
+    double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
+    if (!column) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_linear_zero(f->linear);
+    for (int e = 0; e < f->elements && ends > 0; e++) {
+        spari_linear_add(f->linear, e, f->K + (int64_t)f->block * f->block * e);
+    }
+    for (int k = 0; k < 6 * ends; k++) {
+        spari_linear_read(f->linear, 6 * f->carriage->node[k / 6] + k % 6, work, column + (int64_t)n * k);
+    }
+    for (int i = 0; i < n && ends > 0; i++) {
+        if (i < 6 || is_tied(f, i / 6)) {
+            spari_linear_fix(f->linear, i);
+        }
+    }
+    int singular = ends > 0 && spari_linear_factor(f->linear);
+    for (int k = 0; k < 6 * ends && !singular; k++) {
+        double *x = column + (int64_t)n * k;
+        for (int i = 0; i < n; i++) {
+            x[i] = i < 6 || is_tied(f, i / 6) ? 0 : -x[i];
+        }
+        singular = spari_linear_solve(f->linear, x);
+        x[6 * f->carriage->node[k / 6] + k % 6] = 1;
+        cblas_dcopy(n, x, 1, f->basis + 6 + k, cols);
+    }
+    free(column);
+    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+
+int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
+    double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
+    int first = f->carriage ? 6 + 6 * f->carriage->ends : 6, alone = f->carriage ? first : f->held;
+    f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
+    int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        rigid_columns(f, arm, cols);
+        status = orthonormalise(f, cols, f->held, f->held, 6, work) ? SPAR_ERR_NUMERIC : tied_columns(f, cols, work);
+    }
+    if (status == SPAR_OK && cols > first) {
+        status = elastic_columns(f, cols, first, work);
+    }
+    if (status == SPAR_OK && orthonormalise(f, cols, alone, first, cols, work)) {
+        status = SPAR_ERR_NUMERIC;
+    }
+    free(work);
+    return status;
+}
+
+/* *X := basis^T X basis */
+static int project_matrix(const spari_frame *f, int cols, double **X) {
+    int m = f->block, step = f->block - f->overlap;
+    double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
+    if (!to || !half) {
+        free(to);
+        free(half);
+        return 1;
+    }
+    for (int e = 0; e < f->elements; e++) {
+        const double *b = f->basis + (int64_t)e * step * cols;
+        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b,
+                               cols, 0, half, cols));
+        SPARI_BLAS(
+            cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols));
+    }
+    free(half);
+    free(*X);
+    *X = to;
+    return 0;
+}
+
+/* Rigid motions strain nothing: not by rounding either. */
+static void no_strain(const spari_frame *f, double *X) {
+    for (int i = 0; i < f->n && X; i++) {
+        for (int j = 0; j < f->n; j++) {
+            X[(int64_t)f->n * i + j] = i < 6 || j < 6 ? 0 : X[(int64_t)f->n * i + j];
+        }
+    }
+}
+
+int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
+    int bad = 0;
+    double **all[4 + 2 * SPARI_TURNS + 6] = {&f->K, &f->M, &f->D, &f->A};
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        all[4 + k] = &f->N[k];
+        all[10 + SPARI_TURNS + k] = &f->S[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        all[4 + SPARI_TURNS + k] = &f->G[k];
+        all[7 + SPARI_TURNS + k] = &f->E[k];
+    }
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
+    }
+    double *part = spari_zalloc(cols, sizeof *part);
+    double *const *const vectors[] = {f->f, f->rigid, &f->pull};
+    const int counts[] = {SPARI_TURNS, 6, 1};
+    for (int v = 0; v < 3 && part; v++) {
+        for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
+            double *x = vectors[v][k];
+            SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, cols, 1, f->basis, cols, x, 1, 0, part, 1));
+            memcpy(x, part, (size_t)cols * sizeof *part);
+        }
+    }
+    bad = bad || !part;
+    free(part);
+    f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
+    f->size = (int64_t)cols * cols;
+    no_strain(f, m->foundation || f->pull ? NULL : f->K); /* or what holds them is strained already */
+    no_strain(f, f->D);
+    for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* but damping by mass brakes them */
+        for (int j = 0; j < cols; j++) {
+            f->D[(int64_t)cols * i + j] += i < 6 || j < 6 ? m->body->drag * f->M[(int64_t)cols * i + j] : 0;
+        }
+    }
+    spari_linear_free(f->linear);
+    f->linear = spari_linear_create(1, cols, 6);
+    return bad || !f->linear;
+}
+
+void spari_frame_remass(spari_frame *f, const spar_member *m) {
+    int block = 6 * m->per_element, cols = f->n;
+    double *X = f->room_A, *half = X + (int64_t)block * block;
+    memset(f->A, 0, (size_t)f->size * sizeof *f->A);
+    for (int e = 0; e < m->elements; e++) {
+        const double *b = f->basis ? f->basis + (int64_t)e * (block - 6) * cols : NULL;
+        double *to = b ? X : f->A + (int64_t)block * block * e;
+        memset(to, 0, (size_t)(block * block) * sizeof *to);
+        spari_added_tangent(m, e, 1, NULL, to);
+        if (b) {
+            SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, block, cols, block, 1, X, block, b, cols,
+                                   0, half, cols));
+            SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, block, 1, b, cols, half, cols,
+                                   1, f->A, cols));
+        }
+    }
+    f->factored = 0;
+}
+
+/* ---- about a state ---- */
+
+void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    double omega[3];
+    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
+    int held = spari_member_held(m);
+    assemble_dense(f, f->K, 1, held, K);
+    assemble_dense(f, f->M, 1, held, M);
+    for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
+        double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+        assemble_dense(f, f->N[k], c, held, K);
+        if (f->S[k]) {
+            assemble_dense(f, f->S[k], c, held, K);
+        }
+    }
+}
+
+void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pencil *to) {
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    int held = spari_member_held(m), step = f->block - f->overlap;
+    int64_t mm = (int64_t)f->block * f->block;
+    double omega[3];
+    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
+    for (int e = 0; e < f->elements; e++) {
+        int64_t at = mm * e;
+        spari_pencil_add(to, e * step - held, f->block, f->block, f->K + at, f->D ? f->D + at : NULL,
+                         f->M ? f->M + at : NULL);
+        for (int i = 0; i < f->block * f->block && f->N[0]; i++) {
+            int row = e * step - held + i / f->block, column = e * step - held + i % f->block;
+            spari_pencil_entry x = {to->base + row, to->base + column, 0, 0, 0};
+            for (int k = 0; k < SPARI_TURNS; k++) {
+                double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+                x.k += c * (f->N[k][at + i] + (f->S[k] ? f->S[k][at + i] : 0));
+            }
+            for (int k = 0; k < 3; k++) {
+                x.c += omega[k] * f->G[k][at + i];
+            }
+            if (row >= 0 && column >= 0) {
+                spari_pencil_put(to, x);
+            }
+        }
+    }
+}
+
+void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    int held = spari_member_held(m);
+    memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
+    if (f->basis) {
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - held, 1, f->basis + held, f->n, x, 1,
+                               0, nodes, 1));
+    } else {
+        memcpy(nodes + held, x, (size_t)(f->n - held) * sizeof *nodes);
+    }
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate(pose.q + 3, nodes + i, nodes + i);
+    }
+}

@@ -1,0 +1,20 @@
+/* Points and external members: the host gives their motion, or drives a point as it would a root. */
+#include "../time/fidelity.h"
+
+#include <string.h>
+
+static int given_advance(spar_member *m, double dt) {
+    const spari_pose *to = &m->drive[1];
+    (void)dt; /* where it goes is given */
+    if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
+        memcpy(m->after.q, to->q, sizeof to->q);
+        memcpy(m->after.v, to->v, sizeof to->v);
+        memcpy(m->after.a, to->a, sizeof to->a);
+    }
+    return SPAR_OK;
+}
+
+const spari_fidelity spari_fidelity_given = {
+    .seen = SPARI_SEEN_FIXED,
+    .advance = given_advance,
+};

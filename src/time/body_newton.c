@@ -1,0 +1,606 @@
+/* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
+   composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
+#include "body_newton.h"
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/applied.h"
+#include "node_kinematics.h"
+#include "newton_stop.h"
+#include "newton.h"
+#include "root.h"
+#include "body_solver.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- one substep ---- */
+
+/* What is done node by node, in spans of them. */
+typedef struct alpha_nodes {
+    const spari_solver *s;
+    spari_node_work work;
+    spari_guess stays;
+    int shifted;
+} alpha_nodes;
+
+static spari_node_work alpha_work(const spari_solver *s) {
+    return (spari_node_work){.lanes = s->body->lanes, .dx = s->dx, .kept = s->kept_q, .cut = 1};
+}
+
+/* The same of a substep's increments. */
+static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double *x) {
+    spari_node_work work = alpha_work(s);
+    work.c = c, work.from = &e->from, work.to = &e->to, work.x = x, work.stage = s->stage_v;
+    return work;
+}
+
+static double size_of_span(const alpha_nodes *t, spari_node_size size) {
+    return fmax(sqrt(size.way) / t->s->body->length, sqrt(size.turn));
+}
+
+/* What a span says of its largest. */
+static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
+    t->s->most[from / SPARI_SPAN] = size_of_span(t, size);
+}
+
+/* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
+   jumps, the nodes that keep their places are left behind (root.c). `to` is not in use there. */
+static void keep_shape(const spari_solver *s, const spar_member *member, spari_ends *e, double *dx) {
+    const spari_pose before = spari_pose_of(s->from.q, s->from.v, s->from.a);
+    const spari_state *from = &e->from, *shape = &e->to;
+    spari_root_look_from(s, member, &before, &s->from, &e->to);
+    for (int i = 0; i < s->n; i++) {
+        double turn[4];
+        spari_quat_between(from->q + 7 * i + 3, shape->q + 7 * i + 3, turn);
+        spari_quat_log(turn, dx + 6 * i + 3);
+        for (int k = 0; k < 3; k++) {
+            dx[6 * i + k] = from->q[7 * i + k] - shape->q[7 * i + k];
+            dx[6 * i + 3 + k] *= -1;
+        }
+    }
+}
+
+static void predict_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    const spari_node_work *w = &t->work;
+    spari_nodes_predict(w, t->stays, from, to);
+    if (t->shifted) {
+        spari_nodes_correct(w, from, to);
+    }
+    (void)spari_nodes_place(w, from, to);
+}
+
+/* Starting values of Newton. */
+int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
+                        spari_ends *e, double *x) {
+    int shape = stays == SPARI_KEEP_SHAPE;
+    if (shape && !(e->root && member->root == SPAR_ROOT_DRIVEN)) {
+        return 0;
+    }
+    if (shape) {
+        keep_shape(s, member, e, s->dx);
+    }
+    alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x), .shifted = shape};
+    t.stays = shape ? SPARI_KEEP_PLACE : stays;
+    spari_solver_spread(s, predict_span, &t);
+    spari_root_show(s, member, e);
+    return 1;
+}
+
+/* Starting values without inertia: the member goes along with its root as it stands. */
+void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
+                       const double turn[4], const spari_ends *e, double *x) {
+    const spari_state *from = &e->from;
+    const spari_node_work work = alpha_work_on(s, c, e, x);
+    int driven = member->root == SPAR_ROOT_DRIVEN;
+    double psi[3];
+    spari_quat_log(turn, psi);
+    for (int i = 0; i < s->n; i++) {
+        const double *place = spari_member_place(member, i);
+        double arm[3], turned[3];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = place[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
+        }
+        spari_rotate(turn, arm, turned);
+        for (int k = 0; k < 3; k++) {
+            x[6 * i + k] = driven ? root->q[k] - from->q[k] + turned[k] - arm[k] : 0;
+            x[6 * i + 3 + k] = driven ? psi[k] : 0;
+        }
+    }
+    (void)spari_nodes_place(&work, 0, s->n);
+}
+
+/* A driven root goes where it is told. */
+void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
+    const spari_state *from = &e->from, *to = &e->to;
+    int end = spari_member_held(member);
+    if (end == 0 || e->root) { /* seen from itself a root does not move */
+        return;
+    }
+    double p[4];
+    if (member->root == SPAR_ROOT_DRIVEN) {
+        memcpy(to->q, root->q, sizeof root->q);
+        memcpy(to->v, root->v, sizeof root->v);
+        memcpy(to->a, root->a, sizeof root->a);
+        memcpy(to->b, root->a, sizeof root->a);
+    } else { /* held where it is */
+        memcpy(to->q, from->q, (size_t)(end == 6 ? 7 : 3) * sizeof *to->q);
+        memset(to->v, 0, (size_t)end * sizeof *to->v);
+        memset(to->a, 0, (size_t)end * sizeof *to->a);
+        memset(to->b, 0, (size_t)end * sizeof *to->b);
+        memset(x, 0, (size_t)end * sizeof *x);
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        x[k] = to->q[k] - from->q[k];
+    }
+    spari_quat_between(from->q + 3, to->q + 3, p);
+    spari_quat_log(p, x + 3);
+}
+
+static void less_loads(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    const double *load = t->s->steps.load;
+    double *r = t->work.x;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        r[i] -= load[i];
+    }
+}
+
+/* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
+ * relative to. */
+double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
+                           double *r) {
+    const spari_body *body = s->body;
+    double scale =
+        spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
+    spari_solver_spread(s, less_loads, &(alpha_nodes){.s = s, .work = {.x = r}});
+    if (spari_solver_has_applied(s, member)) {
+        scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
+    }
+    if (s->arms) {
+        spari_arms_residual(s->arms, at->q + 3, r + 3);
+    }
+    if (member->added) {
+        scale = fmax(scale, spari_added_times(member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, r));
+    }
+    memset(r, 0, (size_t)spari_member_held(member) * sizeof *r);
+    return scale;
+}
+
+static void turn_span_back(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    t->s->most[from / SPARI_SPAN] = spari_nodes_turn_back(&t->work, from, to);
+}
+
+static void turn_span_forth(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    spari_nodes_turn_forth(&t->work, from, to);
+}
+
+/* The largest of forces; infinite where one is no number. */
+static void size_forces(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    double big = 0;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        double size = fabs(t->work.r[i]);
+        big = size <= big ? big : size < INFINITY ? size : INFINITY;
+    }
+    t->s->most[from / SPARI_SPAN] = big;
+}
+
+/* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
+   node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
+   of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
+   in fixed axes. */
+double spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
+    alpha_nodes t = {.s = s, .work = alpha_work(s)};
+    t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.turn = s->turn;
+    if (s->body->linear[0]) {
+        memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
+    }
+    spari_solver_spread(s, s->body->linear[0] ? size_forces : turn_span_back, &t);
+    return spari_solver_most(s);
+}
+
+void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
+    alpha_nodes t = {.s = s, .work = alpha_work(s)};
+    t.work.dx = dx, t.work.turn = s->turn;
+    if (!s->body->linear[0]) {
+        spari_solver_spread(s, turn_span_forth, &t);
+    }
+}
+
+static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
+    (void)spari_alpha_turn_back(s, q, r, dx);
+    int singular = spari_linear_solve(s->linear, dx);
+    spari_alpha_turn_forth(s, dx);
+    return singular;
+}
+
+/* T := R T R^T */
+static void turn_matrix(const double q[4], double T[9]) {
+    for (int side = 0; side < 2; side++) {
+        for (int j = 0; j < 3; j++) { /* rows: T R^T, then columns */
+            double x[3];
+            for (int k = 0; k < 3; k++) {
+                x[k] = side ? T[3 * k + j] : T[3 * j + k];
+            }
+            spari_rotate(q, x, x);
+            for (int k = 0; k < 3; k++) {
+                T[side ? 3 * k + j : 3 * j + k] = x[k];
+            }
+        }
+    }
+}
+
+/* The rotation vector of node i from its increment, and k = span^2 cv / 12 of what it changes by with the rates. */
+static double rotation_of(const spari_scheme *c, const spari_ends *e, const double *x, int i, double psi[3]) {
+    double turn[3];
+    spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+    for (int j = 0; j < 3; j++) {
+        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->span * c->span / 12 * turn[j]);
+    }
+    return c->still ? 0 : c->span * c->span * c->cv / 12;
+}
+
+/* y = (I - k w~)^-1 x, in closed form (I + k w~ + k^2 w w^T) / (1 + k^2 w.w); y may be x. */
+static void less_spin(double k, const double w[3], const double x[3], double y[3]) {
+    double f = 1 / (1 + k * k * spari_dot(w, w)), along = k * k * spari_dot(w, x), wx[3];
+    spari_cross(w, x, wx);
+    for (int m = 0; m < 3; m++) {
+        y[m] = f * (x[m] + k * wx[m] + along * w[m]);
+    }
+}
+
+/* dx = tinv dtheta, in global axes: the inverse tangent operator of the rotation vector psi, and the inverse of d psi /
+   d x = I - k omega^n~, k = span^2 cv / 12. */
+void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x) {
+    for (int i = 0; i < s->n; i++) {
+        double psi[3], t[9], *out = s->tinv + 9 * i, k = rotation_of(c, e, x, i, psi);
+        spari_tangent_inverse(psi, t);
+        for (int j = 0; j < 3; j++) {
+            double column[3] = {t[j], t[3 + j], t[6 + j]};
+            less_spin(k, e->from.v + 6 * i + 3, column, column);
+            for (int m = 0; m < 3; m++) {
+                out[3 * m + j] = column[m];
+            }
+        }
+        if (e->root) {
+            turn_matrix(e->root->q + 3, out);
+        }
+    }
+}
+
+static void take_increments(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    put_size(t, from, spari_nodes_take(&t->work, from, to));
+}
+
+static void correct_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    spari_nodes_correct(&t->work, from, to);
+    put_size(t, from, spari_nodes_place(&t->work, from, to));
+}
+
+/* Both at once where nothing is cut. */
+static void advance_span(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    spari_node_size by, way;
+    spari_nodes_advance(&t->work, from, to, &by, &way);
+    put_size(t, from, way);
+    t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
+}
+
+/* Sizes of a correction and of what it led to: relative to the member's length for translations, in radians for
+   rotations. */
+typedef struct corrected {
+    double by, way;
+} corrected;
+
+/* x -= correction, rotations through the inverse tangent operator, shortened to `longest`. turn: what turns it forth
+   first; NULL: nothing. */
+static corrected correct_turned(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                                double *turn, double longest, double *x, double *dx) {
+    double R[9], largest;
+    alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x)};
+    t.work.dx = dx, t.work.turn = turn, t.work.R = e->root ? R : NULL;
+    if (e->root) {
+        spari_quat_matrix(e->root->q + 3, R);
+    }
+    if (longest == INFINITY && !c->still) {
+        spari_solver_spread(s, advance_span, &t);
+        spari_root_show(s, member, e);
+        return (corrected){spari_solver_largest(s, s->most_by), spari_solver_most(s)};
+    }
+    spari_solver_spread(s, take_increments, &t);
+    largest = spari_solver_most(s);
+    t.work.cut = largest > longest ? longest / largest : 1;
+    spari_solver_spread(s, correct_span, &t);
+    spari_root_show(s, member, e);
+    return (corrected){largest, spari_solver_most(s)};
+}
+
+double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
+                           double longest, double *x, double *dx) {
+    return correct_turned(s, member, c, e, NULL, longest, x, dx).by;
+}
+
+/* A place goes by its node's increment and, in the term of Magnus' series, by its velocity: what that loses the
+   increment gets. */
+void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
+                             double b) {
+    for (int i = 0; i < s->n; i++) {
+        double turn[3];
+        spari_cross(s->dx + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+        for (int k = 0; k < 3; k++) {
+            s->increment[6 * i + 3 + k] += v * c->span * c->span / 12 * turn[k];
+        }
+        for (int k = 6 * i; k < 6 * i + 6; k++) {
+            e->to.v[k] -= v * s->dx[k];
+            e->to.a[k] -= a * s->dx[k];
+            e->to.b[k] -= b * s->dx[k];
+        }
+    }
+}
+
+static void size_nodes(void *context, int64_t from, int64_t to) {
+    const alpha_nodes *t = context;
+    put_size(t, from, spari_nodes_size(&t->work, from, to));
+}
+
+double spari_alpha_size(const spari_solver *s, double *x) {
+    spari_solver_spread(s, size_nodes, &(alpha_nodes){.s = s, .work = {.lanes = s->body->lanes, .x = x}});
+    return spari_solver_most(s);
+}
+
+/* A tangent serves on where a solution takes no more iterations than this. Where it takes more, another is formed for
+   the next solution if that pays: a tangent costs about as much as PRICE iterations, and the cost of a solution, that
+   of the tangent shared by all that it served for, is least where a solution first costs more than their mean. Where
+   new ones contract no better than old ones the mean never falls so far. */
+enum { PATIENCE = 5, PRICE = 10 };
+
+/* Where Newton ends earlier (leave.h) a solution takes fewer; for the sake of a coupling it hardly does. */
+static int patience(const spar_session *s) {
+    return s->newton_strict || isfinite(s->newton_share) ? PATIENCE : PATIENCE - 2;
+}
+
+/* Whether the tangent is kept after a solution of so many iterations; fresh: it was formed in it. */
+static int serves_on(spari_solver *s, int most, int iterations, int fresh) {
+    if (fresh) { /* of the iterations the first few may have been without it */
+        s->served = 1;
+        s->spent = PRICE + (iterations < most ? iterations : most);
+        return 1;
+    }
+    s->served++;
+    s->spent += iterations;
+    return iterations <= most || iterations * s->served <= s->spent;
+}
+
+int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
+    const double *v = c->still && !s->body->D ? NULL : to->v;
+    return spari_solver_factor(s, member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv);
+}
+
+/* A tangent of a slightly other dt contracts as fast (hosts' steps differ in their last bits, or by per mille). */
+int spari_alpha_close(double x, double kept) {
+    return fabs(x - kept) <= 0.01 * fabs(kept);
+}
+
+/* A substep of one member, as newton.h has it. */
+typedef struct alpha_step {
+    spari_solver *s;
+    const spar_member *member;
+    const spari_scheme *c;
+    const spari_pose *root;
+    const double *turn;
+    spari_ends *e;
+    double *x;
+} alpha_step;
+
+static int guess_alone(void *self, spari_guess stays) {
+    const alpha_step *t = self;
+    if (t->c->still) {
+        spari_alpha_carry(t->s, t->member, t->c, t->root, t->turn, t->e, t->x);
+        return stays != SPARI_KEEP_SHAPE;
+    }
+    return spari_alpha_predict(t->s, t->member, t->c, stays, t->e, t->x);
+}
+
+static int kept_serves_alone(const alpha_step *t) {
+    const spari_solver *s = t->s;
+    return s->factored && spari_alpha_close(t->c->cm, s->kept_cm) && spari_alpha_close(t->c->cv, s->kept_cv);
+}
+
+static int begin_alone(void *self, int kept) {
+    const alpha_step *t = self;
+    t->s->factored = kept && kept_serves_alone(t);
+    spari_mixing_begin(t->s->mixing);
+    spari_alpha_impose_root(t->member, t->root, t->e, t->x); /* no correction moves it */
+    return t->s->factored;
+}
+
+static const char *iterate_alone(void *self, double longest, spari_iterate *it) {
+    const alpha_step *t = self;
+    spari_solver *s = t->s;
+    if (t->c->still) { /* places come with rates of their own */
+        spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    }
+    const double *q = t->e->seen.q;
+    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
+    double noise = spari_alpha_turn_back(s, q, s->r, s->dx);
+    if (!isfinite(scale) || !isfinite(noise)) {
+        return "met numbers that are not finite";
+    }
+    if (!s->factored) {
+        spari_alpha_operators(s, t->c, t->e, t->x);
+        if (spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
+            return "found a singular tangent";
+        }
+        (void)spari_alpha_turn_back(s, q, s->r, s->dx); /* its axes are these */
+        spari_mixing_begin(s->mixing);
+    }
+    if (spari_linear_solve(s->linear, s->dx)) {
+        return "found a singular tangent";
+    }
+    spari_mixing_take(s->mixing, s->body->crew ? *s->body->crew : NULL, s->body->lanes, s->body->length, s->dx);
+    corrected size =
+        correct_turned(s, t->member, t->c, t->e, s->body->linear[0] ? NULL : s->turn, longest, t->x, s->dx);
+    s->newton++;
+    it->correction = size.by;
+    it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);
+    it->rounded = noise <= 16 * DBL_EPSILON * scale;
+    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
+    return NULL;
+}
+
+static void renew_alone(void *self) {
+    const alpha_step *t = self;
+    t->s->factored = 0;
+}
+
+static void end_alone(void *self, int iterations, int fresh) {
+    const alpha_step *t = self;
+    spari_alpha_impose_root(t->member, t->root, t->e, t->x);
+    t->s->factored = t->s->factored && serves_on(t->s, patience(t->member->session), iterations, fresh);
+    if (!t->s->factored) { /* for an answer (spari_solver_answer) */
+        spari_alpha_operators(t->s, t->c, t->e, t->x);
+    }
+}
+
+/* The state at the end of a substep. */
+static int newton(const alpha_step *t) {
+    static const spari_newton how = {INFINITY, 1e-6, guess_alone, begin_alone, iterate_alone, renew_alone, end_alone};
+    const spar_session *session = t->member->session;
+    alpha_step step = *t;
+    int iterations = 0;
+    const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max,
+                                           spari_leave_begin(session, &t->s->trace), &iterations);
+    SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
+                  "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
+                  "%g; take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
+                  t->member->name, wrong, iterations, session->newton_max, session->time);
+    return SPAR_OK;
+}
+
+/* Forces less loads at t^0 with the accelerations a, and the power that damping takes. */
+void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r) {
+    spari_solver *s = self;
+    const spari_state *b = &s->begin;
+    spari_body_residual(s->body, b->q, b->v, a, 1, r, s->body->D ? &s->power_begin : NULL);
+    if (spari_solver_has_applied(s, member)) {
+        spari_applied_residual(member, b->q, 1, r);
+    }
+    if (s->arms) {
+        spari_arms_at(s->arms, 0);
+        spari_arms_residual(s->arms, b->q + 3, r + 3);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        r[i] -= s->steps.load0[i];
+    }
+}
+
+static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
+    spari_state *b = &s->begin;
+    int n = s->n, end = spari_member_held(member);
+    if (member->root != SPAR_ROOT_DRIVEN) {
+        memset(b->a, 0, (size_t)end * sizeof *b->a);
+        memset(b->v, 0, (size_t)end * sizeof *b->v);
+    }
+    int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL) ||
+                   spari_scheme_start(c, s->linear, end, 6 * n, spari_alpha_unbalance, s, member, s->r, b->a);
+    s->factored = 0;
+    SPARI_REQUIRE(
+        member->session, !singular, SPAR_ERR_NUMERIC,
+        "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia to every "
+        "direction in which it can move freely",
+        member->name);
+    spari_stage_remember(s, member, c);
+    s->steps.started = 1;
+    return SPAR_OK;
+}
+
+/* A member by itself, in a step. */
+typedef struct alpha_run {
+    spari_solver *s;
+    spar_member *member;
+    spari_stage stage;
+} alpha_run;
+
+static void enter_alone(void *self, const spari_part *part) {
+    const alpha_run *t = self;
+    (void)part;
+    spari_stage_enter(t->s);
+}
+
+static double turning_alone(const void *self) {
+    const alpha_run *t = self;
+    return spari_stage_turning(t->s, t->member);
+}
+
+static int solve_alone(void *self, const spari_scheme *c, const spari_part *part) {
+    alpha_run *t = self;
+    spari_stage *g = &t->stage;
+    spari_solver *s = t->s;
+    SPARI_TRY(spari_stage_begin(s, t->member, c, part, g));
+    int status = newton(&(alpha_step){s, t->member, c, &g->root, g->turn, &g->ends, s->increment});
+    s->factored = s->factored && status == SPAR_OK;
+    return status;
+}
+
+static int leave_alone(void *self, const spari_scheme *c, const spari_part *part) {
+    alpha_run *t = self;
+    (void)part;
+    spari_stage_leave(t->s, t->member, c, &t->stage);
+    return SPAR_OK;
+}
+
+int spari_solver_answer(spari_solver *s, const spar_member *member, double *load, double *motion) {
+    spari_scheme c = spari_scheme_last(member, s->body->D != NULL, &s->steps.solved);
+    if (!s->factored && spari_alpha_tangent(s, member, &c, &s->to)) {
+        return 1;
+    }
+    memset(load, 0, (size_t)spari_member_held(member) * sizeof *load);
+    return solve_turned(s, s->to.q, load, motion);
+}
+
+static int gains_alone(void *self, const spari_part *part) {
+    alpha_run *t = self;
+    double gain, size;
+    if (spari_stage_is_near(t->s, t->member, part->dt * (part->to - part->from))) {
+        return 0;
+    }
+    spari_stage_energy(t->s, t->member, part, &gain, &size);
+    return gain > SPARI_GAIN * size;
+}
+
+static void name_alone(const void *self, char *text, int size) {
+    const alpha_run *t = self;
+    (void)snprintf(text, (size_t)size, "member '%s'", t->member->name);
+}
+
+int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
+    static const spari_stepper how = {enter_alone, turning_alone, solve_alone, leave_alone, gains_alone, name_alone};
+    const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->substeps);
+    alpha_run t = {.s = s, .member = member};
+    if (!s->steps.started && !c.still) {
+        SPARI_TRY(start(s, member, &c));
+    }
+    s->steps.solved = s->steps.begin;
+    spari_solver_poison(s);
+    spari_stage_start(s, member, &t.stage);
+    return spari_scheme_run(&how, &t, &c, &member->cuts, &s->steps.solved, member->session, dt);
+}
+
+int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {
+    const spari_scheme c = spari_scheme_of(member, 0, dt / member->session->substeps);
+    spari_stage at;
+    if (!s->steps.started && !c.still) {
+        SPARI_TRY(start(s, member, &c));
+    }
+    spari_stage_start(s, member, &at);
+    return SPAR_OK;
+}

@@ -1,0 +1,348 @@
+/* The arrays and the kept tangent of a member that is solved for; save and load of both. */
+#include "body_solver.h"
+
+#include "../base/poison.h"
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/applied.h"
+#include "steady_rotation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+spari_state spari_state_in(double *block, int n) {
+    double *v = block + 7 * (int64_t)n, *a = v + 6 * (int64_t)n;
+    return (spari_state){block, v, a, a + 6 * (int64_t)n};
+}
+
+spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms) {
+    int64_t n = body->unique, m = 6 * (int64_t)body->per_element;
+    spari_solver *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    s->body = body, s->arms = arms;
+    s->n = body->unique;
+    int ok = 1;
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (s->block[k] = spari_zalloc(25 * n, sizeof(double))) != NULL;
+    }
+    double **sixes[] = {&s->increment, &s->steps.load, &s->steps.load0, &s->steps.load1, &s->r, &s->dx, &s->stage_v};
+    for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
+        ok = ok && (*sixes[k] = spari_zalloc(spari_mixed_unknowns(n), sizeof(double))) != NULL;
+    }
+    ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) != NULL;
+    ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
+    ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
+    const int64_t spans = (n + SPARI_SPAN - 1) / SPARI_SPAN;
+    ok = ok && (s->most = spari_zalloc(2 * spans, sizeof(double)));
+    s->most_by = ok ? s->most + spans : NULL;
+    ok = ok && (s->mixing = spari_mixing_create(n));
+    ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
+    if (!ok) {
+        spari_solver_free(s);
+        return NULL;
+    }
+    for (int k = 0; k < 2 && member->root == SPAR_ROOT_DRIVEN && (member->effects & SPAR_EFFECT_INERTIA); k++) {
+        double *block = spari_zalloc(25 * n, sizeof *block);
+        if (!block) {
+            spari_solver_free(s);
+            return NULL;
+        }
+        s->own[k] = spari_state_in(block, s->n);
+    }
+    spari_linear_share(s->linear, body->crew);
+    s->begin = spari_state_in(s->block[0], s->n);
+    s->from = spari_state_in(s->block[1], s->n);
+    s->to = spari_state_in(s->block[2], s->n);
+    return s;
+}
+
+void spari_solver_free(spari_solver *s) {
+    if (!s) {
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        free(s->block[k]);
+    }
+    free(s->own[0].q);
+    free(s->own[1].q);
+    free(s->increment);
+    free(s->steps.load);
+    free(s->steps.load0);
+    free(s->steps.load1);
+    free(s->r);
+    free(s->dx);
+    free(s->stage_v);
+    free(s->tinv);
+    free(s->kept_q);
+    free(s->turn);
+    free(s->best);
+    free(s->most);
+    spari_mixing_free(s->mixing);
+    spari_linear_free(s->linear);
+    spari_condensed_free(s->condensed);
+    spari_snapshot_free(&s->before);
+    free(s);
+}
+
+void spari_solver_restart(spari_solver *s) {
+    memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
+    memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof *s->to.q);
+    s->steps.started = 0;
+    s->steps.begin = (spari_pattern){0, SPARI_EVEN};
+    s->power = s->power_begin = 0;
+}
+
+void spari_solver_poison(spari_solver *s) {
+    double *const sixes[] = {s->increment, s->steps.load, s->r, s->dx, s->stage_v};
+    int64_t n = s->n, spans = (n + SPARI_SPAN - 1) / SPARI_SPAN, block = 6 * (int64_t)s->body->per_element;
+    for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
+        spari_poison(sixes[k], 6 * n); /* what lies behind is read with vectors, and is zero */
+    }
+    spari_poison(s->tinv, 9 * n);
+    spari_poison(s->turn, 4 * n);
+    spari_poison(s->best, 7 * n);
+    spari_poison(s->most, 2 * spans);
+    spari_poison(s->to.q, 25 * n);
+    spari_poison(s->own[0].q, 25 * n);
+    spari_poison(s->own[1].q, 25 * n);
+    spari_poison(s->body->matrix, block * block);
+}
+
+void spari_solver_begin(spari_solver *s) {
+    s->begun = (spari_reuse){s->factored, s->kept_cm, s->kept_cv, s->served, s->spent, s->trace};
+    spari_snapshot_open(&s->before, 1);
+}
+
+static int64_t before_size(const spari_solver *s) {
+    return 4 * (int64_t)s->n + spari_linear_state_size(s->linear) +
+           (s->condensed ? spari_condensed_state_size(s->condensed) : 0);
+}
+
+/* Before the factors are overwritten. */
+static void keep_factors(spari_solver *s) {
+    int64_t own = 4 * (int64_t)s->n, factors = spari_linear_state_size(s->linear);
+    double *to = s->begun.factored ? spari_snapshot_take(&s->before, before_size(s)) : NULL;
+    if (to) {
+        memcpy(to, s->kept_q, (size_t)own * sizeof *to);
+        spari_linear_save(s->linear, to + own);
+        if (s->condensed) {
+            spari_condensed_save(s->condensed, to + own + factors);
+        }
+    }
+}
+
+static void restore_factors(spari_solver *s) {
+    int64_t own = 4 * (int64_t)s->n;
+    const double *from = s->before.data;
+    memcpy(s->kept_q, from, (size_t)own * sizeof *from);
+    spari_linear_load(s->linear, from + own);
+    if (s->condensed) {
+        spari_condensed_load(s->condensed, s->condensed->fixed, from + own + spari_linear_state_size(s->linear));
+    }
+}
+
+void spari_solver_reject(spari_solver *s) {
+    const spari_reuse *b = &s->begun;
+    if (!s->before.open) {
+        return;
+    }
+    s->factored = b->factored && s->before.taken >= 0;
+    s->kept_cm = b->cm, s->kept_cv = b->cv;
+    s->served = b->served, s->spent = b->spent;
+    s->trace = b->trace;
+    if (s->before.taken > 0) {
+        restore_factors(s);
+    }
+}
+
+void spari_solver_accept(spari_solver *s) {
+    spari_snapshot_close(&s->before);
+    spari_state t = s->begin;
+    s->begin = s->to;
+    s->to = t;
+    s->steps.begin = s->steps.solved;
+    s->power_begin = s->power;
+}
+
+/* What the tangents of elements are asked of. */
+typedef struct tangent_state {
+    const spari_solver *s;
+    const spar_member *member;
+    const double *q, *v, *a, *tinv;
+    double factor, cm, cv;
+} tangent_state;
+
+static void add_tangents(const spari_body *body, int tile, int from, int to, void *context) {
+    const tangent_state *t = context;
+    const spar_member *m = t->member;
+    (void)tile;
+    for (int e = from; e < to; e++) {
+        spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, body->matrix);
+        if (spari_solver_has_applied(t->s, m) && t->factor != 0) {
+            spari_applied_tangent(m, e, t->q, t->factor, body->matrix);
+        }
+        if (t->s->arms && t->factor != 0) {
+            spari_arms_tangent(t->s->arms, t->q + 3, body->matrix);
+        }
+        if (t->tinv && m->added) { /* it belongs to the balance of a step, not to what begins one */
+            spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
+        }
+        spari_linear_add(t->s->linear, e, body->matrix);
+    }
+}
+
+/* Factors what has been formed at the state q. */
+static int factor_formed(spari_solver *s, const spar_member *member, const double *q, double cm, double cv) {
+    int end = spari_member_held(member);
+    if (s->condensed) {
+        spari_condensed_take(s->condensed, s->linear, end);
+    }
+    for (int i = 0; i < end; i++) {
+        spari_linear_fix(s->linear, i);
+    }
+    s->factors++;
+    if (spari_linear_factor(s->linear) || (s->condensed && spari_condensed_form(s->condensed, s->linear))) {
+        return 1;
+    }
+    s->factored = 1;
+    s->kept_cm = cm, s->kept_cv = cv;
+    for (int i = 0; i < s->n; i++) {
+        memcpy(s->kept_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
+    }
+    return 0;
+}
+
+int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
+                        double factor, double cm, double cv, const double *tinv) {
+    tangent_state t = {
+        .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
+    keep_factors(s);
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    spari_body_sweep(s->body, add_tangents, &t);
+    return factor_formed(s, member, q, cm, cv);
+}
+
+int spari_solver_factor_turning(spari_solver *s, const spar_member *member, const spari_turn *turn, const double *q,
+                                const double *v, const double *a, double factor, double *mass) {
+    const spari_body *body = s->body;
+    keep_factors(s);
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    for (int e = 0; e < body->elements; e++) {
+        spari_turn_tangent(body, turn, e, q, v, a, factor, body->matrix, mass);
+        if (spari_solver_has_applied(s, member)) {
+            spari_applied_tangent(member, e, q, factor, body->matrix);
+        }
+        if (s->arms) {
+            spari_arms_tangent(s->arms, q + 3, body->matrix);
+        }
+        spari_linear_add(s->linear, e, body->matrix);
+    }
+    return factor_formed(s, member, q, 0, 0);
+}
+
+void spari_solver_effort(const spari_solver *s, spari_effort *e) {
+    const spari_body *b = s->body;
+    *e = (spari_effort){.iterations = s->newton,
+                        .tangents = s->factors,
+                        .left = s->trace.left,
+                        .nodes = b->unique,
+                        .elements = b->elements,
+                        .per_element = b->per_element,
+                        .points = b->linear[0] ? 0 : b->first[b->elements],
+                        .unknowns = 6 * b->unique,
+                        .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
+}
+
+/* Of a node: 25 doubles at either end of the step, 4 of the kept turn; 9 of what a tangent there is formed with. */
+enum { STATE_HEAD = 17, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 7 };
+
+/* Factors; or, where there are none, what those for an answer are formed with. */
+static int64_t tangent_size(const spari_solver *s, int factored) {
+    return factored ? spari_linear_state_size(s->linear) : STATE_OPERATOR * (int64_t)s->n;
+}
+
+int64_t spari_solver_state_size(const spari_solver *s) {
+    return STATE_HEAD + STATE_NODE * (int64_t)s->n + tangent_size(s, s->factored) + STATE_BEGUN +
+           spari_snapshot_size(&s->before);
+}
+
+void spari_solver_save(const spari_solver *s, double *state) {
+    const double head[STATE_HEAD] = {s->n,
+                                     s->factored,
+                                     s->kept_cm,
+                                     s->kept_cv,
+                                     s->steps.begin.h,
+                                     s->steps.solved.h,
+                                     s->steps.started,
+                                     (double)s->newton,
+                                     (double)s->factors,
+                                     s->power,
+                                     s->power_begin,
+                                     s->steps.begin.even,
+                                     (double)s->served,
+                                     (double)s->spent,
+                                     s->trace.rate,
+                                     s->trace.left,
+                                     s->steps.solved.even};
+    size_t n = (size_t)s->n;
+    memcpy(state, head, sizeof head);
+    memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
+    memcpy(state += 25 * n, s->to.q, 25 * n * sizeof *state);
+    memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
+    if (s->factored) {
+        spari_linear_save(s->linear, state + 4 * n);
+    } else {
+        memcpy(state + 4 * n, s->tinv, STATE_OPERATOR * n * sizeof *state);
+    }
+    const spari_reuse *b = &s->begun;
+    const double begun[STATE_BEGUN] = {b->factored,      b->cm,         b->cv,        (double)b->served,
+                                       (double)b->spent, b->trace.rate, b->trace.left};
+    state += 4 * n + (size_t)tangent_size(s, s->factored);
+    memcpy(state, begun, sizeof begun);
+    spari_snapshot_save(&s->before, state + STATE_BEGUN);
+}
+
+int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
+    int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n;
+    if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8]) ||
+        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14) ||
+        !spari_pattern_is(state[4], state[11]) || !spari_pattern_is(state[5], state[16])) {
+        return 0;
+    }
+    const int64_t begun = own + tangent_size(s, state[1] != 0);
+    const double *b = state + begun, *before = b + STATE_BEGUN;
+    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_trace_is(b + 5) &&
+           spari_snapshot_is(before, count - begun - STATE_BEGUN, before_size(s)) &&
+           (before[1] <= 0 || spari_linear_is_state(s->linear, before + SPARI_SNAPSHOT_HEAD + 4 * (int64_t)s->n)) &&
+           (state[1] == 0 || spari_linear_is_state(s->linear, state + own));
+}
+
+void spari_solver_load(spari_solver *s, const double *state) {
+    size_t n = (size_t)s->n;
+    s->factored = state[1] != 0;
+    s->kept_cm = state[2], s->kept_cv = state[3];
+    s->steps.begin = (spari_pattern){state[4], (int)state[11]};
+    s->steps.solved = (spari_pattern){state[5], (int)state[16]};
+    s->steps.started = state[6] != 0;
+    s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
+    s->power = state[9], s->power_begin = state[10];
+    s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
+    s->trace.rate = state[14], s->trace.left = state[15];
+    memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
+    memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
+    memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
+    if (s->factored) {
+        spari_linear_load(s->linear, state + 4 * n);
+    } else {
+        memcpy(s->tinv, state + 4 * n, STATE_OPERATOR * n * sizeof *state);
+    }
+    state += 4 * n + (size_t)tangent_size(s, s->factored);
+    s->begun =
+        (spari_reuse){state[0] != 0, state[1], state[2], (int64_t)state[3], (int64_t)state[4], {state[5], state[6]}};
+    spari_snapshot_load(&s->before, state + STATE_BEGUN, s->factored);
+}

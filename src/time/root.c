@@ -1,0 +1,424 @@
+/* Stages of a substep, and what is seen from a driven root. */
+#include "root.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "node_kinematics.h"
+#include "driven_root.h"
+
+#include <string.h>
+
+static void look_at_nodes(void *context, int64_t from, int64_t to) {
+    spari_nodes_look(context, from, to);
+}
+
+void spari_root_look_from(const spari_solver *solver, const spar_member *m, const spari_pose *root,
+                          const spari_state *s, spari_state *own) {
+    double omega[3], alpha[3];
+    spari_root_view t = {solver->body->lanes, m, root, NULL, omega, alpha, own, s};
+    spari_rotate_back(root->q + 3, root->v + 3, omega);
+    spari_rotate_back(root->q + 3, root->a + 3, alpha);
+    spari_solver_spread(solver, look_at_nodes, &t);
+}
+
+static void show_nodes(void *context, int64_t from, int64_t to) {
+    spari_nodes_show(context, from, to);
+}
+
+void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
+    double R[9], omega[3], alpha[3];
+    if (!e->root) {
+        return;
+    }
+    spari_root_view t = {solver->body->lanes, m, e->root, R, omega, alpha, &e->to, &e->seen};
+    spari_quat_matrix(e->root->q + 3, R);
+    spari_matrix_times_back(R, e->root->v + 3, omega);
+    spari_matrix_times_back(R, e->root->a + 3, alpha);
+    spari_solver_spread(solver, show_nodes, &t);
+}
+
+/* All but the root. */
+static void lose_of_nodes(void *context, int64_t from, int64_t to) {
+    spari_nodes_lose(context, from > 0 ? from : 1, to);
+}
+
+/* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */
+static void lose_jump(const spari_solver *solver, const spar_member *m, double h, const spari_pose *from,
+                      const spari_pose *to, const spari_state *own) {
+    spari_root_jump t = {.lanes = solver->body->lanes, .member = m, .own = own};
+    double less[3];
+    spari_drive_jump(from, to, h, t.velocity, t.place);
+    for (int k = 0; k < 3; k++) {
+        less[k] = -t.place[3 + k];
+    }
+    spari_quat_exp(less, t.back);
+    spari_solver_spread(solver, lose_of_nodes, &t);
+}
+
+spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_pose *root,
+                           double ratio, spari_state *from, spari_state *to) {
+    spari_ends e = {*from, *to, *to, NULL, 0};
+    if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
+        const spari_pose before = spari_pose_of(from->q, from->v, from->a);
+        double turn[4], psi[3], way[3];
+        spari_quat_between(before.q + 3, root->q + 3, turn);
+        spari_quat_log(turn, psi);
+        for (int k = 0; k < 3; k++) {
+            way[k] = root->q[k] - before.q[k];
+        }
+        e.from = s->own[0], e.to = s->own[1], e.root = root;
+        e.carried = spari_norm(way) / s->body->length + spari_norm(psi);
+        spari_root_look_from(s, m, &before, from, &e.from);
+        lose_jump(s, m, c->span, &before, root, &e.from);
+    }
+    spari_scheme_stretch(ratio, 6 * s->n, e.from.a, e.from.b);
+    return e;
+}
+
+static void begin_span(void *context, int64_t from, int64_t to) {
+    const spari_solver *s = context;
+    const spari_state *b = &s->begin;
+    size_t n = (size_t)(to - from) * sizeof *b->q;
+    memcpy(s->to.q + 7 * from, b->q + 7 * from, 7 * n);
+    memcpy(s->to.v + 6 * from, b->v + 6 * from, 6 * n);
+    memcpy(s->to.a + 6 * from, b->a + 6 * from, 6 * n);
+    memcpy(s->to.b + 6 * from, b->b + 6 * from, 6 * n);
+}
+
+void spari_stage_start(spari_solver *s, spar_member *m, spari_stage *g) {
+    spari_solver_spread(s, begin_span, s);
+    g->before = m->drive[0];
+    g->power = s->power_begin;
+    m->dissipated_step = 0;
+}
+
+void spari_stage_enter(spari_solver *s) {
+    spari_state t = s->from;
+    s->from = s->to;
+    s->to = t;
+}
+
+/* ---- a rigid motion to be seen from ---- */
+
+double spari_stage_turning(const spari_solver *s, const spar_member *m) {
+    double w[3] = {0};
+    if (spari_member_turns_stiffly(m)) {
+        spari_mean_rotation(s->n, s->from.v, w);
+    }
+    return spari_norm(w);
+}
+
+/* rad: a step that turns farther, or vibrates so far, does not resolve it. */
+static const double farthest = 1;
+
+static int follows(const spar_member *m, const spari_scheme *c, const spari_stage *g) {
+    return c->rule != SPARI_ALPHA && !c->still && spari_member_turns_stiffly(m) &&
+           spari_norm(g->rigid.v + 3) * c->h <= farthest;
+}
+
+static int make_own_states(spari_solver *s) {
+    for (int k = 0; k < 2 && !s->own[k].q; k++) {
+        double *block = spari_zalloc(25 * (int64_t)s->n, sizeof *block);
+        if (!block) {
+            return SPAR_ERR_MEMORY;
+        }
+        s->own[k] = spari_state_in(block, s->n);
+    }
+    return s->own[1].q ? SPAR_OK : SPAR_ERR_MEMORY;
+}
+
+/* At the beginning of a substep: the motion of the mean of the nodes, or of a pinned root, and their mean angular
+   velocity; as the displacement of the root's reference position. */
+static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
+    const spari_state *at = &s->from;
+    spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
+    int pinned = spari_member_held(m) == 3;
+    for (int i = 0; i < s->n; i++) {
+        double arm[3];
+        spari_member_arm(m, i, arm);
+        for (int k = 0; k < 3; k++) {
+            p.q[k] += (arm[k] + at->q[7 * i + k]) / s->n;
+            p.v[k] += at->v[6 * i + k] / s->n;
+        }
+    }
+    spari_mean_rotation(s->n, at->v, p.v + 3);
+    for (int k = 0; k < 3 && pinned; k++) {
+        p.q[k] = at->q[k];
+        p.v[k] = 0;
+    }
+    return p;
+}
+
+static spari_pose move_along(const spari_pose *p, double time) {
+    spari_pose out = *p;
+    double psi[3], turn[4];
+    for (int k = 0; k < 3; k++) {
+        out.q[k] += time * p->v[k];
+        psi[k] = time * p->v[3 + k];
+    }
+    spari_quat_exp(psi, turn);
+    spari_quat_mul(turn, p->q + 3, out.q + 3);
+    return out;
+}
+
+static spari_ends ends_from_rigid(const spari_solver *s, const spar_member *m, const spari_scheme *c, spari_stage *g) {
+    g->along = move_along(&g->rigid, c->span);
+    spari_ends e = {s->own[0], s->own[1], s->to, &g->along, 0};
+    spari_root_look_from(s, m, &g->rigid, &s->from, &e.from);
+    e.carried = c->span * (spari_norm(g->rigid.v) / s->body->length + spari_norm(g->rigid.v + 3));
+    return e;
+}
+
+/* ---- from one scheme to the other ---- */
+
+/* Position of node i from `pivot`. */
+static void arm_from(const spari_solver *s, const spar_member *m, int i, const double pivot[3], double r[3]) {
+    spari_member_arm(m, i, r);
+    for (int k = 0; k < 3; k++) {
+        r[k] += s->from.q[7 * i + k] - pivot[k];
+    }
+}
+
+/* The angular acceleration of the rigid motion about `pivot` that is nearest to the accelerations of the nodes,
+   rotations times the length, for what its angular velocity w does not explain. a0: the acceleration at the pivot. */
+static void mean_angular_acceleration(const spari_solver *s, const spar_member *m, const double pivot[3],
+                                      const double a0[3], const double w[3], double alpha[3]) {
+    double L2 = s->body->length * s->body->length, A[9] = {0}, right[3] = {0}, c[3][3], det;
+    for (int i = 0; i < s->n; i++) {
+        const double *a = s->from.a + 6 * i;
+        double r[3], t[3], rest[3];
+        arm_from(s, m, i, pivot, r);
+        spari_cross(w, r, t);
+        spari_cross(w, t, rest);
+        for (int k = 0; k < 3; k++) {
+            rest[k] = a[k] - a0[k] - rest[k];
+        }
+        spari_cross(r, rest, t);
+        for (int k = 0; k < 3; k++) {
+            right[k] += t[k] + L2 * a[3 + k];
+            A[4 * k] += spari_dot(r, r) + L2;
+            for (int j = 0; j < 3; j++) {
+                A[3 * k + j] -= r[k] * r[j];
+            }
+        }
+    }
+    spari_cross(A + 3, A + 6, c[0]);
+    spari_cross(A + 6, A, c[1]);
+    spari_cross(A, A + 3, c[2]);
+    det = spari_dot(A, c[0]);
+    for (int k = 0; k < 3; k++) {
+        alpha[k] = (c[0][k] * right[0] + c[1][k] * right[1] + c[2][k] * right[2]) / det;
+    }
+}
+
+/* Where the turning has no third derivative: a pinned root, the node that a joint holds, or, of what is free, the mean
+   of all nodes. 0: there are several. */
+static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[3], double a0[3]) {
+    int ends = s->condensed ? s->condensed->ends : 0, pinned = spari_member_held(m) == 3;
+    if (ends > 1 || (ends == 1 && pinned && s->condensed->node[0] != 0)) {
+        return 0;
+    }
+    const double zero[3] = {0, 0, 0};
+    int only = ends == 1 ? s->condensed->node[0] : 0, one = ends == 1 || pinned;
+    memset(pivot, 0, 3 * sizeof *pivot);
+    memset(a0, 0, 3 * sizeof *a0);
+    for (int i = one ? only : 0; i < (one ? only + 1 : s->n); i++) {
+        double r[3];
+        arm_from(s, m, i, zero, r);
+        for (int k = 0; k < 3; k++) {
+            pivot[k] += r[k] / (one ? 1 : s->n);
+            a0[k] += s->from.a[6 * i + k] / (one ? 1 : s->n);
+        }
+    }
+    return 1;
+}
+
+/* Generalised-alpha keeps velocities of stiff parts that are off the true ones by -C h^2 times the third derivative of
+   the place, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. A step of
+   TR-BDF2 after it begins with the true ones, and it goes on with its own: v += f times that for all that turns as a
+   rigid body. */
+static void shift_turning(const spari_solver *s, const spar_member *m, double f) {
+    double w[3], pivot[3], a0[3], alpha[3];
+    if (!find_pivot(s, m, pivot, a0)) {
+        return;
+    }
+    spari_mean_rotation(s->n, s->from.v, w);
+    mean_angular_acceleration(s, m, pivot, a0, w, alpha);
+    for (int i = 0; i < s->n; i++) {
+        double r[3], turn[3], grow[3], a[3], b[3];
+        arm_from(s, m, i, pivot, r);
+        spari_cross(w, r, turn);
+        spari_cross(alpha, r, grow);
+        spari_cross(w, turn, a);
+        for (int k = 0; k < 3; k++) {
+            a[k] += grow[k]; /* the acceleration */
+        }
+        spari_cross(w, a, b);
+        spari_cross(alpha, turn, a);
+        for (int k = 0; k < 3; k++) {
+            s->from.v[6 * i + k] += f * (b[k] + 2 * a[k]);
+        }
+    }
+}
+
+void spari_steady_rate(const spar_member *m, const double w[3], const double a[3], double rate[3]) {
+    double pushed[3];
+    for (int k = 0; k < 3; k++) {
+        pushed[k] = a[k] - m->body->gravity[k];
+    }
+    spari_cross(w, pushed, rate);
+}
+
+/* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration; and of a rigid body v^0 less C h^2 times that,
+   as shift_turning has it of members that deform. */
+void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_scheme *c) {
+    double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), rate[3];
+    memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
+    if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q) {
+        const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
+        spari_root_look_from(s, m, &root, &s->begin, &s->own[0]);
+        memcpy(s->begin.b, s->own[0].a, (size_t)(6 * s->n) * sizeof *s->begin.b);
+        return;
+    }
+    for (int i = 0; i < s->n && !spari_member_root_is_given(m) && m->session->step == 0; i++) {
+        double *v = s->begin.v + 6 * i, *b = s->begin.b + 6 * i;
+        spari_steady_rate(m, v + 3, s->begin.a + 6 * i, rate);
+        for (int k = 0; k < 3; k++) {
+            b[k] += h * rate[k];
+            v[k] -= s->n == 1 ? C * c->h * c->h * rate[k] : 0;
+        }
+    }
+}
+
+/* A substep begins, after one of the other scheme. */
+static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
+    double C = spari_scheme_error(c);
+    if (!spari_member_turns_stiffly(m) || c->still) {
+        return;
+    }
+    if (c->rule == SPARI_TRAPEZOIDAL && part->alpha > 0) {
+        shift_turning(s, m, C * part->alpha * part->alpha);
+    } else if (c->rule == SPARI_ALPHA && part->alpha == 0 && part->ratio > 0) {
+        shift_turning(s, m, -C * c->h * c->h);
+    }
+}
+
+/* ---- stages ---- */
+
+int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                     spari_stage *g) {
+    change_scheme(s, m, c, part);
+    if (c->rule == SPARI_TRAPEZOIDAL) {
+        g->rigid = mean_motion(s, m);
+    }
+    int rigid = follows(m, c, g);
+    g->root = spari_drive_at(m, part->to, part->dt);
+    if (c->rule == SPARI_TRAPEZOIDAL) {
+        g->root = spari_drive_stage(&g->before, &g->root, c->h, c->span);
+    }
+    g->turn[0] = 1;
+    memset(g->turn + 1, 0, 3 * sizeof *g->turn);
+    if (m->root == SPAR_ROOT_DRIVEN) {
+        spari_quat_between(g->before.q + 3, g->root.q + 3, g->turn);
+    }
+    if (rigid && c->rule == SPARI_TRAPEZOIDAL) {
+        SPARI_REQUIRE(m->session, make_own_states(s) == SPAR_OK, SPAR_ERR_MEMORY,
+                      "member '%s': no memory for a step of another length", m->name);
+    }
+    g->ends = rigid ? ends_from_rigid(s, m, c, g)
+                    : spari_root_ends(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);
+    if (c->rule == SPARI_BACKWARD) {
+        size_t size = (size_t)(6 * s->n) * sizeof(double);
+        memcpy(s->stage_v, g->ends.to.v, size);
+        memcpy(g->ends.from.b, g->ends.to.a, size);
+    }
+    return SPAR_OK;
+}
+
+int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                      spari_stage *g) {
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->end);
+    if (s->arms) {
+        spari_arms_at(s->arms, part->end);
+        memcpy(s->arms->gravity, m->body->gravity, sizeof m->body->gravity);
+    }
+    return spari_stage_root(s, m, c, part, g);
+}
+
+/* The algorithmic acceleration of a driven root's member is seen from there, all others in global axes. */
+void spari_stage_restart(const spari_solver *s, const spar_member *m, const spari_scheme *c, spari_stage *g) {
+    const spari_ends *e = &g->ends;
+    int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
+    if (c->rule != SPARI_BACKWARD) {
+        return;
+    }
+    spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->seen.a, e->seen.b);
+    if (e->root) { /* what is shown anew takes it from there */
+        memcpy(e->to.b, e->seen.b, (size_t)(6 * s->n) * sizeof *e->to.b);
+    }
+}
+
+/* rad, or of the length: below it in a substep there is one solution. */
+static const double near = 0.1;
+
+/* By the change of place, or as far as the change of velocity would lead in h. */
+static double moved_by(const spari_solver *s, double h) {
+    double most = 0;
+    for (int i = 0; i < s->n; i++) {
+        const double *u = s->from.v + 6 * i, *v = s->to.v + 6 * i;
+        const double dv[3] = {h * (v[0] - u[0]), h * (v[1] - u[1]), h * (v[2] - u[2])},
+                     dw[3] = {h * (v[3] - u[3]), h * (v[4] - u[4]), h * (v[5] - u[5])};
+        const double *p = s->from.q + 7 * i, *q = s->to.q + 7 * i;
+        const double way[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+        double turn[4], psi[3];
+        spari_quat_between(p + 3, q + 3, turn);
+        spari_quat_log(turn, psi);
+        double far = fmax(spari_norm(way), spari_norm(dv)) / s->body->length;
+        most = fmax(most, fmax(far, fmax(spari_norm(psi), spari_norm(dw))));
+    }
+    return most;
+}
+
+/* Loads at the part `at` of the step, in the state x, times the way of the substep. */
+static double work_in(spari_solver *s, const spar_member *m, const spari_state *x, double at) {
+    double sum = 0;
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, at);
+    memcpy(s->dx, s->steps.load, (size_t)(6 * s->n) * sizeof *s->dx);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->dx[i] *= -1;
+    }
+    if (spari_solver_has_applied(s, m)) {
+        (void)spari_applied_residual(m, x->q, 1, s->dx);
+    }
+    for (int i = 0; i < s->n; i++) {
+        double turn[4], psi[3];
+        spari_quat_between(s->from.q + 7 * i + 3, s->to.q + 7 * i + 3, turn);
+        spari_quat_log(turn, psi);
+        for (int k = 0; k < 3; k++) {
+            sum -= s->dx[6 * i + k] * (s->to.q[7 * i + k] - s->from.q[7 * i + k]) + s->dx[6 * i + 3 + k] * psi[k];
+        }
+    }
+    return sum;
+}
+
+void spari_stage_energy(spari_solver *s, const spar_member *m, const spari_part *part, double *gain, double *size) {
+    double before[4], after[4];
+    double work = 0.5 * (work_in(s, m, &s->from, part->from) + work_in(s, m, &s->to, part->to));
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, 0.5 * (part->from + part->to)); /* gravity may change too */
+    spari_body_energy(s->body, s->from.q, s->from.v, before);
+    spari_body_energy(s->body, s->to.q, s->to.v, after);
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->to);
+    *size = before[0] + before[1] + fabs(work) + fabs(after[2] - before[2]);
+    *gain = after[0] + after[1] + after[2] - before[0] - before[1] - before[2] - work;
+}
+
+int spari_stage_is_near(const spari_solver *s, const spar_member *m, double h) {
+    return m->root == SPAR_ROOT_DRIVEN || m->added || s->arms || s->body->linear[0] || !(moved_by(s, h) > near);
+}
+
+void spari_stage_leave(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {
+    spari_stage_restart(s, m, c, g);
+    g->before = g->root;
+    spari_scheme_dissipate(m, c, &g->power, s->power);
+}

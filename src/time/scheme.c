@@ -1,0 +1,363 @@
+/* Generalised-alpha and TR-BDF2 for every member: see scheme.h. */
+#include "scheme.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/added_mass.h"
+#include "../member/applied.h"
+#include "../member/body.h"
+#include "driven_root.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { START_PASSES = 4, SPAN = 4096 };
+
+spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
+    double rho = member->session->rho_inf;
+    spari_scheme c = {.rule = SPARI_ALPHA, .h = h, .span = h};
+    c.alpha_m = (2 * rho - 1) / (rho + 1);
+    c.alpha_f = rho / (rho + 1);
+    c.gamma = 0.5 + c.alpha_f - c.alpha_m;
+    c.beta = 0.25 * (0.5 + c.gamma) * (0.5 + c.gamma);
+    c.still = !(member->effects & SPAR_EFFECT_INERTIA);
+    if (c.still) {
+        c.rate = 1 / h;
+        c.cm = 0, c.cv = damped ? c.rate : 0;
+    } else {
+        c.cm = (1 - c.alpha_m) / (h * h * c.beta * (1 - c.alpha_f));
+        c.rate = c.cv = c.gamma / (h * c.beta);
+    }
+    c.cb = c.cm * (1 - c.alpha_f) / (1 - c.alpha_m);
+    return c;
+}
+
+static void add_dead(void *context, int64_t from, int64_t to) {
+    const spari_steps *t = context;
+    for (int64_t i = from; i < to; i++) {
+        t->load0[i] += t->load[i];
+        t->load1[i] += t->load[i];
+    }
+}
+
+void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
+    const int64_t n = 6 * (int64_t)member->body->unique;
+    const double *before = spari_dead_before(member);
+    spari_member_gather(member, member->load_history[0], steps->load0);
+    spari_member_gather(member, member->load_used, steps->load1);
+    spari_member_gather(member, member->dead, steps->load);
+    if (before == member->dead) {
+        spari_crew_spread(member->session->crew, n, SPAN, add_dead, steps);
+        return;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        steps->load1[i] += steps->load[i];
+    }
+    spari_member_gather(member, before, steps->load);
+    for (int64_t i = 0; i < n; i++) {
+        steps->load0[i] += steps->load[i];
+    }
+}
+
+/* Gravity and what the member carries, at that moment of a step. */
+static void applied_at(const spar_member *m, double left) {
+    const spar_session *s = m->session;
+    spari_applied_at(m, left);
+    if (m->body && (m->effects & SPAR_EFFECT_GRAVITY) && spari_gravity_changes(s)) {
+        for (int k = 0; k < 3; k++) {
+            m->body->gravity[k] = s->gravity[k] + left * (s->gravity_before[k] - s->gravity[k]);
+        }
+        spari_body_gravity_changed(m->body);
+    }
+}
+
+/* Loads at the part s of a step. */
+typedef struct loads_within {
+    const spari_steps *t;
+    double s;
+} loads_within;
+
+static void mix_loads(void *context, int64_t from, int64_t to) {
+    const loads_within *w = context;
+    const spari_steps *t = w->t;
+    for (int64_t i = from; i < to; i++) {
+        t->load[i] = (1 - w->s) * t->load0[i] + w->s * t->load1[i];
+    }
+}
+
+void spari_scheme_mix_loads(const spar_member *m, const spari_steps *t, int loads, double s) {
+    applied_at(m, 1 - s);
+    spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, s});
+    if (m->added && s < 1) {
+        (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, t->load);
+    }
+}
+
+void spari_scheme_dissipate(spar_member *m, const spari_scheme *c, double *before, double power) {
+    m->dissipated_step += 0.5 * c->h * (*before + power);
+    *before = power;
+}
+
+/* ---- substeps and stages ---- */
+
+/* TR-BDF2: c, w, d. */
+#define STAGE (2 - M_SQRT2)
+#define WEIGHT (0.25 * M_SQRT2)
+#define DIAGONAL (1 - 0.5 * M_SQRT2)
+
+spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule) {
+    spari_scheme c = *alpha;
+    double g = DIAGONAL * c.h;
+    c.rule = rule;
+    c.span = rule == SPARI_TRAPEZOIDAL ? STAGE * c.h : c.h;
+    if (c.still) {
+        c.rate = 1 / c.span;
+        c.cv = c.cv > 0 ? c.rate : 0;
+    } else {
+        c.cm = c.cb = 1 / (g * g);
+        c.rate = c.cv = 1 / g;
+    }
+    return c;
+}
+
+static spari_pattern pattern_after(const spari_pattern *last, double h) {
+    if (last->h > 0 && !spari_steps_alike(h, last->h)) {
+        return (spari_pattern){h, 0};
+    }
+    return (spari_pattern){h, last->h > 0 && last->even < SPARI_EVEN ? last->even + 1 : last->even};
+}
+
+spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pattern *pattern) {
+    const spari_scheme c = spari_scheme_of(m, damped, pattern->h);
+    return pattern->even < SPARI_EVEN && !c.still ? spari_scheme_stage(&c, SPARI_BACKWARD) : c;
+}
+
+/* Of what turns freely at W, generalised-alpha feeds the parts that it does not resolve from 1 - rho_inf = 1.5 W h on
+   (docs/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
+static int exceeds_limit(double turning, const spari_scheme *c, const spar_session *session) {
+    static const double least = 0.05;
+    return 1.5 * turning * c->h > fmax(1 - session->rho_inf, least);
+}
+
+void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
+    memset(w, 0, 3 * sizeof *w);
+    for (int64_t i = 0; i < n; i++) {
+        for (int k = 0; k < 3; k++) {
+            w[k] += v[6 * i + 3 + k] / (double)n;
+        }
+    }
+}
+
+int spari_member_turns_stiffly(const spar_member *m) {
+    return m->body && m->body->unique > 1 && !m->body->linear[0] && !spari_member_root_is_given(m);
+}
+
+int spari_scheme_turns(const spar_session *s, double dt) {
+    const spari_scheme c = {.h = dt / s->substeps};
+    int turns = 0;
+    for (const spar_member *m = s->members; m && !turns; m = m->next) {
+        if (spari_member_turns_stiffly(m)) {
+            double w[3];
+            spari_mean_rotation(m->nodes, m->now.v, w);
+            turns = exceeds_limit(1.1 * spari_norm(w), &c, s);
+        }
+    }
+    return turns;
+}
+
+spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {
+    spari_scheme c = *alpha;
+    double r = alpha->h / h;
+    c.h = c.span = h;
+    c.cm *= r * r, c.cb *= r * r;
+    c.cv *= r, c.rate *= r;
+    return c;
+}
+
+/* A substep from the state it begins at, which stays for another try. Status and rule of the last stage. */
+static int try_part(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
+                    spari_scheme *c) {
+    *c = *alpha;
+    part->end = part->to;
+    if (even < SPARI_EVEN && !c->still) {
+        *c = spari_scheme_stage(alpha, SPARI_TRAPEZOIDAL);
+        part->end = part->from + STAGE * (part->to - part->from);
+        SPARI_TRY(how->solve(self, c, part));
+        *c = spari_scheme_stage(alpha, SPARI_BACKWARD);
+        part->end = part->to;
+    }
+    return how->solve(self, c, part);
+}
+
+/* The same; whether it has a solution that may stay. What fails is told to the session if `last`. */
+static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
+                       spari_scheme *c, const spar_session *session, int last) {
+    char text[SPARI_MESSAGE_SIZE], *before = last ? NULL : spari_messages_aside(text);
+    int status = try_part(how, self, alpha, even, part, c);
+    if (!last) {
+        (void)spari_messages_aside(before);
+    }
+    if (status == SPAR_OK && how->gains && !c->still && !session->rough && how->gains(self, part)) {
+        status = SPAR_ERR_NUMERIC;
+        char name[160];
+        how->name(self, name, sizeof name);
+        SPARI_REQUIRE(session, !last, status,
+                      "%s: the step from t = %g gains energy that no load gives, in 1024 parts too; take a smaller dt, "
+                      "or look at the loads",
+                      name, session->time);
+    }
+    return status;
+}
+
+enum { PARTS = 1024 };
+
+/* The node of the tree of halvings that begins at `at` and has `size` of the parts. */
+static unsigned node_of(int at, int size) {
+    return (unsigned)(PARTS / size + at / size);
+}
+
+/* One substep of the session, cut where that is needed. */
+static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_cuts *cuts,
+                       spari_pattern *pattern, const spar_session *session, double dt, double from, double to) {
+    int at = 0, size = PARTS, again = 0;
+    double tried = 0;
+    while (at < PARTS) {
+        const unsigned node = node_of(at, size);
+        if (size > 1 && cuts->given_up[node / 32] >> node % 32 & 1) {
+            size /= 2;
+            continue;
+        }
+        const spari_scheme alpha = size < PARTS ? spari_scheme_resize(whole, whole->h * size / PARTS) : *whole;
+        spari_pattern next = pattern_after(pattern, alpha.h);
+        spari_part part = {.dt = dt, .again = again};
+        spari_scheme c;
+        part.from = at == 0 ? from : from + (to - from) * at / PARTS;
+        part.to = at + size == PARTS ? to : from + (to - from) * (at + size) / PARTS;
+        part.alpha = again ? 0 : pattern->even == SPARI_EVEN ? pattern->h : tried;
+        part.ratio = pattern->h > 0 ? alpha.h / pattern->h : 0;
+        int tries_anew = again || tried > 0; /* the first try has spent the algorithmic accelerations */
+        if (!tries_anew) {
+            how->enter(self, &part);
+        }
+        if (tries_anew || (how->turning && exceeds_limit(how->turning(self), &alpha, session))) {
+            next.even = 0;
+        }
+        part.last = next.even == SPARI_EVEN - 1;
+        int last = size == 1 || !how->gains,
+            status = try_to_stay(how, self, &alpha, next.even, &part, &c, session, last);
+        if (status == SPAR_ERR_NUMERIC && !last) {
+            again = c.rule != SPARI_ALPHA;
+            tried = again ? 0 : alpha.h;
+            cuts->given_up[node / 32] |= (uint32_t)1 << node % 32;
+            continue;
+        }
+        SPARI_TRY(status);
+        SPARI_TRY(how->leave(self, &c, &part));
+        *pattern = next;
+        at += size;
+        again = 0, tried = 0;
+        while (size < PARTS && at % (2 * size) == 0) {
+            size *= 2;
+        }
+    }
+    return SPAR_OK;
+}
+
+int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
+                     spari_pattern *pattern, const spar_session *session, double dt) {
+    int substeps = session->substeps;
+    if (cuts->begun != session->begun || session->rough) {
+        *cuts = (spari_cuts){.begun = session->begun};
+    }
+    for (int k = 1; k <= substeps; k++) {
+        SPARI_TRY(
+            run_substep(how, self, alpha, cuts, pattern, session, dt, (k - 1.0) / substeps, (double)k / substeps));
+    }
+    return SPAR_OK;
+}
+
+void spari_scheme_stretch(double ratio, int n, const double *a, double *b) {
+    for (int i = 0; i < n && ratio > 0 && ratio != 1; i++) {
+        b[i] = a[i] + ratio * (b[i] - a[i]);
+    }
+}
+
+/* b^n = a^n + (alpha_m - alpha_f) h a', by the change of a over the step. Motions that the step does not resolve have a
+   change that says nothing; up to a factor of 0.8 it feeds nothing after two steps of TR-BDF2, whatever rho_inf
+   (tests/stability/random_steps.c). */
+void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b) {
+    double f = fmax(c->alpha_m - c->alpha_f, -0.8);
+    for (int i = 0; i < n; i++) {
+        b[i] = a[i] + f * (a[i] - a0[i]);
+    }
+}
+
+/* Starting values of a stage of TR-BDF2: v = v_h + g a and x = x_h + g v, with v_h and x_h of what is known. */
+static void predict_stage(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x,
+                          spari_rates to) {
+    const double h = c->h, g = 1 / c->rate;
+    for (int k = 0; k < n; k++) {
+        double v0 = from.v[k], a0 = from.a[k], v = v0 + g * a0, p = g * v0, a = a0;
+        if (c->rule == SPARI_BACKWARD) {
+            double as = from.b[k];
+            v = v0 + h * WEIGHT * (a0 + as);
+            p = h * WEIGHT * (v0 + from.stage[k]);
+            a = as + (1 - STAGE) / STAGE * (as - a0);
+        }
+        if (stays != SPARI_KEEP_ACCELERATION) {
+            double way = stays == SPARI_KEEP_PLACE ? 0 : c->span * v0;
+            a = ((way - p) / g - v) / g;
+        }
+        to.a[k] = to.b[k] = a;
+        to.v[k] = v + g * a;
+        x[k] = p + g * to.v[k];
+    }
+}
+
+void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x,
+                          spari_rates to) {
+    double h = c->h;
+    if (c->rule != SPARI_ALPHA) {
+        predict_stage(c, stays, n, from, x, to);
+        return;
+    }
+    for (int k = 0; k < n; k++) {
+        double b = from.b[k], a = from.a[k], v = from.v[k], next;
+        if (stays == SPARI_KEEP_ACCELERATION) {
+            to.a[k] = a;
+            next = (a - c->alpha_m * b) / (1 - c->alpha_m);
+        } else { /* the b that makes x = h v or 0, and the a that goes with it */
+            next = (1 - 0.5 / c->beta) * b - (stays == SPARI_KEEP_PLACE ? v / (h * c->beta) : 0);
+            to.a[k] = ((1 - c->alpha_m) * next + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
+        }
+        x[k] = h * v + h * h * ((0.5 - c->beta) * b + c->beta * next);
+        to.v[k] = v + h * ((1 - c->gamma) * b + c->gamma * next);
+        to.b[k] = next;
+    }
+}
+
+void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double *dx, double *x, spari_rates to) {
+    const double rate = c->rate, cm = c->cm, cb = c->cb;
+    for (int k = 0; k < n; k++) {
+        double step = -cut * dx[k];
+        x[k] += step;
+        to.v[k] += rate * step;
+        to.a[k] += cm * step;
+        to.b[k] += cb * step;
+    }
+}
+
+int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces unbalance, void *self,
+                       const spar_member *m, double *r, double *a) {
+    for (int pass = 0; pass < START_PASSES; pass++) {
+        unbalance(self, m, a, r);
+        memset(r, 0, (size_t)held * sizeof *r);
+        if (spari_linear_solve(A, r)) {
+            return 1;
+        }
+        for (int i = held; i < n; i++) {
+            a[i] -= c->cm * r[i];
+        }
+    }
+    return 0;
+}

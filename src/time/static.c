@@ -1,0 +1,286 @@
+/* Static equilibrium by Newton with the exact tangent, in load steps that halve where Newton fails or leaves the path.
+
+   From a stable state on, the equilibria that growing dead forces lead to form a path on which the tangent, the second
+   derivative of a potential, stays positive definite until a limit or branching point. A load step that ends beyond
+   such a point, or whose iterations pass a tangent of negative determinant (a jump to another branch), is halved; when
+   it cannot be halved any more the point has been found. Moments of fixed axes and follower loads have no potential:
+   their paths are not watched (a beam rolled up by a moment, say, is held to its plane by nothing but symmetry). */
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "../member/applied.h"
+#include "body_solver.h"
+#include "steady_rotation.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STATIC_ITERATIONS = 50, STATIC_HALVINGS = 14 };
+
+/* What a solution works with besides the solver's arrays. */
+typedef struct loading {
+    int turning; /* the root turns: equilibrium in its frame */
+    spari_turn turn, part;
+    double *mass;  /* turning: an element's mass matrix */
+    int guarded;   /* the path is watched */
+    double *v, *a; /* rates of the steady turn; NULL: at rest */
+} loading;
+
+/* Forces less loads at load factor f; returns what rounding in them is relative to. */
+static double balance_at(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q,
+                         double *r) {
+    const spari_body body = spari_body_in_part(s->body, f);
+    double scale;
+    if (l->turning) {
+        l->part = spari_turn_part(&l->turn, f);
+        spari_turn_rates(m, &l->part, q, l->v, l->a);
+        scale = spari_turn_residual(&body, q, l->v, l->a, f, r);
+    } else {
+        scale = spari_body_residual(&body, q, NULL, NULL, f, r, NULL);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        r[i] -= f * s->steps.load[i];
+        scale = fmax(scale, fabs(f * s->steps.load[i]));
+    }
+    if (spari_carries_loads(m)) {
+        scale = fmax(scale, spari_applied_residual(m, q, f, r));
+    }
+    return scale;
+}
+
+/* The tangent at a state for which `balance_at` has been called, not yet factored. */
+static void form_static_tangent(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
+    const spari_body body = spari_body_in_part(s->body, f);
+    spari_linear_zero(s->linear);
+    for (int e = 0; e < s->body->elements; e++) {
+        if (l->turning) {
+            spari_turn_tangent(&body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
+        } else {
+            spari_body_tangent(&body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
+        }
+        if (spari_carries_loads(m)) {
+            spari_applied_tangent(m, e, q, f, s->body->matrix);
+        }
+        spari_linear_add(s->linear, e, s->body->matrix);
+    }
+    for (int i = 0; i < spari_member_held(m); i++) {
+        spari_linear_fix(s->linear, i);
+    }
+}
+
+void spari_static_shift(int n, double cut, const double *dx, double *q) {
+    for (int i = 0; i < n; i++) {
+        double turn[3], p[4];
+        for (int k = 0; k < 3; k++) {
+            q[7 * i + k] -= cut * dx[6 * i + k];
+            turn[k] = -cut * dx[6 * i + 3 + k];
+        }
+        spari_quat_exp(turn, p);
+        spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
+        spari_quat_normalise(q + 7 * i + 3);
+    }
+}
+
+typedef enum outcome { FOUND, FAILED, LOST, LONG } outcome;
+
+/* The state is in equilibrium, its rates those of the last `balance_at`: on the path, or beyond its end? */
+static outcome judge(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
+    if (!l->guarded) {
+        return FOUND;
+    }
+    form_static_tangent(s, m, l, f, q);
+    return spari_linear_definite(s->linear) == 0 ? LOST : FOUND;
+}
+
+/* One Newton solution at load factor f, from and to state q; from_path: q is a point of the path. */
+static outcome equilibrium(spari_solver *s, const spar_member *member, loading *l, double f, int from_path, double *q) {
+    int n = s->n;
+    double last = 0, length = s->body->length;
+    const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
+    for (int it = 0; it < STATIC_ITERATIONS; it++) {
+        double scale = balance_at(s, member, l, f, q, s->r), noise = 0;
+        memset(s->r, 0, (size_t)spari_member_held(member) * sizeof *s->r);
+        for (int i = 0; i < 6 * n; i++) {
+            noise = fmax(noise, fabs(s->r[i]));
+        }
+        if (!isfinite(noise)) {
+            return FAILED;
+        }
+        form_static_tangent(s, member, l, f, q);
+        s->factors++;
+        memcpy(s->dx, s->r, (size_t)(6 * n) * sizeof *s->dx);
+        if (spari_linear_factor(s->linear) || spari_linear_solve(s->linear, s->dx)) {
+            return FAILED;
+        }
+        if (l->guarded && from_path && spari_linear_sign(s->linear) < 0) {
+            return LOST;
+        }
+        double largest = 0;
+        for (int i = 0; i < n; i++) {
+            largest = fmax(largest, fmax(spari_norm(s->dx + 6 * i) / length, spari_norm(s->dx + 6 * i + 3)));
+        }
+        double cut = largest > longest ? longest / largest : 1;
+        spari_static_shift(n, cut, s->dx, q);
+        /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
+        if (cut == 1 && (largest < 1e-9 || noise <= 16 * DBL_EPSILON * scale ||
+                         (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
+            return judge(s, member, l, f, q);
+        }
+        last = largest;
+    }
+    return FAILED;
+}
+
+/* Whether the path can be watched: loads with a potential on a member that its root holds, and that is not linear. */
+static int has_path(const spari_solver *s, const spar_member *m) {
+    int moments = 0;
+    for (int i = 0; i < s->n; i++) {
+        moments |= spari_norm(s->steps.load + 6 * i + 3) > 0;
+    }
+    return !moments && m->root != SPAR_ROOT_PINNED && (m->effects & SPAR_EFFECT_LARGE_ROTATION) &&
+           (!m->applied || spari_applied_potential(m));
+}
+
+/* Whether the state without loads is in equilibrium: the path begins there. */
+static int starts_on_path(const spari_solver *s, const spar_member *m, loading *l, const double *q) {
+    if (!l->guarded) {
+        return 0;
+    }
+    balance_at(s, m, l, 0, q, s->r);
+    for (int i = spari_member_held(m); i < 6 * s->n; i++) {
+        if (fabs(s->r[i]) > 1e-9 * s->body->stiffest) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Load steps from 0 to all of the loads, s->to.q from `start`, which it may be; the last point in s->best. Returns the
+   part reached. */
+static double follow_path(spari_solver *s, const spar_member *member, loading *l, const double *start, int load_steps,
+                          outcome *why) {
+    size_t bytes = (size_t)(7 * s->n) * sizeof(double);
+    double done = 0, step = 1.0 / load_steps;
+    int halvings = 0, on_path = starts_on_path(s, member, l, start), left = load_steps + SPARI_STATIC_MORE;
+    memcpy(s->best, start, bytes);
+    memcpy(s->to.q, s->best, bytes);
+    while (done < 1) {
+        if (left-- == 0) {
+            *why = LONG;
+            break;
+        }
+        double f = done + step > 1 - 1e-12 ? 1 : done + step;
+        outcome o = equilibrium(s, member, l, f, on_path, s->to.q);
+        if (o == FOUND) {
+            done = f;
+            on_path = 1;
+            memcpy(s->best, s->to.q, bytes);
+            continue;
+        }
+        *why = o;
+        memcpy(s->to.q, s->best, bytes);
+        step *= 0.5;
+        if (++halvings > STATIC_HALVINGS) {
+            break;
+        }
+    }
+    return done;
+}
+
+/* Largest turn of a node of the state q against the next one, rad. */
+static double largest_bend(const spari_solver *s, const double *q) {
+    double largest = 0;
+    for (int i = 1; i < s->n; i++) {
+        double back[4], turn[4], psi[3];
+        spari_quat_conj(q + 7 * i - 4, back);
+        spari_quat_mul(back, q + 7 * i + 3, turn);
+        spari_quat_log(turn, psi);
+        largest = fmax(largest, spari_norm(psi));
+    }
+    return largest;
+}
+
+/* Nodes that are turned by more against each other do not hold the shape between them: a circle of 5 turns on 24 nodes
+   (2.1 rad) is right to 5e-4, one of 7 (3 rad) is another curve. Where Newton failed, 1 rad is suspicion enough: 10
+   nodes of an element fail at 1.7. */
+static const double most_bend = 2.2, suspect_bend = 1;
+
+static int refuse(const spari_solver *s, const spar_member *member, double done, outcome why) {
+    double bend = largest_bend(s, s->best);
+    char text[200] = "a limit point, or a member that nothing holds";
+    if (why == LOST) {
+        (void)snprintf(text, sizeof text, "a limit or branching point: the stiffness is no longer positive there");
+    } else if (why == LONG) {
+        (void)snprintf(text, sizeof text, "its way takes more than %d load steps beside those asked for; ask for more",
+                       SPARI_STATIC_MORE);
+    } else if (bend > suspect_bend) {
+        (void)snprintf(text, sizeof text,
+                       "neighbouring nodes are turned by %.2g rad against each other there, more than they can follow: "
+                       "give the beam more nodes or elements",
+                       bend);
+    }
+    return spari_fail(member->session, SPAR_ERR_NUMERIC,
+                      "member '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state is as it was. Ask "
+                      "for less than that, or go on in time steps",
+                      member->name, why == LOST ? "stable " : "", done, text);
+}
+
+/* An equilibrium of the nodes that is none of the beam. */
+static void warn_of_bend(const spari_solver *s, const spar_member *m) {
+    char text[SPARI_MESSAGE_SIZE];
+    double bend = m->session->log ? largest_bend(s, s->best) : 0;
+    if (bend <= most_bend) {
+        return;
+    }
+    (void)snprintf(text, sizeof text,
+                   "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more "
+                   "than they can follow: what was found may not be the beam's; give it more nodes or elements",
+                   m->name, bend);
+    spari_log(m->session, SPAR_LOG_WARNING, text);
+}
+
+static int no_memory_to_balance(const spar_member *member) {
+    return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", member->name);
+}
+
+/* The shape found, at rest or turning steadily. */
+static void give_equilibrium(spari_solver *s, const spar_member *member, const loading *l) {
+    memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof *s->best);
+    memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof(double));
+    if (l->turning) {
+        spari_turn_rates(member, &l->turn, s->to.q, s->to.v, s->to.a);
+    }
+}
+
+int spari_solver_static(spari_solver *s, const spar_member *member, int load_steps, int onward) {
+    int n = s->n;
+    loading l = {0};
+    outcome why = FAILED;
+    l.turning = member->root == SPAR_ROOT_DRIVEN && spari_turn_of(member, member->now.v, member->now.a, &l.turn);
+    l.v = s->to.v, l.a = s->to.a;
+    if (l.turning) {
+        l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
+        if (!l.mass) {
+            return no_memory_to_balance(member);
+        }
+    }
+    l.guarded = has_path(s, member);
+    if (l.guarded && spari_linear_watch(s->linear)) {
+        free(l.mass);
+        return no_memory_to_balance(member);
+    }
+    double done = onward ? follow_path(s, member, &l, s->to.q, 1, &why) : 0;
+    done = done < 1 ? follow_path(s, member, &l, s->begin.q, load_steps, &why) : done;
+    free(l.mass);
+    spari_linear_unwatch(s->linear);
+    s->factored = 0;
+    spari_snapshot_close(&s->before);
+    if (done < 1) {
+        memcpy(s->to.q, s->begin.q, (size_t)(25 * n) * sizeof *s->to.q);
+        return refuse(s, member, done, why);
+    }
+    warn_of_bend(s, member);
+    give_equilibrium(s, member, &l);
+    return SPAR_OK;
+}

@@ -1,0 +1,142 @@
+/* Equilibrium seen from a root that turns steadily: rates, forces, tangent. */
+#include "steady_rotation.h"
+
+#include "../math/rotation.h"
+#include "../member/body.h"
+
+#include <string.h>
+
+int spari_turn_of(const spar_member *m, const double v[6], const double a[6], spari_turn *turn) {
+    memcpy(turn->v0, v, sizeof turn->v0);
+    memcpy(turn->w, v + 3, sizeof turn->w);
+    memcpy(turn->a0, a, sizeof turn->a0);
+    int inertia = m->body->mass && (m->effects & SPAR_EFFECT_INERTIA);
+    return inertia && (spari_norm(turn->w) > 0 || spari_norm(turn->a0) > 0);
+}
+
+spari_turn spari_turn_part(const spari_turn *turn, double f) {
+    spari_turn part = *turn;
+    for (int i = 0; i < 3; i++) {
+        part.w[i] *= sqrt(f);
+        part.v0[i] *= sqrt(f);
+        part.a0[i] *= f;
+    }
+    return part;
+}
+
+void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double *q, double *v, double *a) {
+    int P = m->per_element;
+    for (int64_t i = 0; i < m->nodes; i++) {
+        int64_t u = m->elements == 1 ? i : i - i / P;
+        double r[3];
+        for (int c = 0; c < 3; c++) {
+            r[c] = m->xr[3 * i + c] - m->xr[c] + q[7 * u + c] - q[c];
+        }
+        spari_cross(turn->w, r, v + 6 * u);
+        spari_cross(turn->w, v + 6 * u, a + 6 * u);
+        for (int c = 0; c < 3; c++) {
+            v[6 * u + c] += turn->v0[c];
+            a[6 * u + c] += turn->a0[c];
+            v[6 * u + 3 + c] = turn->w[c];
+            a[6 * u + 3 + c] = 0;
+        }
+    }
+}
+
+void spari_turning_rates(const spari_turning *t, double f, const double x[3], double v[6], double a[6]) {
+    const spari_turn part = spari_turn_part(&t->turn, f);
+    const double r[3] = {x[0] - t->centre[0], x[1] - t->centre[1], x[2] - t->centre[2]};
+    spari_cross(part.w, r, v);
+    spari_cross(part.w, v, a);
+    for (int k = 0; k < 3; k++) {
+        v[k] += part.v0[k];
+        a[k] += part.a0[k];
+        v[3 + k] = part.w[k];
+        a[3 + k] = 0;
+    }
+}
+
+double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
+                           double *r) {
+    spari_body body = *damped;
+    body.D = NULL;
+    body.drag = 0;
+    return spari_body_residual(&body, q, v, a, factor, r, NULL);
+}
+
+void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e, const double *q, const double *v,
+                        const double *a, double factor, double *S, double *M) {
+    int n = 6 * damped->per_element;
+    spari_body body = *damped;
+    body.D = NULL;
+    body.drag = 0;
+    spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
+    spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);
+    if (!turn || body.linear[0]) {
+        return;
+    }
+    const double *w = turn->w;
+    double ww[3][3], square = spari_dot(w, w);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            ww[i][j] = w[i] * w[j] - (i == j ? square : 0);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        for (int l = 0; l < n; l += 6) {
+            double *s = S + (int64_t)i * n + l, *x = M + (int64_t)i * n + l;
+            for (int j = 0; j < 3; j++) {
+                s[j] += x[0] * ww[0][j] + x[1] * ww[1][j] + x[2] * ww[2][j];
+            }
+        }
+    }
+}
+
+/* to [n][n] += X T, X [n][n], T the same 3 x 3 block for each vector of a node's that begins at `from` */
+static void add_by_blocks(int n, const double *X, int from, double T[3][3], double *to) {
+    for (int i = 0; i < n; i++) {
+        for (int l = from; l < n; l += 6) {
+            const double *x = X + (int64_t)i * n + l;
+            double *y = to + (int64_t)i * n + l;
+            for (int j = 0; j < 3; j++) {
+                y[j] += x[0] * T[0][j] + x[1] * T[1][j] + x[2] * T[2][j];
+            }
+        }
+    }
+}
+
+void spari_turn_pencil(const spari_body *body, const double w[3], const double own[3], int e, const double *q,
+                       const double *v, const double *a, double *K, double *C, double *M) {
+    int n = 6 * body->per_element;
+    spari_body_tangent(body, e, q, v, a, 1, 0, 0, NULL, K);
+    spari_body_rates(body, e, q, v, a, 1, K, C, M);
+    if (!v || body->linear[0]) {
+        return;
+    }
+    /* dv = x' + w x and x' - s x, da = x'' + 2 w x' + w w x and x'' + (w - s) x' - w s x, of places and turns */
+    double W[3][3], S[3][3], WW[3][3], WS[3][3], two[3][3], less[3][3], back[3][3];
+    double s[3] = {own[0] - w[0], own[1] - w[1], own[2] - w[2]};
+    spari_skew(w, *W);
+    spari_skew(s, *S);
+    for (int i = 0; i < 9; i++) {
+        int r = i / 3, c = i % 3;
+        WW[r][c] = W[r][0] * W[0][c] + W[r][1] * W[1][c] + W[r][2] * W[2][c];
+        WS[r][c] = -(W[r][0] * S[0][c] + W[r][1] * S[1][c] + W[r][2] * S[2][c]);
+        two[r][c] = 2 * W[r][c];
+        less[r][c] = W[r][c] - S[r][c];
+        back[r][c] = -S[r][c];
+    }
+    if (body->drag > 0 && body->node_place) { /* damping by mass is seen from the frame itself */
+        double still[3][3];
+        for (int i = 0; i < 9; i++) {
+            still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];
+        }
+        add_by_blocks(n, M, 0, still, K);
+    }
+    add_by_blocks(n, C, 0, W, K);
+    add_by_blocks(n, C, 3, back, K);
+    add_by_blocks(n, M, 0, WW, K);
+    add_by_blocks(n, M, 3, WS, K);
+    add_by_blocks(n, M, 0, two, C);
+    add_by_blocks(n, M, 3, less, C);
+}

@@ -1,0 +1,91 @@
+/* How a step changes a member's acceleration: see step_error.h. */
+#include "step_error.h"
+
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "fidelity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Velocity and acceleration of node i, of a driven root's member as seen from there, in its axes. */
+static void rates_from_root(const spar_member *m, const spari_motion *x, int64_t i, double v[6], double a[6]) {
+    memcpy(v, x->v + 6 * i, 6 * sizeof *v);
+    memcpy(a, x->a + 6 * i, 6 * sizeof *a);
+    if (m->root != SPAR_ROOT_DRIVEN) {
+        return;
+    }
+    const double *W = x->v + 3, *A = x->a + 3;
+    double d[3], c[3], w[3];
+    for (int k = 0; k < 3; k++) {
+        d[k] = m->xr[3 * i + k] + x->q[7 * i + k] - m->xr[k] - x->q[k];
+        v[k] -= x->v[k];
+        a[k] -= x->a[k];
+    }
+    spari_cross(W, d, c);
+    for (int k = 0; k < 3; k++) {
+        v[k] -= c[k];
+        w[k] = c[k] + 2 * v[k];
+    }
+    spari_cross(W, w, c);
+    spari_cross(A, d, w);
+    for (int k = 0; k < 3; k++) {
+        a[k] -= c[k] + w[k];
+    }
+    spari_rotate_back(x->q + 3, v, v);
+    spari_rotate_back(x->q + 3, a, a);
+}
+
+int spari_change_is(const spar_member *m) {
+    return m->row->solved && m->row->moves && (m->effects & SPAR_EFFECT_INERTIA) != 0;
+}
+
+/* Sums of squares over nodes, in parts of `span` of those that are looked at. */
+enum { PARTS = 32, LEAST = 256 };
+typedef struct change_sums {
+    const spar_member *m;
+    int64_t stride, span;
+    double length;
+    spari_change part[PARTS];
+} change_sums;
+
+static void add_changes(void *context, int64_t from, int64_t to) {
+    change_sums *t = context;
+    const spar_member *m = t->m;
+    double v[6], a[6], v0[6], a0[6];
+    spari_change sum = {0, 0, 0};
+    for (int64_t i = from; i < to; i++) {
+        rates_from_root(m, &m->now, i * t->stride, v0, a0);
+        rates_from_root(m, &m->after, i * t->stride, v, a);
+        for (int k = 0; k < 6; k++) {
+            double weight = k < 3 ? 1 : t->length * t->length;
+            sum.change += weight * (a[k] - a0[k]) * (a[k] - a0[k]);
+            sum.acceleration += weight * a[k] * a[k];
+            sum.speed += weight * v[k] * v[k];
+        }
+    }
+    t->part[from / t->span] = sum;
+}
+
+spari_change spari_change_of(const spar_member *m, int64_t stride) {
+    int64_t nodes = (m->nodes + stride - 1) / stride, span = (nodes + PARTS - 1) / PARTS;
+    change_sums t = {.m = m, .stride = stride, .span = span < LEAST ? LEAST : span};
+    t.length = m->nodes == 1 ? spari_member_length(m) : 0;
+    spari_crew_spread(m->session->crew, nodes, t.span, add_changes, &t);
+    spari_change sum = t.part[0];
+    for (int64_t k = 1; k * t.span < nodes; k++) {
+        sum.change += t.part[k].change;
+        sum.acceleration += t.part[k].acceleration;
+        sum.speed += t.part[k].speed;
+    }
+    double count = (double)nodes;
+    return (spari_change){sqrt(sum.change / count), sqrt(sum.acceleration / count), sqrt(sum.speed / count)};
+}
+
+int spari_change_tells(const spar_session *s) {
+    return s->step > 0 || (s->members && s->members->begun);
+}
+
+double spari_change_error(const spari_scheme *c, double change) {
+    return fabs(spari_scheme_error(c)) * c->h * c->h * change;
+}
