@@ -6,7 +6,7 @@
 #include "scene.h"
 
 #include "ranks.h"
-#include "session/own.h"
+#include "exchange/session_private.h"
 #include "tune/apply.h"
 #include "trial/rebuild.h"
 #include <spar/spar_mpi.h>

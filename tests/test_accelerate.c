@@ -5,7 +5,7 @@
 
 #include <spar/spar.h>
 
-#include "session/accelerate.h"
+#include "coupling/schemes.h"
 
 #include <math.h>
 #include <stdlib.h>

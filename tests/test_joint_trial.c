@@ -3,7 +3,7 @@
 #include "scene.h"
 
 #include "member/joint.h"
-#include "session/own.h"
+#include "exchange/session_private.h"
 #include "tune/apply.h"
 #include "trial/rebuild.h"
 

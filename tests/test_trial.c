@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "math/basis.h"
-#include "session/own.h"
+#include "exchange/session_private.h"
 #include "tune/apply.h"
 #include "tune/settings_trial.h"
 

@@ -86,7 +86,7 @@
      tests/torture;
    - a setting: a field of the session (src/base/session.h) and a row of the table in src/session/settings.c;
    - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/time/fidelity.h;
-   - a coupling scheme: its SPAR_COUPLING_*, its row in src/session/accelerator.c, its name in accelerate.h;
+   - a coupling scheme: its SPAR_COUPLING_*, its row in src/coupling/accelerator.c, its name in accelerate.h;
    - a projection: its SPAR_PROJECT_*, src/transfer/projection.c, the check in src/fluid/nodes.c.
 
    ABI. Structs are opaque, enumerators and codes never change their numbers, a function never changes its arguments:

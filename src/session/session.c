@@ -1,9 +1,9 @@
 /* A session: created, asked for its time, released. */
-#include "coupling.h"
-#include "own.h"
+#include "../coupling/coupling.h"
+#include "../exchange/session_private.h"
 #include "settings.h"
-#include "spread.h"
-#include "threads.h"
+#include "../exchange/sparse.h"
+#include "work_shares.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"

@@ -9,7 +9,7 @@
 #include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
-#include "accelerate.h"
+#include "../coupling/schemes.h"
 
 #include <assert.h>
 #include <float.h>

@@ -8,12 +8,12 @@
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 #include "../solve/life.h"
-#include "accelerate.h"
-#include "coupling.h"
-#include "exchange.h"
-#include "lend.h"
-#include "own.h"
-#include "spread.h"
+#include "../coupling/schemes.h"
+#include "../coupling/coupling.h"
+#include "../exchange/exchange.h"
+#include "callbacks.h"
+#include "../exchange/session_private.h"
+#include "../exchange/sparse.h"
 
 #include <math.h>
 #include <stdio.h>

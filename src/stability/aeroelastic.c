@@ -6,7 +6,7 @@
 
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../session/exchange.h"
+#include "../exchange/exchange.h"
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 

@@ -9,8 +9,8 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../math/rotation.h"
-#include "../session/exchange.h"
-#include "../session/lend.h"
+#include "../exchange/exchange.h"
+#include "../session/callbacks.h"
 #include "../assembly/assembly.h"
 #include "../solve/life.h"
 

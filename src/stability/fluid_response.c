@@ -2,8 +2,8 @@
 #include "fluid_response.h"
 
 #include "../math/rotation.h"
-#include "../session/forced.h"
-#include "../session/lend.h"
+#include "../session/prescribed_step.h"
+#include "../session/callbacks.h"
 
 #include <math.h>
 #include <stdlib.h>

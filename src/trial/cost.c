@@ -4,8 +4,8 @@
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/beam.h"
-#include "../session/coupling.h"
-#include "../session/own.h"
+#include "../coupling/coupling.h"
+#include "../exchange/session_private.h"
 #include "../time/fidelity.h"
 #include "rules.h"
 

@@ -3,7 +3,7 @@
 #ifndef SPARI_RECORD_H
 #define SPARI_RECORD_H
 
-#include "../session/own.h"
+#include "../exchange/session_private.h"
 
 /* Runs are compared at so many times; what lies between ends of steps is interpolated by cubics. */
 enum { SPARI_SAMPLES = 128 };

@@ -9,12 +9,12 @@
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/checks.h"
-#include "../session/coupling.h"
-#include "../session/exchange.h"
-#include "../session/lend.h"
-#include "../session/own.h"
-#include "../session/spread.h"
-#include "../session/start.h"
+#include "../coupling/coupling.h"
+#include "../exchange/exchange.h"
+#include "../session/callbacks.h"
+#include "../exchange/session_private.h"
+#include "../exchange/sparse.h"
+#include "../session/initial_accelerations.h"
 #include "../solve/life.h"
 
 #include <math.h>

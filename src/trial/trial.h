@@ -5,9 +5,9 @@
 
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
-#include "../session/own.h"
+#include "../exchange/session_private.h"
 #include "../session/settings.h"
-#include "progress.h"
+#include "../session/progress.h"
 #include "run_record.h"
 #include "rebuild.h"
 

@@ -1,7 +1,7 @@
 /* Numbers of the host's own that advice is to keep. */
 #include "../base/environment.h"
 #include "../base/session.h"
-#include "../session/own.h"
+#include "../exchange/session_private.h"
 
 #include <string.h>
 

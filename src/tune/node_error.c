@@ -6,7 +6,7 @@
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../member/body.h"
-#include "../session/pace.h"
+#include "../session/step_control.h"
 #include "../time/fidelity.h"
 #include "../time/body_solver.h"
 #include "../trial/rebuild.h"

@@ -7,7 +7,7 @@
 #include "../math/basis.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../session/accelerate.h"
+#include "../coupling/schemes.h"
 #include "../time/fidelity.h"
 
 #include <float.h>

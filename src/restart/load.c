@@ -8,9 +8,9 @@
 #include "../fluid/fluid.h"
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
-#include "exchange.h"
+#include "../exchange/exchange.h"
 #include "saved.h"
-#include "spread.h"
+#include "../exchange/sparse.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Quasi-Newton from columns of earlier iterations, and what they tell of a fluid that contradicts itself. */
-#include "columns.h"
+#include "quasi_newton.h"
 
 #include "../base/status.h"
 

@@ -1,5 +1,5 @@
-/* What goes between the ranks of a member that is solved: see block.h. */
-#include "block.h"
+/* What goes between the ranks of a member that is solved: see motion_block.h. */
+#include "motion_block.h"
 
 #include "../member/body.h"
 

@@ -1,5 +1,5 @@
 /* An accelerator's whole state as doubles. */
-#include "columns.h"
+#include "quasi_newton.h"
 
 #include "../base/status.h"
 

@@ -6,8 +6,8 @@
 #include "../member/added_mass.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "own.h"
-#include "weigh.h"
+#include "../exchange/session_private.h"
+#include "motion_norm.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,10 +1,10 @@
 /* What an accelerator is made of, for the three files that share it: accelerator.c (its life, the step, the schemes),
-   columns.c (quasi-Newton) and accelerator_state.c (save and load). */
+   quasi_newton.c (quasi-Newton) and accelerator_state.c (save and load). */
 #ifndef SPARI_COLUMNS_H
 #define SPARI_COLUMNS_H
 
 #include "../time/tangent_snapshot.h"
-#include "accelerate.h"
+#include "schemes.h"
 #include "../algebra/secants.h"
 
 #include <math.h>
@@ -135,7 +135,7 @@ static inline double spari_size_in(const double *a, const double *image, int64_t
     return sqrt(fmax(spari_dot(a, image, n), 0));
 }
 
-/* ---- columns.c ---- */
+/* ---- quasi_newton.c ---- */
 
 /* Factors anew, the newest columns first, so that the filter and the limit on their number take out old ones. */
 void spari_columns_factor(spari_accelerator *a);

@@ -1,11 +1,11 @@
-/* A step whose motion is given to the members: see forced.h. */
-#include "forced.h"
+/* A step whose motion is given to the members: see prescribed_step.h. */
+#include "prescribed_step.h"
 
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
-#include "exchange.h"
-#include "lend.h"
+#include "../exchange/exchange.h"
+#include "callbacks.h"
 
 #include <string.h>
 

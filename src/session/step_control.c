@@ -1,10 +1,10 @@
-/* Steps to a tolerance: see pace.h. */
-#include "pace.h"
+/* Steps to a tolerance: see step_control.h. */
+#include "step_control.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../time/step_error.h"
-#include "own.h"
+#include "../exchange/session_private.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Acceleration of the coupling's iteration: relaxation, Aitken's, and quasi-Newton from columns of earlier
-   iterations (columns.c). */
-#include "columns.h"
+   iterations (quasi_newton.c). */
+#include "quasi_newton.h"
 
 #include "../base/poison.h"
 #include "../base/status.h"

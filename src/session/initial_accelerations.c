@@ -1,6 +1,6 @@
 /* The balanced start: accelerations and fluid loads at t^0 that belong together, M a + ... = F(q, v, a). It is iterated
    as a step is, with the members' balance of forces at t^0 in place of their way to t^{n+1}; time stands meanwhile. */
-#include "start.h"
+#include "initial_accelerations.h"
 
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
@@ -9,9 +9,9 @@
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 #include "../solve/life.h"
-#include "coupling.h"
-#include "exchange.h"
-#include "own.h"
+#include "../coupling/coupling.h"
+#include "../exchange/exchange.h"
+#include "../exchange/session_private.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,13 +1,13 @@
 /* The norm of the coupling. Loads x move the structure by S x over the step, S its flexibility: the matrix of the step
    inverted. In the norm sqrt(x . S x), the root of the work that x does on its own answer, a load that moves nothing
    counts nothing, forces and moments add up in one unit, and the derivative of an added mass, -M S, is symmetric. */
-#include "weigh.h"
+#include "motion_norm.h"
 
 #include "../comm/comm.h"
 #include "../member/structure.h"
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
-#include "spread.h"
+#include "../exchange/sparse.h"
 
 #include <math.h>
 #include <stdlib.h>

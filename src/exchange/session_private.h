@@ -9,7 +9,7 @@ typedef struct spari_record spari_record;     /* trial/trial.h */
 typedef struct spari_coupling spari_coupling; /* coupling.h */
 typedef struct spari_advised spari_advised;   /* trial/apply.h */
 
-/* Of steps to a tolerance (pace.h), kept from step to step. */
+/* Of steps to a tolerance (step_control.h), kept from step to step. */
 typedef struct spari_pace {
     double last;  /* error over tolerance of the last accepted step, */
     double ratio; /* and as dt goes by it, which fades; 0: none */

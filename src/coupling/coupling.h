@@ -3,7 +3,7 @@
 #ifndef SPARI_COUPLING_H
 #define SPARI_COUPLING_H
 
-#include "accelerate.h"
+#include "schemes.h"
 
 #include <spar/spar.h>
 

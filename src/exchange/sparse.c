@@ -1,10 +1,10 @@
-/* What goes to the ranks that touch it: see spread.h. */
-#include "spread.h"
+/* What goes to the ranks that touch it: see sparse.h. */
+#include "sparse.h"
 
 #include "../fluid/fluid.h"
 #include "../assembly/assembly.h"
-#include "block.h"
-#include "own.h"
+#include "motion_block.h"
+#include "session_private.h"
 
 #include <stdlib.h>
 #include <string.h>

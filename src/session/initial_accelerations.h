@@ -1,4 +1,4 @@
-/* The balanced start, in the pieces that a step is made of: see start.c. */
+/* The balanced start, in the pieces that a step is made of: see initial_accelerations.c. */
 #ifndef SPARI_START_H
 #define SPARI_START_H
 

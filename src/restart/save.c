@@ -8,7 +8,7 @@
 #include "../fluid/fluid.h"
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
-#include "exchange.h"
+#include "../exchange/exchange.h"
 #include "saved.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "coupling.h"
 
 #include "../comm/enter.h"
-#include "own.h"
+#include "../exchange/session_private.h"
 
 int spari_coupling_lay_aside(spar_session *s, int scheme) {
     spari_coupling *own = NULL;

@@ -2,7 +2,7 @@
 #ifndef SPARI_WEIGH_H
 #define SPARI_WEIGH_H
 
-#include "own.h"
+#include "../exchange/session_private.h"
 
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
-/* The host's fluid solver inside a call of the library's: see lend.h. */
-#include "lend.h"
+/* The host's fluid solver inside a call of the library's: see callbacks.h. */
+#include "callbacks.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"

@@ -3,7 +3,7 @@
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../math/rotation.h"
-#include "lend.h"
+#include "callbacks.h"
 
 #include <math.h>
 #include <stdio.h>

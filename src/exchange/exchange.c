@@ -5,9 +5,9 @@
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
 #include "../assembly/assembly.h"
-#include "block.h"
-#include "own.h"
-#include "spread.h"
+#include "motion_block.h"
+#include "session_private.h"
+#include "sparse.h"
 
 #include <stdlib.h>
 #include <string.h>

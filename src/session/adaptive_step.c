@@ -2,9 +2,9 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../member/checks.h"
-#include "lend.h"
-#include "own.h"
-#include "pace.h"
+#include "callbacks.h"
+#include "../exchange/session_private.h"
+#include "step_control.h"
 #include "step.h"
 
 #include <math.h>

@@ -9,9 +9,9 @@
 #include "../member/added_mass_fit.h"
 #include "../member/mean_acceleration.h"
 #include "../solve/life.h"
-#include "coupling.h"
-#include "own.h"
-#include "settings.h"
+#include "../coupling/coupling.h"
+#include "../exchange/session_private.h"
+#include "../session/settings.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Threads: asked for, and what they solve. */
-#include "threads.h"
+#include "work_shares.h"
 
 #include "../base/thread_pool.h"
 #include "../base/environment.h"
@@ -9,8 +9,8 @@
 #include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 #include "../solve/life.h"
-#include "coupling.h"
-#include "own.h"
+#include "../coupling/coupling.h"
+#include "../exchange/session_private.h"
 
 #include <stdlib.h>
 
