@@ -149,7 +149,8 @@ void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
 }
 
 int spari_member_turns_stiffly(const spar_member *m) {
-    return m->body && m->body->unique > 1 && !m->body->linear[0] && !spari_member_root_is_given(m);
+    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !m->body->linear[0] &&
+           !spari_member_root_is_given(m);
 }
 
 int spari_scheme_turns(const spar_session *s, double dt) {
