@@ -380,6 +380,14 @@ static int not_converged(spar_session *s, const char *call) {
     if (spari_coupling_wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
+    /* Before growth is looked at: what rounding leaves may grow from iteration to iteration. */
+    const double rounding = s->standing ? 0 : rounding_of_accelerations(s);
+    SPARI_REQUIRE(
+        s, 10 * rounding < s->coupling_rtol || s->coupling_rtol == 0, SPAR_ERR_NUMERIC,
+        "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a step "
+        "as short as %g s the rounding of places is %.1g of the accelerations, and of loads that answer to "
+        "them; take a larger dt or tolerance",
+        call, s->iteration, c->residual[last], c->size[last], motion, mass, s->dt, rounding);
     double factor = grown_lately(c);
     if (factor > 0) {
         return spari_fail(
@@ -388,13 +396,6 @@ static int not_converged(spar_session *s, const char *call) {
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
             call, s->iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
     }
-    const double rounding = s->standing ? 0 : rounding_of_accelerations(s);
-    SPARI_REQUIRE(
-        s, 10 * rounding < s->coupling_rtol || s->coupling_rtol == 0, SPAR_ERR_NUMERIC,
-        "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a step "
-        "as short as %g s the rounding of places is %.1g of the accelerations, and of loads that answer to "
-        "them; take a larger dt or tolerance",
-        call, s->iteration, c->residual[last], c->size[last], motion, mass, s->dt, rounding);
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
                       "N%s%s); %s",
