@@ -171,14 +171,15 @@ static void effects(const scene *s) {
                {"no gyroscopic", SPAR_EFFECT_GYROSCOPIC},
                {"no gravity", SPAR_EFFECT_GRAVITY},
                {"no damping", SPAR_EFFECT_DAMPING},
-               {"no large rotation", SPAR_EFFECT_LARGE_ROTATION},
                {"no moment", SPAR_EFFECT_FLUID_MOMENT}},
       aero[] = {{"no induction", SPAR_AERO_INDUCTION}, {"no tip loss", SPAR_AERO_TIP_LOSS},
                 {"no hub loss", SPAR_AERO_HUB_LOSS},   {"no swirl", SPAR_AERO_SWIRL},
                 {"no drag", SPAR_AERO_DRAG},           {"no pitching", SPAR_AERO_MOMENT}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         knobs k = s->standard;
-        k.effects = 63 & ~all[i].bit;
+        k.effects = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
+                    SPAR_EFFECT_FLUID_MOMENT;
+        k.effects &= ~all[i].bit;
         add(s, "effects", all[i].name, k);
     }
     if (s->floats) {

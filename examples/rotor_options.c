@@ -75,7 +75,6 @@ static const struct {
                {"gyroscopic", 0, SPAR_EFFECT_GYROSCOPIC},
                {"gravity", 0, SPAR_EFFECT_GRAVITY},
                {"damping", 0, SPAR_EFFECT_DAMPING},
-               {"large-rotation", 0, SPAR_EFFECT_LARGE_ROTATION},
                {"fluid-moment", 0, SPAR_EFFECT_FLUID_MOMENT},
                {"induction", 1, SPAR_AERO_INDUCTION},
                {"tip-loss", 1, SPAR_AERO_TIP_LOSS},

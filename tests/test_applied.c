@@ -172,7 +172,7 @@ static void test_small_uniform_loads(void **state) {
             spar_session *s = scene_session();
             scene_diagonal(K, stiff, stiff, stiff, EI, EI, EI);
             spar_member *b = scene_beam(s, "b", 2, 8, L, K, NULL);
-            OK(s, spar_member_set_effects(b, linear ? 0 : SPAR_EFFECT_LARGE_ROTATION));
+            OK(s, spar_member_set_fidelity(b, linear ? SPAR_FIDELITY_LINEAR : SPAR_FIDELITY_EXACT, 0));
             OK(s, spar_member_commit(b));
             OK(s, spar_beam_set_line_load(b, kind, 4, eta, load));
             OK(s, spar_member_solve_static(b, 1));

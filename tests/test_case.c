@@ -486,6 +486,8 @@ static void test_mistakes(void **state) {
         {"[point a]\nload last dead 0 0 0 0 0\n", "line 2: load has 7 values", "give 8"},
         {"[point a]\nload 1 dead 0 0 0 0 0 0\n", "line 2: load: 1", "a whole number from 0 to 0"},
         {"[point a]\neffects inertia wrok\n", "line 2: effects: 'wrok' is not known", "did you mean work?"},
+        {"[point a]\neffects inertia large_rotation\n", "line 2: spar_member_set_effects",
+         "choose SPAR_FIDELITY_LINEAR"},
         {"[point a]\norientation 0 0 0 0\n", "line 2: spar_member_set_placement", "a"},
         {"[joint j]\n", "line 1: [joint j] has no end a", "a MEMBER NODE"},
         {"[joint j]\na wing 0\n", "line 2: there is no member 'wing'", "nor any other"},

@@ -332,6 +332,31 @@ static void test_reactions(void **state) {
     spar_session_destroy(&s);
 }
 
+/* Linear statics of a cantilever: w = F L^3 / 3 EI + F L / GA with one load, exactly, and gravity as w = q L^4 / 8 EI +
+ * q L^2 / 2 GA. */
+static void test_linear_static(void **state) {
+    (void)state;
+    double C[36], D[36], L = 10, EI = 5e4, GA = 4e4, m = 0.1, g[3] = {0, 0, -9.81}, load[6] = {0, 0, 10, 0, 0, 0}, q[7];
+    scene_diagonal(C, 1e6, GA, GA, 2e4, EI, EI);
+    scene_diagonal(D, m, m, m, 0.1, 0.05, 0.05);
+    for (int gravity = 0; gravity < 2; gravity++) {
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "b", 2, 6, L, C, D);
+        OK(s, spar_session_set_gravity(s, g));
+        OK(s, spar_member_set_effects(b, gravity ? SPAR_EFFECT_GRAVITY : 0));
+        OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
+        OK(s, spar_member_commit(b));
+        load[2] = gravity ? 0 : 10;
+        OK(s, spar_member_set_load(b, 11, SPAR_LOAD_DEAD, load));
+        OK(s, spar_member_solve_static(b, 1));
+        scene_tip(b, q);
+        double w =
+            gravity ? -m * 9.81 * (L * L * L * L / (8 * EI) + L * L / (2 * GA)) : 10 * (L * L * L / (3 * EI) + L / GA);
+        NEAR(q[2], w, 1e-11 * fabs(w));
+        spar_session_destroy(&s);
+    }
+}
+
 /* Work that is skipped: no solver and no body where nothing is solved; one factorisation while the speed and dt stay,
    and one solution per step. */
 static void test_skipped_work(void **state) {
@@ -499,6 +524,7 @@ static void test_refusals(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear_at_rest),
+        cmocka_unit_test(test_linear_static),
         cmocka_unit_test(test_linear_turning),
         cmocka_unit_test(test_all_modes_are_linear),
         cmocka_unit_test(test_modal_free),

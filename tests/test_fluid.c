@@ -596,7 +596,7 @@ static void history_is_an_effect(void **state) {
     (void)state;
     const double xi[2] = {-0.5, 0.5}, force[2][3] = {{1, 2, 3}, {4, 5, 6}};
     enum { KINDS = 5 };
-    static const int effects[KINDS] = {0, SPAR_EFFECT_DEFAULT, SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_FLUID_HISTORY,
+    static const int effects[KINDS] = {0, SPAR_EFFECT_DEFAULT, SPAR_EFFECT_INERTIA, SPAR_EFFECT_FLUID_HISTORY,
                                        SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY};
     for (int k = 0; k < 2 * KINDS; k++) {
         rig r;
@@ -642,7 +642,7 @@ static void loads_of_fluids_add(void **state) {
         unsigned long long seed = 5;
         double node[2][N][3], x[N][3], force[2][N][3], moment[2][N][3], load[MOST][6], sum[6], want[6] = {0}, t[3],
                                                                                                audit[8];
-        rig_start(&r, moments ? 0 : SPAR_EFFECT_LARGE_ROTATION);
+        rig_start(&r, moments ? 0 : SPAR_EFFECT_INERTIA);
         spar_fluid *f[2];
         bend(&r, 0.9);
         for (int k = 0; k < 2; k++) {

@@ -16,15 +16,11 @@ static spar_member *pile(spar_session *s, int elements, int nodes, int root) {
     return b;
 }
 
-/* Exact, LARGE_ROTATION off, linear, modal with `modes`. */
-enum { KINDS = 4 };
+/* Exact, linear, modal with `modes`. */
+enum { KINDS = 3 };
 static void of_kind(spar_session *s, spar_member *b, int kind, int64_t modes) {
-    static const int fidelity[KINDS] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR,
-                                        SPAR_FIDELITY_MODAL};
-    OK(s, spar_member_set_fidelity(b, fidelity[kind], kind == 3 ? modes : 0));
-    if (kind == 1) {
-        OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_WORK));
-    }
+    static const int fidelity[KINDS] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    OK(s, spar_member_set_fidelity(b, fidelity[kind], kind == 2 ? modes : 0));
 }
 
 static void bed(spar_session *s, spar_member *b, double x, double y, double z) {
@@ -184,8 +180,7 @@ static void test_off(void **state) {
         OK(s, spar_session_set_gravity(s, (double[3]){0, 0, -9.81}));
         if (off) {
             bed(s, b, 1, 100, 100);
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY |
-                                                 SPAR_EFFECT_LARGE_ROTATION));
+            OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY));
         }
         OK(s, spar_member_commit(b));
         scene_run(s, 0.01, 20);

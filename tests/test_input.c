@@ -99,6 +99,7 @@ static void test_members(void **state) {
     REFUSED(s, SPAR_ERR_STATE, "no line", spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
     REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "choose SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, -1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_member_set_placement(b, x, q));

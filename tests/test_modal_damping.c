@@ -15,10 +15,10 @@ static void test_uncoupled(void **state) {
     double K[36], M[36], f[2], mu[6] = {1, 1, 1, 1, 1, 1};
     scene_diagonal(K, 1e6, 1e6, 1e6, 50, 10, 40);
     scene_diagonal(M, 2, 2, 2, 1e-3, 1e-3, 1e-3);
-    for (int linear = 0; linear < 2; linear++) {
+    for (int chosen = 0; chosen < 2; chosen++) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "b", 1, 8, 3, K, M);
-        if (linear) { /* effects by choice: some damping first */
+        if (chosen) { /* effects by choice: some damping first */
             OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING));
             OK(s, spar_beam_set_damping(b, mu));
         }

@@ -193,6 +193,7 @@ static void springs_create(springs *p, int n, int scheme) {
         OK(p->session, spar_beam_create(p->session, name, 1, 5, &p->beam[i]));
         OK(p->session, spar_beam_set_axis(p->beam[i], 2, eta, xyz, NULL));
         OK(p->session, spar_beam_set_sections(p->beam[i], 1, eta, K, M));
+        OK(p->session, spar_member_set_fidelity(p->beam[i], SPAR_FIDELITY_LINEAR, 0));
         OK(p->session, spar_member_set_effects(p->beam[i], SPAR_EFFECT_INERTIA | SPAR_EFFECT_FLUID_HISTORY));
         OK(p->session, spar_member_commit(p->beam[i]));
         OK(p->session, spar_fluid_create(p->beam[i], name, &p->tip[i]));

@@ -194,7 +194,7 @@ static void test_gravity_row(void **state) {
     assert_true(gravity[SPAR_COLUMN_REACTION] > 0.01);
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
         int there = r == SPAR_ROW_INERTIA || r == SPAR_ROW_GYROSCOPIC || r == SPAR_ROW_GRAVITY ||
-                    r == SPAR_ROW_LARGE_ROTATION || r == SPAR_ROW_FLUID_VELOCITY || r == SPAR_ROW_PREDICTOR;
+                    r == SPAR_ROW_FLUID_VELOCITY || r == SPAR_ROW_PREDICTOR;
         assert_int_equal(table[r][SPAR_COLUMN_IN_FORCE], there);
         for (int k = 0; k < SPAR_COLUMN_COUNT && !there; k++) {
             assert_true(table[r][k] == 0);
@@ -224,7 +224,6 @@ static void test_sizes_at_rest(void **state) {
     assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_MOTION] > 0.01);
     assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_SIZE] > 0.01);
     assert_true(table[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE] > 0.01);
-    assert_true(table[SPAR_ROW_LARGE_ROTATION][SPAR_COLUMN_SIZE] > 1e-3);
     spar_session_destroy(&s);
 }
 
@@ -264,7 +263,7 @@ static void test_left_out_of_statics(void **state) {
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
     OK(c.s, spar_session_set_gravity(c.s, g));
     c.b = scene_beam(c.s, "wing", 1, 6, 2, K, M);
-    OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION));
+    OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY));
     OK(c.s, spar_member_commit(c.b));
     OK(c.s, spar_member_set_load(c.b, 5, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));

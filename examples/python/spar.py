@@ -78,7 +78,7 @@ constants SPAR_ROOT_FREE=0 SPAR_ROOT_FIXED=1 SPAR_ROOT_PINNED=2 SPAR_ROOT_DRIVEN
 constants SPAR_FREE_X=1 SPAR_FREE_Y=2 SPAR_FREE_Z=4 SPAR_FREE_RX=8 SPAR_FREE_RY=16 SPAR_FREE_RZ=32
 constants SPAR_LOAD_DEAD=0 SPAR_LOAD_FOLLOWER=1
 constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
-constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_LARGE_ROTATION=16 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
+constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
 constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
 call spar_point_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] member|member|out|
 call spar_rigid_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] mass|double|in|[36] member|member|out|
@@ -229,7 +229,7 @@ call spar_session_set_progress int session|session|value| progress|progress|call
 call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]
 call spar_session_solve_eigenvalues int session|session|value| dt|double|value| memory|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 call spar_session_solve_floquet int session|session|value| dt|double|value| steps|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| eigenvalue|double|out|[n][2]
-constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_LARGE_ROTATION=4 SPAR_ROW_FLUID_MOMENT=5 SPAR_ROW_FLUID_VELOCITY=6 SPAR_ROW_FLUID_POSES=7 SPAR_ROW_FLUID_HISTORY=8 SPAR_ROW_PREDICTOR=9 SPAR_ROW_ITERATION=10 SPAR_ROW_HALF_STEP=11 SPAR_ROW_MASSES=12 SPAR_ROW_FOUNDATION=13 SPAR_ROW_PRETENSION=14 SPAR_ROW_COUNT=15
+constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_FLUID_MOMENT=4 SPAR_ROW_FLUID_VELOCITY=5 SPAR_ROW_FLUID_POSES=6 SPAR_ROW_FLUID_HISTORY=7 SPAR_ROW_PREDICTOR=8 SPAR_ROW_ITERATION=9 SPAR_ROW_HALF_STEP=10 SPAR_ROW_MASSES=11 SPAR_ROW_FOUNDATION=12 SPAR_ROW_PRETENSION=13 SPAR_ROW_COUNT=14
 constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
 call spar_effect_name text row|int|value|
 call spar_session_report_effects int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]

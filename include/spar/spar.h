@@ -386,18 +386,17 @@ enum { SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1 };
 enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2 };
 /* Effects: what is off is not computed, stored or sent. */
 enum {
-    SPAR_EFFECT_INERTIA = 1,         /* off: each step is a static equilibrium */
-    SPAR_EFFECT_GYROSCOPIC = 2,      /* forces quadratic in the angular velocity */
-    SPAR_EFFECT_GRAVITY = 4,         /* weight */
-    SPAR_EFFECT_DAMPING = 8,         /* spar_beam_set_damping, spar_beam_set_mass_damping */
-    SPAR_EFFECT_LARGE_ROTATION = 16, /* off: linear about the reference, turns to 170 degrees */
-    SPAR_EFFECT_FLUID_MOMENT = 32,   /* moments given to spar_fluid_push_forces */
-    SPAR_EFFECT_FLUID_HISTORY = 64,  /* node forces kept for spar_fluid_pull_forces */
-    SPAR_EFFECT_WORK = 128,          /* the account of spar_member_get_work */
-    SPAR_EFFECT_DEFAULT = 256,       /* all that is on where nothing is set; or-ed with what is wanted besides */
-    SPAR_EFFECT_MASSES = 512,        /* bodies of spar_beam_set_masses */
-    SPAR_EFFECT_FOUNDATION = 1024,   /* springs of spar_beam_set_foundation */
-    SPAR_EFFECT_PRETENSION = 2048    /* section forces of spar_beam_set_pretension */
+    SPAR_EFFECT_INERTIA = 1,        /* off: each step is a static equilibrium */
+    SPAR_EFFECT_GYROSCOPIC = 2,     /* forces quadratic in the angular velocity */
+    SPAR_EFFECT_GRAVITY = 4,        /* weight */
+    SPAR_EFFECT_DAMPING = 8,        /* spar_beam_set_damping, spar_beam_set_mass_damping */
+    SPAR_EFFECT_FLUID_MOMENT = 32,  /* moments given to spar_fluid_push_forces */
+    SPAR_EFFECT_FLUID_HISTORY = 64, /* node forces kept for spar_fluid_pull_forces */
+    SPAR_EFFECT_WORK = 128,         /* the account of spar_member_get_work */
+    SPAR_EFFECT_DEFAULT = 256,      /* all that is on where nothing is set; or-ed with what is wanted besides */
+    SPAR_EFFECT_MASSES = 512,       /* bodies of spar_beam_set_masses */
+    SPAR_EFFECT_FOUNDATION = 1024,  /* springs of spar_beam_set_foundation */
+    SPAR_EFFECT_PRETENSION = 2048   /* section forces of spar_beam_set_pretension */
 };
 
 /* How much of a beam's mechanics is kept; each is the limit of those below it in this list for small deformation. */
@@ -569,11 +568,11 @@ SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
                  Coriolis, gyroscopic and centrifugal terms and the stiffening by centrifugal forces. Neglected: terms
                  of second order in the deformation (shortening of a bent beam; moments of loads on displaced arms),
                  stiffening by other loads. One factorisation as long as dt and the root's turning speed, in its own
-                 axes, do not change. Free or pinned root: linear about the reference, LARGE_ROTATION is off; nothing
-                 holds such a beam for solve_static. A node that turns by half a turn against root or reference ends the
-                 step: SPAR_ERR_NUMERIC. Where joints tie it the root may be free or pinned and turn as far
-                 as it likes: the deformation is linear as seen from the root's node, wherever that goes, whatever
-                 LARGE_ROTATION says; of the stiffening that along the line counts, by the member's own inertia
+                 axes, do not change. Free or pinned root: linear about the reference; nothing holds such a beam for
+                 solve_static. A node that turns by half a turn against root or reference ends the step:
+                 SPAR_ERR_NUMERIC. Where joints tie it the root may be free or pinned and turn as far as it likes: the
+                 deformation is linear as seen from the root's node, wherever that goes; of the stiffening that along
+                 the line counts, by the member's own inertia
      modal       as linear, with the lowest `modes` modes of the beam with its root held; of a free or pinned beam those
                  it has so, of which the first 6 or 3 move it as a rigid body. Initial deformation is brought to the
                  nearest one that the modes have. Where joints tie it: the 6 or 3 rigid motions of its root, and modes
@@ -673,8 +672,8 @@ SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const 
      v[6], a[6]: in, NULL: 0 */
 SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]);
 /* A load on a node, which replaces the node's earlier one of that kind and is kept; zeros take it away. A node bears
-   the sum of its two kinds. With LARGE_ROTATION off a follower stays as it is in the reference configuration; otherwise
-   its tangent is exact (unsymmetric). After commit.
+   the sum of its two kinds. An exact member has the exact tangent of followers (unsymmetric). On a linear or modal
+   beam with a free or pinned root that no joint ties, a follower keeps its direction of the reference. After commit.
    The load given before a step is that at the step's end, t^{n+1}. Within the step, with any number of substeps, the
    load goes linearly from its value in the step before; a load given for the first time goes from 0. The first step has
    no step before it: its loads act from t = 0 on. A load that is taken off there, after a static solution, is gone at
@@ -716,11 +715,10 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    exact as the reaction, and at the root it is the reaction less the loads at that node. A load at a node within the
    line counts in the section there. Strains converge one order behind the displacements; stiffness and damping times
    them is force only in the limit. force is made of them for a beam that is rigid, prescribed or external, and until a
-   first step or static solution has found a balance. Of a linear or modal member, or one with LARGE_ROTATION off,
-   strains are those of linear theory, as in its strain energy: of the displacement and rotation vector seen from the
-   root where that is fixed or driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0.
-   Its forces have the arms and axes of the reference where its equations stand there: fixed, pinned or free roots,
-   without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without sections. SPAR_ERR_STATE: force where the loads are
+   first step or static solution has found a balance. The strains of a linear or modal member are those of linear
+   theory, as in its strain energy: of the displacement and rotation vector seen from the root where that is fixed or
+   driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0. Its forces have the arms and
+   axes of the reference where its equations stand there: fixed, pinned or free roots, without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without sections. SPAR_ERR_STATE: force where the loads are
    another rank's (option ranks.state). */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
@@ -733,9 +731,9 @@ enum {
     SPAR_ENERGY_FOUNDATION = 4, /* stored in the springs of spar_beam_set_foundation */
     SPAR_ENERGY_COUNT = 5
 };
-/* energy[capacity]: out, by SPAR_ENERGY_*, NULL: not wanted. Members spar does not solve for give zeros. With
-   LARGE_ROTATION off, and of linear and modal members, the quadratic forms of their equations; on a driven root only
-   the strain energy, the others are those of the motion. A modal member that joints tie gets its shapes for that from
+/* energy[capacity]: out, by SPAR_ENERGY_*, NULL: not wanted. Members spar does not solve for give zeros. Linear
+   and modal members give the quadratic forms of their equations; on a driven root only the strain energy, the others
+   are those of the motion. A modal member that joints tie gets its shapes for that from
    the first call that steps, solves, saves or tries, and its energies are of those from then on. */
 SPAR_API int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy);
 /* Work done on a member, J. */
@@ -771,10 +769,9 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* The lowest modes about the present state, the root held as it is, in the frame that turns with the root's present
    angular velocity: geometric stiffness of the stress, centrifugal stiffening and spin softening included, Coriolis'
-   terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a member with LARGE_ROTATION off:
-   those of its reference. Of a linear or modal member: those of its equations, with the root's present turn, without
-   load stiffness; of a rigid one those of the rigid body. A rotor: set_root DRIVEN, set_initial_velocity, commit,
-   solve_static, solve_modes.
+   terms left out; of unsymmetric load stiffness (followers) the symmetric part. Of a linear or modal
+   member: those of its equations, with the root's present turn, without load stiffness; of a rigid one those of the
+   rigid body. A rotor: set_root DRIVEN, set_initial_velocity, commit, solve_static, solve_modes.
    Of a member that joints tie to others: the modes of them all, on which they agree to the bit whichever is asked, and
    the member's part of the shapes; what joints hold or drive stands still, their springs and the turning of their loads
    are in the stiffness (solve statically first, so that the loads are known), their dampers are left out. Parts that
@@ -790,8 +787,8 @@ SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *fre
    angular frequency, rad/s: a growth rate > 0 is an instability, with a frequency flutter or whirl, without one
    buckling. Of the conjugate pairs of eigenvalues the one with frequency >= 0 counts alone; a motion without stiffness
    (a free body's) has zero twice, which counts once. Fluid loads stay as they are: the fluid's answer is not there. Of
-   a member that joints tie to others: those of them all, dampers included, the same whichever is asked. Members with
-   LARGE_ROTATION off, linear and modal ones: of their equations, as for modes. Local.
+   a member that joints tie to others: those of them all, dampers included, the same whichever is asked. Linear and
+   modal members: of their equations, as for modes. Local.
      n: in, how many, at most the number of unknowns that the roots leave free
      shift[2]: in, growth rate, 1/s, and angular frequency, rad/s: those nearest to it are found; NULL: zero, the lowest
      eigenvalue[n][2]: out, growth rate and angular frequency, by their distance from the shift
@@ -1489,18 +1486,17 @@ enum {
     SPAR_ROW_GYROSCOPIC = 1,
     SPAR_ROW_GRAVITY = 2,
     SPAR_ROW_DAMPING = 3,
-    SPAR_ROW_LARGE_ROTATION = 4, /* size: largest turn of a node against its root (free: against the reference), rad */
-    SPAR_ROW_FLUID_MOMENT = 5,   /* size, as of the next three: change of the fluid's loads, as SPAR_TRY_LOAD */
-    SPAR_ROW_FLUID_VELOCITY = 6, /* velocities pulled; without: a fluid that sees them as zero */
-    SPAR_ROW_FLUID_POSES = 7,    /* orientations, angular velocities, accelerations pulled; without: the reference's */
-    SPAR_ROW_FLUID_HISTORY = 8,  /* node forces pulled back; without: zeros */
-    SPAR_ROW_PREDICTOR = 9,      /* size: |predicted - final| / |final| loads of the last step; without: order 0 */
-    SPAR_ROW_ITERATION = 10,     /* size: added mass over mass, as the coupling sees it; without: explicit */
-    SPAR_ROW_HALF_STEP = 11,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
-    SPAR_ROW_MASSES = 12,        /* bodies on beams; size as of gravity: their weight and inertia */
-    SPAR_ROW_FOUNDATION = 13,    /* springs along beams; size as of gravity */
-    SPAR_ROW_PRETENSION = 14,    /* section forces of the reference; size as of gravity */
-    SPAR_ROW_COUNT = 15
+    SPAR_ROW_FLUID_MOMENT = 4,   /* size, as of the next three: change of the fluid's loads, as SPAR_TRY_LOAD */
+    SPAR_ROW_FLUID_VELOCITY = 5, /* velocities pulled; without: a fluid that sees them as zero */
+    SPAR_ROW_FLUID_POSES = 6,    /* orientations, angular velocities, accelerations pulled; without: the reference's */
+    SPAR_ROW_FLUID_HISTORY = 7,  /* node forces pulled back; without: zeros */
+    SPAR_ROW_PREDICTOR = 8,      /* size: |predicted - final| / |final| loads of the last step; without: order 0 */
+    SPAR_ROW_ITERATION = 9,      /* size: added mass over mass, as the coupling sees it; without: explicit */
+    SPAR_ROW_HALF_STEP = 10,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
+    SPAR_ROW_MASSES = 11,        /* bodies on beams; size as of gravity: their weight and inertia */
+    SPAR_ROW_FOUNDATION = 12,    /* springs along beams; size as of gravity */
+    SPAR_ROW_PRETENSION = 13,    /* section forces of the reference; size as of gravity */
+    SPAR_ROW_COUNT = 14
 };
 /* Columns of the same. */
 enum {

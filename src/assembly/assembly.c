@@ -4,8 +4,8 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
-#include "../time/newton_stop.h"
 #include "../time/newton.h"
+#include "../time/newton_stop.h"
 #include "system.h"
 
 #include <float.h>
@@ -415,7 +415,8 @@ static void begin_drive(spari_link *l) {
     l->drive = j->drive[0];
 }
 
-/* Accelerations at t^0 of the parts and loads of the joints that belong together: body_newton.c's start, with the joints. */
+/* Accelerations at t^0 of the parts and loads of the joints that belong together: body_newton.c's start, with the
+ * joints. */
 static int start_all(spari_assembly *a) {
     double cm = a->limb[0].scheme.cm;
     int singular = 0;
@@ -614,8 +615,7 @@ static int gains_of_all(void *self, const spari_part *part) {
     int near = 1;
     for (int i = 0; i < a->limbs; i++) {
         spari_limb *p = a->limb + i;
-        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->arms ||
-            p->solver->body->linear[0]) {
+        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->arms) {
             return 0;
         }
         near = near && spari_stage_is_near(p->solver, p->member, p->scheme.h);

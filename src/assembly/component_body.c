@@ -6,10 +6,10 @@
 #include "../member/applied.h"
 #include "../member/joint.h"
 #include "../time/body_newton.h"
-#include "../time/offset_loads.h"
+#include "../time/component.h"
 #include "../time/driven_root.h"
 #include "../time/fidelity.h"
-#include "../time/component.h"
+#include "../time/offset_loads.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +59,7 @@ static int make_nodes(spari_limb *p) {
 }
 
 static const double *turn_of_node(const spari_limb *p, int node) {
-    return p->solver->body->linear[0] ? NULL : p->solver->turn + 4 * node;
+    return p->solver->turn + 4 * node;
 }
 
 /* ---- a step ---- */
@@ -154,8 +154,7 @@ static int reduce_nodes(spari_limb *p, double *x) {
     }
     for (int e = 0; e < p->condensed->ends; e++) {
         const double *turn = turn_of_node(p, p->condensed->node[e]), *own = s->dx + 6 * p->condensed->node[e];
-        memcpy(x + 6 * e, own, 6 * sizeof *x);
-        for (int k = 0; k < 6 && turn; k += 3) {
+        for (int k = 0; k < 6; k += 3) {
             spari_rotate(turn, own + k, x + 6 * e + k);
         }
     }
@@ -167,8 +166,7 @@ static void expand_nodes(spari_limb *p, double *x) {
     for (int e = 0; e < p->condensed->ends; e++) {
         const double *turn = turn_of_node(p, p->condensed->node[e]);
         double *own = s->dx + 6 * p->condensed->node[e];
-        memcpy(own, x + 6 * e, 6 * sizeof *x);
-        for (int k = 0; k < 6 && turn; k += 3) {
+        for (int k = 0; k < 6; k += 3) {
             spari_rotate_back(turn, x + 6 * e + k, own + k);
         }
     }

@@ -1,17 +1,17 @@
 /* Linear and modal beams: their frame created and freed, and their rows of the table. */
 #include "frame.h"
 
+#include "../algebra/pencil.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
-#include "floating_root.h"
-#include "../time/fidelity.h"
-#include "../time/component.h"
-#include "../algebra/pencil.h"
 #include "../solve/reaction.h"
+#include "../time/component.h"
+#include "../time/fidelity.h"
+#include "floating_root.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -196,11 +196,6 @@ static int modal_check(const spar_member *m) {
     return SPAR_OK;
 }
 
-/* The rotation of a root that is given is large all the same. */
-static int frame_effects(const spar_member *m, int effects) {
-    return spari_member_root_is_given(m) ? effects : effects & ~SPAR_EFFECT_LARGE_ROTATION;
-}
-
 /* ---- the rest of the rows ---- */
 
 static void frame_remass(spar_member *m) {
@@ -343,14 +338,14 @@ static void frame_publish(spar_member *m) {
 
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
-    .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
-    .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
-    .balance = frame_balance, .answer = frame_answer, .felt = frame_felt, .accept = frame_accept,                      \
-    .begin = frame_begin, .reject = frame_reject, .effort = frame_effort, .rest = frame_rest,                          \
-    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
-    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .linearise = frame_linearise,          \
-    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
-    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
+    .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
+    .remass = frame_remass, .restart = frame_restart, .advance = frame_advance, .balance = frame_balance,              \
+    .answer = frame_answer, .felt = frame_felt, .accept = frame_accept, .begin = frame_begin, .reject = frame_reject,  \
+    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
+    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
+    .shape = frame_shape, .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save,            \
+    .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie,                   \
+    .end_of = frame_end_of, .publish = frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

@@ -256,7 +256,7 @@ void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double
     double sign = 1;
     memset(turn, 0, 4 * sizeof *turn);
     turn[0] = 1;
-    if (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->floats) {
+    if (spari_member_is_linear_in_place(m)) {
         return;
     }
     if (d->per_element == 1 || m->seen == SPARI_SEEN_LINEAR) {

@@ -109,7 +109,7 @@ const double *spari_dead_before(const spar_member *m) {
 
 /* Nodal quaternions of an element in one hemisphere; those of a member that is linear stay at the reference. */
 static void element_field(const spar_member *m, const double *q, double z[][4]) {
-    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->floats;
+    int linear = spari_member_is_linear_in_place(m);
     for (int l = 0; l < m->per_element; l++) {
         const double unit[4] = {1, 0, 0, 0}, *ql = linear ? unit : q + 7 * l + 3;
         double sign = l > 0 && spari_quat_dot(ql, z[l - 1]) < 0 ? -1 : 1;
@@ -470,8 +470,8 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
     if (m->foundation) {
         spari_foundation_tangent(m, e, factor, S);
     }
-    if (!a || !(m->effects & SPAR_EFFECT_LARGE_ROTATION)) {
-        return; /* linear about the reference: the loads stay as they are there */
+    if (!a) {
+        return;
     }
     double z[SPARI_MAX_NODES][4];
     element_field(m, q + 7 * (int64_t)e * (P - 1), z);

@@ -41,15 +41,11 @@ typedef struct spari_body {
     double length; /* size of the member, for the tolerances: arc length, or radius of gyration of a rigid body */
     double
         stiffest; /* size of a force that rounding in the places makes: largest stiffness, and moments over this size */
-    double *linear[3]; /* linear members: element matrices [elements][6P][6P] of stiffness, damping, mass; NULL: none */
-    double *weights;   /* linear members: forces [unique][6] of gravity at the reference; NULL: weightless */
-    double *pull;      /* linear members: forces [unique][6] of `pre` at the reference; NULL: none */
-    double *at_rest;   /* linear members: the reference as a state, [unique][7] */
-    double *lines;     /* the memory of what is in blocks but for `pre`, and of the work space of an element */
-    int64_t room;      /* doubles of work space that an element takes */
-    double *scratch;   /* work space of one element, and of 6 doubles a node at least */
-    double *matrix;    /* [6P][6P] work space: an element's tangent */
-    double *tally;     /* [tiles][2] work space of sums over elements */
+    double *lines;   /* the memory of what is in blocks but for `pre`, and of the work space of an element */
+    int64_t room;    /* doubles of work space that an element takes */
+    double *scratch; /* work space of one element, and of 6 doubles a node at least */
+    double *matrix;  /* [6P][6P] work space: an element's tangent */
+    double *tally;   /* [tiles][2] work space of sums over elements */
     struct spari_crew *const *crew; /* who works on its elements (base/crew.h); NULL: one thread */
 } spari_body;
 
@@ -107,10 +103,6 @@ static inline void spari_slot_get(const double *blocks, int rows, int64_t slot, 
 double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
                            double *r, double *power);
 
-/* The same of a body that has been made linear too, as if it were not. */
-double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
-                                 double factor, double *r, double *power);
-
 /* Tangent of element e, row-major S [6P][6P]: dr = S (du, dtheta) with dv = cv X, da = cm X, X = (du, Tinv dtheta),
    Tinv [unique][9] or NULL for the identity; v, a NULL: at rest. */
 void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
@@ -123,11 +115,5 @@ void spari_body_rates(const spari_body *body, int e, const double *q, const doub
 
 /* kinetic, strain, gravity potential (zero at the reference), power dissipated; v NULL: at rest */
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
-
-/* Makes the body linear about its reference: element matrices are formed once. heavy: gravity may come. Returns 0, or 1
-   when there is no memory. */
-int spari_body_linearise(spari_body *body, int heavy);
-/* A linear body keeps its weight as nodal loads: call this after gravity has changed. */
-void spari_body_gravity_changed(spari_body *body);
 
 #endif

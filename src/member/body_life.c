@@ -1,8 +1,8 @@
 /* A body created and freed. */
 #include "body.h"
 
-#include "../base/thread_pool.h"
 #include "../base/status.h"
+#include "../base/thread_pool.h"
 #include "../math/lanes.h"
 
 #include <stdlib.h>
@@ -186,12 +186,6 @@ void spari_body_free(spari_body *body) {
     free(body->dphi);
     free(body->place);
     free(body->pre);
-    for (int k = 0; k < 3; k++) {
-        free(body->linear[k]);
-    }
-    free(body->weights);
-    free(body->pull);
-    free(body->at_rest);
     free(body->lines);
     free(body->tally);
     free(body);

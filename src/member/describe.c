@@ -3,9 +3,9 @@
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
+#include "added_mass_fit.h"
 #include "beam.h"
 #include "checks.h"
-#include "added_mass_fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -314,10 +314,14 @@ int spar_member_set_external(spar_member *member, int on) {
 int spar_member_set_effects(spar_member *member, int effects) {
     SPARI_QUIET;
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                    SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY |
-                    SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION |
-                    SPAR_EFFECT_PRETENSION;
+                    SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT |
+                    SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION,
+              large_rotation = 16; /* this bit stays free */
     SPARI_TRY(spari_need_open(member, __func__));
+    SPARI_REQUIRE(member->session, !(effects & large_rotation), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': large rotation (16) is not an effect: rotations are always large at SPAR_FIDELITY_EXACT; "
+                  "leave it out, and choose SPAR_FIDELITY_LINEAR (spar_member_set_fidelity) for a beam to be linear",
+                  __func__, member->name);
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
                   (unsigned)(effects & ~all));

@@ -71,7 +71,7 @@ void spari_beam_tell_locking(const spar_member *m) {
     static const double rounding = 1e15; /* bending is then less than the last digit of the rest */
     char text[SPARI_MESSAGE_SIZE];
     double whole = 0;
-    int element = 0, exact = m->seen != SPARI_SEEN_LINEAR && (m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    int element = 0, exact = m->seen != SPARI_SEEN_LINEAR;
     const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->per_element, exact || is_bent(m));
     if (ratio > most) {
         (void)snprintf(text, sizeof text,

@@ -1,16 +1,9 @@
 /* Forces of a body, and its energy: sums over the quadrature points. docs/theory.md, "The beam". */
 #include "../base/thread_pool.h"
 #include "../math/basis.h"
-#include "linear_body.h"
 #include "point.h"
 
 /* ---- forces ---- */
-
-double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
-                           double *r, double *power) {
-    return body->linear[0] ? spari_linear_residual(body, q, v, a, factor, r, power)
-                           : spari_body_exact_residual(body, q, v, a, factor, r, power);
-}
 
 /* What the forces of elements are asked of. */
 typedef struct force_state {
@@ -52,8 +45,8 @@ static void clear_forces(void *context, int64_t from, int64_t to) {
     memset(r + 6 * from, 0, (size_t)(6 * (to - from)) * sizeof *r);
 }
 
-double spari_body_exact_residual(const spari_body *body, const double *q, const double *v, const double *a,
-                                 double factor, double *r, double *power) {
+double spari_body_residual(const spari_body *body, const double *q, const double *v, const double *a, double factor,
+                           double *r, double *power) {
     force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
     double scale = 0, damped = 0;
     spari_crew_spread(body->crew ? *body->crew : NULL, body->unique, CLEARED, clear_forces, r);
@@ -104,10 +97,6 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
     int wanted = SPARI_PLACES | (body->C ? SPARI_SLOPES : 0) | (damped ? SPARI_RATE_SLOPES : 0);
     double *z = body->scratch, *f = z + ROW * SPARI_MAX_NODES;
     memset(energy, 0, 4 * sizeof *energy);
-    if (body->linear[0]) {
-        spari_linear_energy(body, q, v, energy);
-        return;
-    }
     for (int e = 0; e < body->elements; e++) {
         spari_point_gather(body, e, q, v, NULL, z);
         spari_lanes_interpolate(body, e, wanted, z, f);

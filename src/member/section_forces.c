@@ -1,7 +1,7 @@
-/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each element's own
-   share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line, of the
-   ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them acts
-   beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
+/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each
+   element's own share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line,
+   of the ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them
+   acts beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
 #include "section_forces.h"
 
 #include "../base/session.h"
@@ -35,8 +35,7 @@ int spari_beyond_is_known(const spar_member *m) {
 }
 
 static int is_standing(const spar_member *m) {
-    return m->seen == SPARI_SEEN_LINEAR ? m->root != SPAR_ROOT_DRIVEN && !m->floats
-                                        : !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
+    return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
 }
 
 int spari_beyond_is_undeformed(const spar_member *m) {
@@ -105,12 +104,11 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
     part.elements = 1, part.unique = body->per_element;
     part.first += e, part.slot += e;
     part.C = part.D = part.pre = NULL;
-    part.linear[0] = NULL;
     part.drag = 0;
     part.crew = NULL;
     part.weight = weights;
-    (void)spari_body_exact_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,
-                                    w->still ? NULL : w->a + 6 * first, 1, r, NULL);
+    (void)spari_body_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,
+                              w->still ? NULL : w->a + 6 * first, 1, r, NULL);
 }
 
 /* What the point masses of element e give the beam, each by itself; their weights are then 0. */

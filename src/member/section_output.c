@@ -4,9 +4,9 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "section_forces.h"
 #include "checks.h"
 #include "pose.h"
+#include "section_forces.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -80,10 +80,6 @@ static void strains(const spari_station *s, const section_field *f, double e[6],
 }
 
 /* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
-static int is_linear(const spar_member *m) {
-    return m->seen == SPARI_SEEN_LINEAR || !(m->effects & SPAR_EFFECT_LARGE_ROTATION);
-}
-
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
     int P = m->per_element;
     double theta[3] = {0}, omega[3] = {0}, c[3];
@@ -94,9 +90,6 @@ static void linear_strains(const spar_member *m, const spari_station *s, double 
         int64_t node = (int64_t)s->element * P + l;
         double x[6], rate[6];
         spari_member_deformation(m, &pose, &m->after, node, x, rate);
-        if (m->seen == SPARI_SEEN_FIXED) { /* the equations of LARGE_ROTATION off take velocities for rates */
-            memcpy(rate, m->after.v + 6 * node, sizeof rate);
-        }
         for (int i = 0; i < 3; i++) {
             theta[i] += s->phi[l] * x[3 + i];
             omega[i] += s->phi[l] * rate[3 + i];
@@ -167,7 +160,7 @@ static int section_output(const spar_member *m, const spari_station *s, double e
     section_field f;
     double e[6], ed[6], local[6], rate[6], q0[4];
     section_at(m, s, &f);
-    if (is_linear(m)) {
+    if (m->seen == SPARI_SEEN_LINEAR) {
         linear_strains(m, s, e, ed);
     } else {
         strains(s, &f, e, ed);

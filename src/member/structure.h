@@ -3,8 +3,8 @@
 #ifndef SPARI_STRUCTURE_H
 #define SPARI_STRUCTURE_H
 
-#include "../base/thread_pool.h"
 #include "../base/session.h"
+#include "../base/thread_pool.h"
 #include "../math/resample.h"
 
 #include <string.h>
@@ -176,7 +176,8 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
 }
 /* Loads of the nodes summed onto the unknowns' nodes. */
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
-/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them (base/thread_pool.h). */
+/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them
+ * (base/thread_pool.h). */
 enum { SPARI_MEMBER_SPAN = 512 };
 static inline void spari_member_spread(const spar_member *m, int64_t n, spari_span work, void *context) {
     spari_crew_spread(m->session->crew, n, SPARI_MEMBER_SPAN, work, context);
@@ -189,6 +190,10 @@ double spari_member_length(const spar_member *member);
 /* Whether the motion of the root is given, so that it carries the member; else it is one of the unknowns. */
 static inline int spari_member_root_is_given(const spar_member *member) {
     return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;
+}
+/* Whether the member is linear about its reference: linear or modal, with a root that nothing carries. */
+static inline int spari_member_is_linear_in_place(const spar_member *member) {
+    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_given(member) && !member->floats;
 }
 /* How many of the root's six unknowns its root condition holds: the first. */
 static inline int spari_member_held(const spar_member *member) {

@@ -1,15 +1,15 @@
-/* The exact member: geometrically exact beams and rigid bodies, with or without LARGE_ROTATION. */
+/* The exact member: geometrically exact beams and rigid bodies. */
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../algebra/eigen.h"
-#include "../time/fidelity.h"
-#include "../time/component.h"
-#include "../algebra/pencil.h"
-#include "reaction.h"
-#include "../time/scheme.h"
 #include "../time/body_solver.h"
+#include "../time/component.h"
+#include "../time/fidelity.h"
+#include "../time/scheme.h"
 #include "../time/steady_rotation.h"
+#include "reaction.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,10 +18,6 @@
 /* ---- life and time ---- */
 
 static int exact_create(spar_member *m) {
-    int linear = !(m->effects & SPAR_EFFECT_LARGE_ROTATION) && !m->body->linear[0];
-    if (linear && spari_body_linearise(m->body, m->effects & SPAR_EFFECT_GRAVITY)) {
-        return SPAR_ERR_MEMORY;
-    }
     if (spari_fidelity_is_here(m)) {
         m->solution = spari_solver_create(m, m->body, NULL);
     }

@@ -1,16 +1,16 @@
 /* The life of a member: see life.h. */
 #include "life.h"
 
-#include "../base/thread_pool.h"
 #include "../base/environment.h"
+#include "../base/thread_pool.h"
 
 #include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
+#include "../member/added_mass_fit.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/checks.h"
-#include "../member/added_mass_fit.h"
 #include "../member/mean_acceleration.h"
 #include "../time/fidelity.h"
 #include "../time/newton_stop.h"
@@ -127,24 +127,10 @@ void spari_member_solved(spar_member *m, const double *fluid) {
     spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->dead, fluid, m->load_solved[1]});
 }
 
-/* Node `i` of a body that is linear about its reference: its equations know the rotation vector of its quaternion,
-   which jumps at half a turn. */
-static int is_near_half_turn(const spar_member *m, int64_t i) {
-    double before[3], after[3];
-    spari_quat_log(m->now.q + 7 * i + 3, before);
-    spari_quat_log(m->after.q + 7 * i + 3, after);
-    const double size = spari_norm(after), jumps = spari_dot(before, after) < 0 ? spari_norm(before) + size : 0;
-    return size > 0.95 * M_PI || jumps > M_PI;
-}
-
 int spari_member_check_turns(const spar_member *m) {
-    int64_t turned = m->seen == SPARI_SEEN_LINEAR && m->overturned;
-    for (int64_t i = 0; i < m->nodes && !turned && m->body && m->body->linear[0] && m->body->C; i++) {
-        turned = is_near_half_turn(m, i);
-    }
-    SPARI_REQUIRE(m->session, !turned, SPAR_ERR_NUMERIC,
+    SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->overturned, SPAR_ERR_NUMERIC,
                   "member '%s' is linear and turns by half a turn against %s, where rotation vectors end; take "
-                  "SPAR_FIDELITY_EXACT with LARGE_ROTATION on, or drive its root",
+                  "SPAR_FIDELITY_EXACT, or drive its root",
                   m->name, spari_member_root_is_given(m) || m->floats ? "its root" : "its reference");
     return SPAR_OK;
 }
@@ -307,12 +293,11 @@ static int check_complete(spar_member *m) {
 /* What is in force: what was asked for, or is implied, as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                        SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES |
-                        SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;
+                        SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;
     int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
-    int possible = SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_LARGE_ROTATION;
+    int possible = SPAR_EFFECT_FLUID_MOMENT;
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
@@ -462,7 +447,6 @@ void spari_member_gravity(spar_member *m) {
         for (int i = 0; i < 3; i++) {
             m->body->gravity[i] = m->effects & SPAR_EFFECT_GRAVITY ? m->session->gravity[i] : 0;
         }
-        spari_body_gravity_changed(m->body);
     }
 }
 

@@ -32,8 +32,7 @@ void spari_work_free(spari_work *work) {
 /* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
  */
 static int turns_linearly(const spar_member *m) {
-    return !m->floats && (!(m->effects & SPAR_EFFECT_LARGE_ROTATION) ||
-                          (m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN));
+    return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
 }
 
 /* Displacement and rotation vector of node i over the step; linearly: the change of its rotation vector. */
@@ -168,7 +167,7 @@ void spari_work_of_joint(spar_joint *j) {
         const spar_member *m = j->member[side];
         if (m && m->work) {
             /* on a linear beam a joint's moment does its work on the turn: (J5) in docs/theory.md */
-            increment(m, j->seat[side], m->seen != SPARI_SEEN_LINEAR && turns_linearly(m), d);
+            increment(m, j->seat[side], 0, d);
             m->work->sum[SPAR_WORK_JOINTS] += 0.5 * (dot6(f[0] + 6 * side, d) + dot6(f[1] + 6 * side, d));
         }
     }

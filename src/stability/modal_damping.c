@@ -214,10 +214,6 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     if (status == SPAR_OK) {
         body->gyroscopic = beam->body->gyroscopic;
         memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
-        if (!(beam->effects & SPAR_EFFECT_LARGE_ROTATION) &&
-            spari_body_linearise(body, beam->effects & SPAR_EFFECT_GRAVITY)) {
-            status = spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
-        }
     }
     int given = mode && ratio;
     const spari_alike alike[] = {

@@ -5,11 +5,11 @@
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
-#include "node_kinematics.h"
-#include "newton_stop.h"
-#include "newton.h"
-#include "root.h"
 #include "body_solver.h"
+#include "newton.h"
+#include "newton_stop.h"
+#include "node_kinematics.h"
+#include "root.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -181,17 +181,6 @@ static void turn_span_forth(void *context, int64_t from, int64_t to) {
     spari_nodes_turn_forth(&t->work, from, to);
 }
 
-/* The largest of forces; infinite where one is no number. */
-static void size_forces(void *context, int64_t from, int64_t to) {
-    const alpha_nodes *t = context;
-    double big = 0;
-    for (int64_t i = 6 * from; i < 6 * to; i++) {
-        double size = fabs(t->work.r[i]);
-        big = size <= big ? big : size < INFINITY ? size : INFINITY;
-    }
-    t->s->most[from / SPARI_SPAN] = big;
-}
-
 /* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
    of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
@@ -199,19 +188,14 @@ static void size_forces(void *context, int64_t from, int64_t to) {
 double spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
     alpha_nodes t = {.s = s, .work = alpha_work(s)};
     t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.turn = s->turn;
-    if (s->body->linear[0]) {
-        memcpy(dx, r, (size_t)(6 * s->n) * sizeof *dx);
-    }
-    spari_solver_spread(s, s->body->linear[0] ? size_forces : turn_span_back, &t);
+    spari_solver_spread(s, turn_span_back, &t);
     return spari_solver_most(s);
 }
 
 void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
     alpha_nodes t = {.s = s, .work = alpha_work(s)};
     t.work.dx = dx, t.work.turn = s->turn;
-    if (!s->body->linear[0]) {
-        spari_solver_spread(s, turn_span_forth, &t);
-    }
+    spari_solver_spread(s, turn_span_forth, &t);
 }
 
 static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
@@ -447,8 +431,7 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
         return "found a singular tangent";
     }
     spari_mixing_take(s->mixing, s->body->crew ? *s->body->crew : NULL, s->body->lanes, s->body->length, s->dx);
-    corrected size =
-        correct_turned(s, t->member, t->c, t->e, s->body->linear[0] ? NULL : s->turn, longest, t->x, s->dx);
+    corrected size = correct_turned(s, t->member, t->c, t->e, s->turn, longest, t->x, s->dx);
     s->newton++;
     it->correction = size.by;
     it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);

@@ -253,7 +253,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
                         .nodes = b->unique,
                         .elements = b->elements,
                         .per_element = b->per_element,
-                        .points = b->linear[0] ? 0 : b->first[b->elements],
+                        .points = b->first[b->elements],
                         .unknowns = 6 * b->unique,
                         .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
 }

@@ -4,8 +4,8 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "node_kinematics.h"
 #include "driven_root.h"
+#include "node_kinematics.h"
 
 #include <string.h>
 
@@ -414,7 +414,7 @@ void spari_stage_energy(spari_solver *s, const spar_member *m, const spari_part 
 }
 
 int spari_stage_is_near(const spari_solver *s, const spar_member *m, double h) {
-    return m->root == SPAR_ROOT_DRIVEN || m->added || s->arms || s->body->linear[0] || !(moved_by(s, h) > near);
+    return m->root == SPAR_ROOT_DRIVEN || m->added || s->arms || !(moved_by(s, h) > near);
 }
 
 void spari_stage_leave(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {

@@ -67,7 +67,6 @@ static void applied_at(const spar_member *m, double left) {
         for (int k = 0; k < 3; k++) {
             m->body->gravity[k] = s->gravity[k] + left * (s->gravity_before[k] - s->gravity[k]);
         }
-        spari_body_gravity_changed(m->body);
     }
 }
 
@@ -149,8 +148,7 @@ void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
 }
 
 int spari_member_turns_stiffly(const spar_member *m) {
-    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !m->body->linear[0] &&
-           !spari_member_root_is_given(m);
+    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !spari_member_root_is_given(m);
 }
 
 int spari_scheme_turns(const spar_session *s, double dt) {

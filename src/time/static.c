@@ -138,8 +138,7 @@ static int has_path(const spari_solver *s, const spar_member *m) {
     for (int i = 0; i < s->n; i++) {
         moments |= spari_norm(s->steps.load + 6 * i + 3) > 0;
     }
-    return !moments && m->root != SPAR_ROOT_PINNED && (m->effects & SPAR_EFFECT_LARGE_ROTATION) &&
-           (!m->applied || spari_applied_potential(m));
+    return !moments && m->root != SPAR_ROOT_PINNED && (!m->applied || spari_applied_potential(m));
 }
 
 /* Whether the state without loads is in equilibrium: the path begins there. */

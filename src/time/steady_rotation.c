@@ -72,7 +72,7 @@ void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e,
     body.drag = 0;
     spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
     spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);
-    if (!turn || body.linear[0]) {
+    if (!turn) {
         return;
     }
     const double *w = turn->w;
@@ -110,7 +110,7 @@ void spari_turn_pencil(const spari_body *body, const double w[3], const double o
     int n = 6 * body->per_element;
     spari_body_tangent(body, e, q, v, a, 1, 0, 0, NULL, K);
     spari_body_rates(body, e, q, v, a, 1, K, C, M);
-    if (!v || body->linear[0]) {
+    if (!v) {
         return;
     }
     /* dv = x' + w x and x' - s x, da = x'' + 2 w x' + w w x and x'' + (w - s) x' - w s x, of places and turns */

@@ -85,9 +85,9 @@ static double lump_squares(const spar_member *m, const double *q, const double *
                            double *less, double length) {
     int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0;
     const double *rate = inertia ? v : NULL, *acceleration = inertia ? a : NULL;
-    spari_body_exact_residual(m->body, q, rate, acceleration, 1, r, NULL);
+    spari_body_residual(m->body, q, rate, acceleration, 1, r, NULL);
     spari_lumps_weigh(m, 0);
-    spari_body_exact_residual(m->body, q, rate, acceleration, 1, less, NULL);
+    spari_body_residual(m->body, q, rate, acceleration, 1, less, NULL);
     spari_lumps_weigh(m, 1);
     minus(r, less, m->body->unique);
     return squares(r, m->body->unique, length);
@@ -97,8 +97,8 @@ static double lump_squares(const spar_member *m, const double *q, const double *
 static double pretension_squares(const spar_member *m, const double *q, double *r, double *less, double length) {
     spari_body loose = *m->body;
     loose.pre = NULL;
-    spari_body_exact_residual(m->body, q, NULL, NULL, 0, r, NULL);
-    spari_body_exact_residual(&loose, q, NULL, NULL, 0, less, NULL);
+    spari_body_residual(m->body, q, NULL, NULL, 0, r, NULL);
+    spari_body_residual(&loose, q, NULL, NULL, 0, less, NULL);
     minus(r, less, m->body->unique);
     return squares(r, m->body->unique, length);
 }
@@ -143,7 +143,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     sum[GRAVITY] += squares(r, n, length);
     if (b->D) {
         spari_body_residual(m->body, q, v, m->body->drag > 0 ? none : NULL, 0, r, NULL);
-        if (m->body->drag > 0 && !b->linear[0]) { /* less what is gyroscopic */
+        if (m->body->drag > 0) { /* less what is gyroscopic */
             spari_body_residual(b, q, v, none, 0, loads, NULL);
             minus(r, loads, n);
             spari_body_residual(b, q, v, NULL, 0, loads, NULL);
@@ -179,21 +179,6 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     return SPAR_OK;
 }
 
-/* Largest turn of a node against its root, or against the reference where nothing holds it. */
-static double largest_turn(const spar_member *m) {
-    const double unit[4] = {1, 0, 0, 0};
-    const double *base = spari_member_root_is_given(m) ? m->now.q + 3 : unit;
-    double largest = 0;
-    for (int64_t i = 0; i < m->nodes; i++) {
-        double back[4], turn[4], psi[3];
-        spari_quat_conj(base, back);
-        spari_quat_mul(back, m->now.q + 7 * i + 3, turn);
-        spari_quat_log(turn, psi);
-        largest = fmax(largest, spari_norm(psi));
-    }
-    return largest;
-}
-
 static double fastest_turn(const spar_session *s) {
     double most = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -204,9 +189,9 @@ static double fastest_turn(const spar_session *s) {
     return most;
 }
 
-/* What a run has shown so far: sums of the terms' squares, the largest turn, the fastest one. */
+/* What a run has shown so far: sums of the terms' squares, the largest angular velocity. */
 typedef struct sizes {
-    double sum[TERMS], turn, rate;
+    double sum[TERMS], rate;
 } sizes;
 
 static int add_state(spar_session *s, void *to) {
@@ -215,7 +200,6 @@ static int add_state(spar_session *s, void *to) {
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         if (m->body) {
             status = member_terms(m, so_far->sum);
-            so_far->turn = fmax(so_far->turn, largest_turn(m));
         }
     }
     so_far->rate = fmax(so_far->rate, fastest_turn(s));
@@ -235,7 +219,6 @@ static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) 
     for (int k = INERTIA; k <= PRETENSION; k++) {
         size[row[k]] = leading > 0 ? sqrt(of->sum[k] / leading) : 0;
     }
-    size[SPAR_ROW_LARGE_ROTATION] = of->turn;
     size[SPAR_ROW_HALF_STEP] = of->rate * dt * of->rate * dt / 8;
 }
 
@@ -252,7 +235,6 @@ static const row rows[SPAR_ROW_COUNT] = {
     {"gyroscopic terms", SPAR_EFFECT_GYROSCOPIC, 0},
     {"gravity", SPAR_EFFECT_GRAVITY, 0},
     {"damping", SPAR_EFFECT_DAMPING, 0},
-    {"large rotation", SPAR_EFFECT_LARGE_ROTATION, 0},
     {"fluid moments", SPAR_EFFECT_FLUID_MOMENT, SPARI_ASKED_MOMENT},
     {"fluid velocities", 0, SPARI_MUTE_VELOCITY},
     {"section poses", 0, SPARI_MUTE_POSES},
@@ -282,8 +264,6 @@ static int in_force(const spar_session *s, int r, int asked) {
         int here = (m->effects & rows[r].effect) != 0;
         if (r == SPAR_ROW_GRAVITY) {
             here = here && spari_norm(s->gravity) > 0;
-        } else if (r == SPAR_ROW_LARGE_ROTATION) {
-            here = here && m->body && m->fidelity == SPAR_FIDELITY_EXACT;
         }
         any |= here;
     }
@@ -421,7 +401,7 @@ static int try_rows(spar_session *s, const char *call, const spari_run *run, con
 
 static int fill_rows(spar_session *s, const char *call, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
     double size[SPAR_ROW_COUNT] = {0};
-    sizes seen = {{0}, 0, 0};
+    sizes seen = {{0}, 0};
     spari_run watched = *run;
     spari_wish wish;
     spari_record base;

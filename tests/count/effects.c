@@ -24,7 +24,7 @@ enum { NODES = 8, FLUID = 1000, WARM = 2, STEPS = 4, SECTIONS = 19, BLADES = 3 }
 enum { GIVEN = 1 << 30 };
 enum {
     ALL = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-          SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_FLUID_MOMENT
+          SPAR_EFFECT_FLUID_MOMENT
 };
 
 /* ---- what is measured ---- */
@@ -381,9 +381,8 @@ static void step(scene *s, int k) {
 /* ---- the effects ---- */
 
 /* functions: those of the effect alone, which must not be entered when it is off ("": none that the compiler leaves a
-   name). never (flag NEVER): not described or not asked for. TRADE: off, a member keeps the matrices that its steps
-   then need not form. */
-enum { NEVER = 1, TRADE = 2 };
+   name). never (flag NEVER): not described or not asked for. */
+enum { NEVER = 1 };
 typedef struct effect {
     const char *name, *functions;
     int flags;
@@ -396,40 +395,28 @@ static const effect effects[] = {
     {"inertia",
      "accelerated_forces_plain accelerated_forces_avx2",
      NEVER,
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION},
-     {.effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION},
-     {.effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION, .massless = 1}},
+     {.effects = GIVEN | SPAR_EFFECT_INERTIA},
+     {.effects = GIVEN},
+     {.effects = GIVEN, .massless = 1}},
     {"gyroscopic",
      "",
      0,
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_GYROSCOPIC},
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_LARGE_ROTATION},
+     {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC},
+     {.effects = GIVEN | SPAR_EFFECT_INERTIA},
      {0}},
     {"gravity", "", NEVER, {.heavy = 1}, {.effects = ALL & ~SPAR_EFFECT_GRAVITY, .heavy = 1}, {0}},
     {"gravity, without inertia",
      "weighed_forces_plain weighed_forces_avx2",
      NEVER,
-     {.heavy = 1, .effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_GRAVITY},
-     {.heavy = 1, .effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION},
-     {.effects = GIVEN | SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_GRAVITY}},
+     {.heavy = 1, .effects = GIVEN | SPAR_EFFECT_GRAVITY},
+     {.heavy = 1, .effects = GIVEN},
+     {.effects = GIVEN | SPAR_EFFECT_GRAVITY}},
     {"damping", "", NEVER, {.damped = 1}, {.effects = ALL & ~SPAR_EFFECT_DAMPING, .damped = 1}, {0}},
-    {"damping, linear",
-     "rate_power",
-     NEVER,
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING, .damped = 1},
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA, .damped = 1},
-     {.effects = GIVEN | SPAR_EFFECT_INERTIA}},
     {"damping by mass",
      "spari_body_see",
      NEVER,
      {.dragged = 1},
      {.dragged = 1, .effects = ALL & ~SPAR_EFFECT_DAMPING},
-     {0}},
-    {"large rotation",
-     "accelerated_forces_plain accelerated_forces_avx2",
-     TRADE,
-     {0},
-     {.effects = ALL & ~SPAR_EFFECT_LARGE_ROTATION},
      {0}},
     {"work account", "spari_work_step", NEVER, {.account = 1}, {0}, {0}},
     {"bodies on beams", "", NEVER, {.laden = 1}, {.laden = 1, .effects = ALL}, {0}},
@@ -564,7 +551,7 @@ static void run(const char *mode, const effect *e, const char *state, const sett
     if (strcmp(mode, "count") == 0) {
         printf("%s|%s|%d|%s\n", e->name, state, STEPS, e->functions);
     } else if (strcmp(mode, "bytes") == 0) {
-        printf("%s|%s|%lld|%d\n", e->name, state, heap - s.described, (e->flags & TRADE) != 0);
+        printf("%s|%s|%lld\n", e->name, state, heap - s.described);
     } else if (words == 1) {
         printf("%s|%s|%lld|%lld\n", e->name, state, up / s.iterations, down / s.iterations);
     }

@@ -479,7 +479,7 @@ contains
     call beam%create_beam(session, 'beam', 1, 4)
     call beam%set_axis([0, 1] * 1.0_c_double, reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
     call beam%set_sections([0.0_c_double], stiffness, mass)
-    call beam%set_effects(SPAR_EFFECT_INERTIA)
+    call beam%set_fidelity(SPAR_FIDELITY_LINEAR)
     call beam%commit()
     p = [0.0_c_double, 0.01_c_double, 0.02_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double]
     call beam%set_load(4, SPAR_LOAD_DEAD, p)
@@ -517,7 +517,7 @@ contains
     call beam%create_beam(session, 'beam', 1, 4)
     call beam%set_axis([0, 1] * 1.0_c_double, reshape([0, 0, 0, 2, 0, 0] * 1.0_c_double, [3, 2]))
     call beam%set_sections([0.0_c_double], stiffness)
-    call beam%set_effects(0)
+    call beam%set_fidelity(SPAR_FIDELITY_LINEAR)
     call beam%commit()
     call fluid%create(beam, 'springs')
     call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))

@@ -9,7 +9,7 @@
 enum { NODES = 5, END = NODES - 1 };
 
 /* What bears the load, and how the load is given. */
-typedef enum what { BODY, EXACT, SMALL, LINEAR, MODAL, RIGID, TIED } what;
+typedef enum what { BODY, EXACT, LINEAR, MODAL, RIGID, TIED } what;
 typedef enum load { DEAD, FOLLOWER, LINE_DEAD, LINE_FOLLOWER, MOTOR, GRAVITY } load;
 
 typedef struct scene {
@@ -28,9 +28,11 @@ static void body_create(scene *p) {
 }
 
 static void beam_create(scene *p, what of) {
-    static const int fidelity[] = {
-        [EXACT] = SPAR_FIDELITY_EXACT, [SMALL] = SPAR_FIDELITY_EXACT, [LINEAR] = SPAR_FIDELITY_LINEAR,
-        [MODAL] = SPAR_FIDELITY_MODAL, [RIGID] = SPAR_FIDELITY_RIGID, [TIED] = SPAR_FIDELITY_LINEAR};
+    static const int fidelity[] = {[EXACT] = SPAR_FIDELITY_EXACT,
+                                   [LINEAR] = SPAR_FIDELITY_LINEAR,
+                                   [MODAL] = SPAR_FIDELITY_MODAL,
+                                   [RIGID] = SPAR_FIDELITY_RIGID,
+                                   [TIED] = SPAR_FIDELITY_LINEAR};
     static const double mu[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
     double K[36], M[36];
     spar_session *s = p->session;
@@ -39,9 +41,6 @@ static void beam_create(scene *p, what of) {
     p->member = scene_beam(s, "beam", 1, NODES, 1, K, M);
     OK(s, spar_beam_set_damping(p->member, mu)); /* of what the steps do not resolve */
     OK(s, spar_member_set_fidelity(p->member, fidelity[of], of == MODAL ? 3 : 0));
-    if (of == SMALL) {
-        OK(s, spar_member_set_effects(p->member, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING));
-    }
     if (of == RIGID || of == TIED) {
         OK(s, spar_member_set_root(p->member, SPAR_ROOT_FREE));
     }
@@ -126,8 +125,6 @@ static const struct {
              {EXACT, LINE_DEAD, "beam, line"},
              {EXACT, LINE_FOLLOWER, "beam, line that follows"},
              {EXACT, GRAVITY, "beam, gravity"},
-             {SMALL, FOLLOWER, "beam without large rotation, follower"},
-             {SMALL, GRAVITY, "beam without large rotation, gravity"},
              {LINEAR, DEAD, "linear beam, dead"},
              {LINEAR, LINE_FOLLOWER, "linear beam, line that follows"},
              {LINEAR, GRAVITY, "linear beam, gravity"},

@@ -47,7 +47,7 @@
    these three
      place x y z                orientation qw qx qy qz
      root free|fixed|pinned|driven               external on|off          owner rank
-     effects default|none|inertia|gyroscopic|gravity|damping|large_rotation|fluid_moment|fluid_history|work|masses|
+     effects default|none|inertia|gyroscopic|gravity|damping|fluid_moment|fluid_history|work|masses|
              foundation|pretension ...
      velocity x y z             spin x y z      about x y z          the initial rigid motion
      load* NODE dead|follower fx fy fz mx my mz                      NODE: a number from 0, first or last

@@ -375,6 +375,7 @@ static int describe_rigid(const spar_case *c, const case_block *block, spar_memb
 }
 
 static int set_effects(const spar_case *c, const case_line *line, spar_member *member) {
+    /* in the order of the bits; the session refuses large_rotation, and says which fidelity to choose */
     static const char *const names[] = {"inertia",      "gyroscopic",    "gravity", "damping", "large_rotation",
                                         "fluid_moment", "fluid_history", "work",    "default", "masses",
                                         "foundation",   "pretension",    "none",    NULL};

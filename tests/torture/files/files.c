@@ -143,6 +143,7 @@ static void create_large(scene *c) {
     MUST(s, spar_member_set_fidelity(m, SPAR_FIDELITY_RIGID, 0));
     MUST(s, spar_member_set_root(m, SPAR_ROOT_FREE));
     c->asked = beam(c, "small", 1, 3);
+    MUST(s, spar_member_set_fidelity(c->asked, SPAR_FIDELITY_LINEAR, 0));
     MUST(s, spar_member_set_effects(c->asked, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_FLUID_HISTORY));
     body(c, 3);
     MUST(s, spar_point_create(s, "point", x, NULL, &m));

@@ -173,7 +173,7 @@ void do_spar_member_set_external(call *c) {
 
 void do_spar_member_set_effects(call *c) {
     live_member *m = arg_member(c, -1);
-    int effects = arg_flags(c, 1023);
+    int effects = arg_flags(c, 1023 & ~16);
     c->wild |= !(effects & SPAR_EFFECT_INERTIA); /* nothing may hold it */
     RUN(c, spar_member_set_effects(m->m, effects));
 }

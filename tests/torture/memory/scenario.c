@@ -309,7 +309,7 @@ static void act_describe(void) {
     CALL(spar_member_set_placement, b, place, unit_q);
     CALL(spar_member_set_initial_velocity, b, place, v0, omega);
     CALL(spar_member_set_root, b, SPAR_ROOT_FREE);
-    CALL(spar_member_set_effects, b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_LARGE_ROTATION);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY);
     CALL(spar_member_commit, b);
     for (int i = 0; i < 4; i++) {
         nodes[i][0] = 10.0 * i / 3;
@@ -519,7 +519,7 @@ static void act_fluids(void) {
     spar_fluid *sections = NULL;
     spar_session *s = h.session = begin_session();
     spar_member *b = h.member[0] = begin_beam(s, "beam", 2, 3, 0);
-    CALL(spar_member_set_effects, b, 4 * SPAR_EFFECT_FLUID_MOMENT - 1);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY);
     CALL(spar_member_commit, b);
     spar_fluid *f = h.fluid[0] = begin_fluid(b, "loose", 10, &h.n[0], h.x[0]);
     int64_t n = h.n[0];
