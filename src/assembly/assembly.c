@@ -1,6 +1,7 @@
 /* Members that joints tie together, in time: see assembly.h. */
 #include "assembly.h"
 
+#include "../base/environment.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
@@ -828,4 +829,23 @@ int spari_assembly_answer(spari_assembly *a, int64_t count, int64_t apart, doubl
 double spari_assembly_answer_of_mass(const spari_assembly *a) {
     double force = a->here && a->limbs > 0 ? a->limb[0].scheme.cm * a->mass : 0;
     return force > 0 ? 1 / force : 0;
+}
+
+/* ---- what the host asks ---- */
+
+int spar_member_get_newton(const spar_member *member, int64_t *iterations, double *left) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    spari_effort effort = {0};
+    if (member->committed && member->row->effort && spari_fidelity_is_here(member)) {
+        member->row->effort(member, &effort);
+        effort.left = member->assembly ? spari_assembly_left(member->assembly) : effort.left;
+    }
+    if (iterations) {
+        *iterations = effort.iterations;
+    }
+    if (left) {
+        *left = effort.left;
+    }
+    return SPAR_OK;
 }

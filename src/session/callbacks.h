@@ -1,8 +1,10 @@
-/* The host's fluid solver, run inside a call that goes on with what it has pushed: spar_step, or a static solution. */
-#ifndef SPARI_LEND_H
-#define SPARI_LEND_H
+/* The host's functions, called inside a call of the library's. */
+#ifndef SPARI_CALLBACKS_H
+#define SPARI_CALLBACKS_H
 
 #include "../base/session.h"
+
+/* ---- the fluid solver, in a call that goes on with what it has pushed: spar_step, or a static solution ---- */
 
 /* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it.
    Before the ranks meet: the others are not in this call. Local. */
@@ -12,5 +14,21 @@ int spari_lend_refuse(spar_session *session, const char *call);
 int spari_lend(spar_session *session, const char *lender, spar_fluid_solver solve, double dt, void *context);
 /* The host's call ahead of a step of dt; NULL: nothing to call, on any rank. Collective. */
 int spari_lend_before(spar_session *session, spar_before_step before, double dt, void *context);
+
+/* ---- progress: the host hears how far a call that makes trials is, ahead of each of its runs, and may stop it ---- */
+
+typedef struct spari_progress {
+    const char *call;
+    spar_progress tell; /* as it was at the entry of the call; NULL: nobody */
+    void *context;
+    int stopped; /* what the call is to answer, once it has been stopped; else SPAR_OK */
+} spari_progress;
+
+spari_progress spari_progress_of(const spar_session *session, const char *call);
+/* SPAR_OK, or SPAR_ERR_LIMIT on all ranks, where one of them stops: no trial fails with that, so that nothing else is
+   tried in its place. Collective where there is somebody, else nothing. */
+int spari_progress_tell(spar_session *session, spari_progress *progress, double done, double expected);
+/* The status of a call that has been stopped, else `status`. */
+int spari_progress_ends(const spari_progress *progress, int status);
 
 #endif

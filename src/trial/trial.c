@@ -1,19 +1,18 @@
 /* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
 #include "trial.h"
 
-#include "move_loads.h"
 #include "cost.h"
 #include "move_joints.h"
+#include "move_loads.h"
 
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../fluid/fluid.h"
-#include "../member/checks.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
-#include "../session/callbacks.h"
 #include "../exchange/session_private.h"
 #include "../exchange/sparse.h"
+#include "../fluid/fluid.h"
+#include "../member/checks.h"
 #include "../session/initial_accelerations.h"
 #include "../solve/life.h"
 

@@ -4,12 +4,12 @@
 #define SPARI_TRIAL_H
 
 #include "../comm/comm.h"
-#include "../fluid/fluid.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../session/callbacks.h"
 #include "../session/settings.h"
-#include "../session/progress.h"
-#include "run_record.h"
 #include "rebuild.h"
+#include "run_record.h"
 
 /* Steps of a run come in such numbers. */
 enum { SPARI_MULTIPLE = 8 };

@@ -1,23 +1,25 @@
-/* Advice comes into force: settings, and members made anew in place as trials make them, to stay. */
+/* Advice comes into force: settings, and members made anew in place as trials make them, to stay. Numbers of the host's
+   own that advice is to keep. */
 #include "apply.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../comm/enter.h"
+#include "../exchange/exchange.h"
+#include "../exchange/session_private.h"
+#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
-#include "../exchange/exchange.h"
-#include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../solve/work.h"
+#include "../trial/move_joints.h"
 #include "../trial/move_loads.h"
 #include "../trial/rebuild.h"
-#include "../trial/move_joints.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 uint64_t spari_advised_of(const spar_session *s) {
     uint64_t h = SPARI_HASH_BEGIN;
@@ -257,4 +259,23 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
         *dt = s->own->advised->dt;
     }
     return spari_named(s, __func__, status);
+}
+
+/* ---- numbers of the host's own ---- */
+
+int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers) {
+    SPARI_QUIET;
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST_NUMBERS && (numbers || n == 0), SPAR_ERR_ARGUMENT,
+                  "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",
+                  SPARI_MOST_NUMBERS);
+    int64_t bad = numbers ? spari_first_nonfinite(numbers, n) : -1;
+    SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite ones", __func__,
+                  (long long)bad, numbers[bad]);
+    double *own = session->own->number;
+    memset(own, 0, sizeof session->own->number);
+    for (int64_t i = 0; i < n; i++) {
+        own[i] = numbers[i];
+    }
+    return SPAR_OK;
 }
